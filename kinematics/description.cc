@@ -1,0 +1,240 @@
+// Trees of what a person wrote, and the reading of their fields with the place of each mistake.
+//
+// Numbers are written with the fewest digits that read back as the same bits (std::to_chars) and
+// read without regard to the locale (std::from_chars). An exponent always follows a decimal point
+// ("1.0e-04"), because YAML 1.1 readers take "1e-04" for a text.
+#include "kinematics/description.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace selfcal {
+namespace {
+
+constexpr std::size_t kMostQuoted = 40;  // characters of a wrong value that a message repeats
+
+std::string found(const Node* node) {
+  if (node == nullptr) return "nothing";
+  switch (node->kind) {
+    case Node::Kind::none:
+      return "nothing";
+    case Node::Kind::list:
+      return "a list of " + std::to_string(node->items.size());
+    case Node::Kind::map:
+      return "a mapping";
+    case Node::Kind::text:
+      break;
+  }
+  if (node->text.size() <= kMostQuoted) return "'" + node->text + "'";
+  return "'" + node->text.substr(0, kMostQuoted) + "...'";
+}
+
+std::optional<double> number_of(const Node* node) {
+  if (node == nullptr || node->kind != Node::Kind::text) return std::nullopt;
+  return parse_number(node->text);
+}
+
+}  // namespace
+
+std::string to_string(const Place& place) {
+  const std::string file = place.file ? *place.file : "(no file)";
+  return place.line > 0 ? file + ":" + std::to_string(place.line) : file;
+}
+
+Node Node::of(std::string text) {
+  Node node;
+  node.kind = Kind::text;
+  node.text = std::move(text);
+  return node;
+}
+
+Node Node::of(double number) { return of(format_number(number)); }
+
+Node Node::of(const Eigen::VectorXd& numbers) {
+  Node node = list();
+  for (const double number : numbers) node.items.push_back(of(number));
+  return node;
+}
+
+Node Node::list() {
+  Node node;
+  node.kind = Kind::list;
+  return node;
+}
+
+Node Node::map() {
+  Node node;
+  node.kind = Kind::map;
+  return node;
+}
+
+const Node* Node::find(std::string_view key) const {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i] == key) return &items[i];
+  }
+  return nullptr;
+}
+
+Node& Node::set(std::string key, Node value) {
+  keys.push_back(std::move(key));
+  items.push_back(std::move(value));
+  return *this;
+}
+
+void Problems::add(const Place& place, const std::string& what) {
+  list.push_back(to_string(place) + ": " + what);
+}
+
+Fields::Fields(const Node& node, std::string what, Problems& problems)
+    : node_(node), what_(std::move(what)), problems_(problems) {
+  if (node_.kind != Node::Kind::map) {
+    problems_.add(node_.place, what_ + ": expected a mapping, got " + found(&node_));
+  }
+}
+
+const Node* Fields::node(std::string_view key) {
+  asked_.emplace(key);
+  return node_.find(key);
+}
+
+bool Fields::has(std::string_view key) { return node(key) != nullptr; }
+
+std::string Fields::text(std::string_view key, std::string fallback) {
+  const Node* value = node(key);
+  if (value == nullptr) return fallback;
+  if (value->kind == Node::Kind::text) return value->text;
+  fail(key, "a text");
+  return fallback;
+}
+
+std::string Fields::text(std::string_view key) {
+  if (!has(key)) fail(key, "a text");
+  return text(key, std::string());
+}
+
+double Fields::number(std::string_view key, double fallback) {
+  return optional_number(key).value_or(fallback);
+}
+
+double Fields::number(std::string_view key) {
+  if (!has(key)) fail(key, "a number");
+  return number(key, 0.0);
+}
+
+std::optional<double> Fields::optional_number(std::string_view key) {
+  const Node* value = node(key);
+  if (value == nullptr) return std::nullopt;
+  const std::optional<double> number = number_of(value);
+  if (!number) fail(key, "a number");
+  return number;
+}
+
+double Fields::positive(std::string_view key, double fallback) {
+  const std::optional<double> value = optional_number(key);
+  if (!value) return fallback;
+  if (*value > 0) return *value;
+  fail(key, "a positive number");
+  return fallback;
+}
+
+int Fields::integer(std::string_view key, int fallback, int least, int most) {
+  const Node* value = node(key);
+  if (value == nullptr) return fallback;
+  const std::optional<double> number = number_of(value);
+  if (number && std::trunc(*number) == *number && *number >= least && *number <= most) {
+    return static_cast<int>(*number);
+  }
+  fail(key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  return fallback;
+}
+
+bool Fields::flag(std::string_view key, bool fallback) {
+  const Node* value = node(key);
+  if (value == nullptr) return fallback;
+  if (value->kind == Node::Kind::text && value->text == "true") return true;
+  if (value->kind == Node::Kind::text && value->text == "false") return false;
+  fail(key, "true or false");
+  return fallback;
+}
+
+std::optional<Eigen::VectorXd> Fields::numbers(std::string_view key, int size) {
+  const Node* value = node(key);
+  if (value == nullptr) return std::nullopt;
+  const std::string expected = "a list of " + std::to_string(size) + " numbers";
+  if (value->kind != Node::Kind::list || std::cmp_not_equal(value->items.size(), size)) {
+    fail(key, expected);
+    return std::nullopt;
+  }
+  Eigen::VectorXd numbers(size);
+  for (int i = 0; i < size; ++i) {
+    const Node& item = value->items[static_cast<std::size_t>(i)];
+    const std::optional<double> number = number_of(&item);
+    if (!number) {
+      problems_.add(item.place, what_ + ": key '" + std::string(key) + "': expected " + expected +
+                                    ", got " + found(&item) + " among them");
+      return std::nullopt;
+    }
+    numbers[i] = *number;
+  }
+  return numbers;
+}
+
+std::vector<std::string> Fields::texts(std::string_view key) {
+  const Node* value = node(key);
+  if (value == nullptr) return {};
+  std::vector<std::string> texts;
+  bool all_texts = value->kind == Node::Kind::list;
+  for (const Node& item : value->items) {
+    all_texts = all_texts && item.kind == Node::Kind::text;
+    texts.push_back(item.text);
+  }
+  if (all_texts) return texts;
+  fail(key, "a list of texts");
+  return {};
+}
+
+void Fields::fail(std::string_view key, const std::string& expected) {
+  if (node_.kind != Node::Kind::map) return;  // noted once, when the reading began
+  const std::string subject = what_ + ": key '" + std::string(key) + "'";
+  const Node* value = node(key);
+  if (value == nullptr) {
+    problems_.add(node_.place, subject + " is missing: expected " + expected);
+  } else {
+    problems_.add(value->place, subject + ": expected " + expected + ", got " + found(value));
+  }
+}
+
+void Fields::refuse_unknown() {
+  std::string known;
+  for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
+  for (std::size_t i = 0; i < node_.keys.size(); ++i) {
+    if (asked_.contains(node_.keys[i])) continue;
+    problems_.add(node_.items[i].place,
+                  what_ + ": unknown key '" + node_.keys[i] + "'; known: " + known);
+  }
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* const first = text.data() + (plus ? 1 : 0);
+  const char* const last = text.data() + text.size();
+  double number = 0;
+  const auto [end, error] = std::from_chars(first, last, number);
+  if (error != std::errc() || end != last || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::string format_number(double number) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+  std::string text(buffer.data(), end);
+  const std::size_t exponent = text.find('e');
+  if (exponent != std::string::npos && text.find('.') == std::string::npos) {
+    text.insert(exponent, ".0");
+  }
+  return text;
+}
+
+}  // namespace selfcal

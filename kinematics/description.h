@@ -1,0 +1,95 @@
+// What a person wrote in a file, as a tree with the place of every value.
+//
+// Robots, methods and scenarios read their own fields from a Node through Fields, which keeps
+// the first mistake with its file and line and refuses keys that nobody asked for. The folder
+// io turns YAML into Nodes and back; nothing here opens a file.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace selfcal {
+
+/// File and line (from 1; 0 is the file as a whole) where something stands.
+struct Place {
+  std::shared_ptr<const std::string> file;
+  int line = 0;
+};
+
+/// "FILE:LINE", or "FILE" when the line is 0.
+std::string to_string(const Place& place);
+
+/// Nothing, a text, a list or a mapping, as the file has it.
+struct Node {
+  enum class Kind { none, text, list, map };
+  Kind kind = Kind::none;
+  std::string text;
+  std::vector<Node> items;        ///< elements of a list or values of a mapping
+  std::vector<std::string> keys;  ///< keys of a mapping, as many as items
+  Place place;
+
+  static Node of(std::string text);
+  static Node of(double number);  ///< shortest text that reads back as the same number
+  static Node of(const Eigen::VectorXd& numbers);
+  static Node list();
+  static Node map();
+
+  const Node* find(std::string_view key) const;  ///< null when the mapping lacks it
+  Node& set(std::string key, Node value);        ///< appends to a mapping; returns *this
+};
+
+/// Mistakes found while reading; the first one is what the user is told.
+struct Problems {
+  std::vector<std::string> list;
+  bool any() const { return !list.empty(); }
+  void add(const Place& place, const std::string& what);
+};
+
+/// Reads the fields of one mapping. A getter of a missing or broken field returns its fallback
+/// and notes the problem, so that a reader runs straight through and is judged at its end.
+class Fields {
+ public:
+  /// `what` names the mapping in messages ("frame j2"). A node that is no mapping is a problem.
+  Fields(const Node& node, std::string what, Problems& problems);
+
+  bool has(std::string_view key);
+  const Node* node(std::string_view key);  ///< null when missing; counts as asked for
+
+  std::string text(std::string_view key, std::string fallback);
+  std::string text(std::string_view key);  ///< required
+  double number(std::string_view key, double fallback);
+  double number(std::string_view key);  ///< required
+  std::optional<double> optional_number(std::string_view key);
+  double positive(std::string_view key, double fallback);
+  int integer(std::string_view key, int fallback, int least, int most);
+  bool flag(std::string_view key, bool fallback);
+  /// A list of exactly `size` finite numbers; nothing when missing.
+  std::optional<Eigen::VectorXd> numbers(std::string_view key, int size);
+  std::vector<std::string> texts(std::string_view key);
+
+  void fail(std::string_view key, const std::string& expected);
+  /// Notes every key of the mapping that no getter has asked for.
+  void refuse_unknown();
+
+  const std::string& what() const { return what_; }
+  const Place& place() const { return node_.place; }
+
+ private:
+  const Node& node_;
+  std::string what_;
+  Problems& problems_;
+  std::set<std::string, std::less<>> asked_;
+};
+
+/// The whole of `text` as a finite number, else nothing.
+std::optional<double> parse_number(std::string_view text);
+
+/// Shortest decimal text that reads back as exactly `number`.
+std::string format_number(double number);
+
+}  // namespace selfcal

@@ -1,0 +1,44 @@
+// Decompositions by Eigen.
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+
+void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
+  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(A);
+  A.triangularView<Eigen::StrictlyLower>().setZero();
+}
+
+void eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A.leftCols(columns));
+  A.rightCols(A.cols() - columns).applyOnTheLeft(qr.householderQ().adjoint());
+  A.leftCols(columns).setZero();
+  const Eigen::Index rows = std::min(columns, A.rows());
+  A.topLeftCorner(rows, columns) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+}
+
+Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) {
+  return R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
+}
+
+Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {
+  if (onto.cols() == 0) return M;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(onto);
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(onto.rows(), qr.rank());
+  return M - Q * (Q.transpose() * M);
+}
+
+SingularValues singular_values(const Eigen::MatrixXd& A) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
+  return {svd.singularValues(), svd.matrixV()};
+}
+
+Symmetric symmetric_eigen(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+}  // namespace selfcal

@@ -1,0 +1,38 @@
+// The few matrix decompositions that the project needs, compiled once: Eigen's templates take
+// minutes where every file makes its own.
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace selfcal {
+
+/// Overwrites `A` by R of its QR decomposition (Householder): upper triangular, zeros below; as
+/// many rows as before.
+void triangularise(Eigen::Ref<Eigen::MatrixXd> A);
+
+/// Reflects the rows of `A` so that its first `columns` columns become upper triangular.
+void eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns);
+
+/// Inverse of the upper triangular `R`.
+Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R);
+
+/// x of least length that minimises |A x - b| (complete orthogonal decomposition).
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// What is left of the columns of `M` after projecting the column space of `onto` out.
+Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M);
+
+struct SingularValues {
+  Eigen::VectorXd values;      ///< descending
+  Eigen::MatrixXd directions;  ///< right singular vectors, one a column
+};
+SingularValues singular_values(const Eigen::MatrixXd& A);
+
+struct Symmetric {
+  Eigen::VectorXd values;   ///< ascending
+  Eigen::MatrixXd vectors;  ///< one a column
+};
+/// Eigenvalues and vectors of a symmetric matrix.
+Symmetric symmetric_eigen(const Eigen::MatrixXd& A);
+
+}  // namespace selfcal

@@ -1,0 +1,32 @@
+// A geometric parameter: what it is called, where it acts, what its maker says of it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace selfcal {
+
+enum class Quantity { length, angle, ratio };
+
+/// "m", "rad" or "1".
+std::string_view unit(Quantity quantity);
+
+/// Which part of the machine a parameter belongs to. `base` and `tool` are the fixed frames before
+/// the first and after the last moving joint; `gear` are transmission ratios; all else is `link`.
+enum class Part { base, link, tool, gear };
+
+struct Parameter {
+  std::string name;   ///< "theta2", "K3"
+  std::string frame;  ///< "j2"
+  std::string field;  ///< "theta", "gear": FRAME.FIELD is accepted wherever the name is
+  Quantity quantity = Quantity::length;
+  Part part = Part::link;
+  double value = 0;          ///< in the model as read (SI)
+  double nominal = 0;        ///< centre of the prior: the maker's figure
+  double tolerance = 0;      ///< 1 sigma of the prior
+  bool free = true;          ///< gear ratios are held unless their tolerance is given
+  bool link_length = false;  ///< a nonzero d or r of the moving links: carries the scale
+};
+
+}  // namespace selfcal

@@ -1,0 +1,95 @@
+// What every kind of robot shares: looking parameters up by name, making a robot from its file.
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+#define X(identifier, text) \
+  std::unique_ptr<Robot> make_##identifier(const Node& node, Problems& problems);
+#include "kinematics/robots.def"
+#undef X
+
+namespace {
+
+struct Kind {
+  std::string_view name;
+  std::unique_ptr<Robot> (*make)(const Node&, Problems&);
+};
+
+constexpr Kind kKinds[] = {
+#define X(identifier, text) {text, make_##identifier},
+#include "kinematics/robots.def"
+#undef X
+};
+
+bool matches(std::string_view text, std::string_view pattern) {
+  if (pattern.empty()) return text.empty();
+  if (pattern.front() == '*')
+    return matches(text, pattern.substr(1)) || (!text.empty() && matches(text.substr(1), pattern));
+  return !text.empty() && text.front() == pattern.front() &&
+         matches(text.substr(1), pattern.substr(1));
+}
+
+}  // namespace
+
+std::string_view unit(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::length:
+      return "m";
+    case Quantity::angle:
+      return "rad";
+    case Quantity::ratio:
+      return "1";
+  }
+  return "1";
+}
+
+Eigen::Matrix3d Locations::R(int lane) const { return rotation.row(lane).reshaped(3, 3).matrix(); }
+
+Eigen::VectorXd values(const Robot& robot) {
+  Eigen::VectorXd xi(static_cast<Eigen::Index>(robot.parameters().size()));
+  for (Eigen::Index i = 0; i < xi.size(); ++i) xi[i] = robot.parameters()[i].value;
+  return xi;
+}
+
+Eigen::VectorXd nominal_values(const Robot& robot) {
+  Eigen::VectorXd xi(static_cast<Eigen::Index>(robot.parameters().size()));
+  for (Eigen::Index i = 0; i < xi.size(); ++i) xi[i] = robot.parameters()[i].nominal;
+  return xi;
+}
+
+std::vector<int> match_parameters(const Robot& robot, std::string_view pattern) {
+  std::vector<int> found;
+  const std::vector<Parameter>& list = robot.parameters();
+  for (size_t i = 0; i < list.size(); ++i)
+    if (matches(list[i].name, pattern) || matches(list[i].frame + "." + list[i].field, pattern))
+      found.push_back(static_cast<int>(i));
+  return found;
+}
+
+int find_parameter(const Robot& robot, std::string_view name) {
+  const std::vector<int> found = match_parameters(robot, name);
+  return found.size() == 1 ? found.front() : -1;
+}
+
+std::unique_ptr<Robot> make_robot(const Node& node, Problems& problems) {
+  const Node* kind = node.find("kind");
+  if (!kind) {
+    problems.add(node.place, "robot: key 'kind' is missing");
+    return nullptr;
+  }
+  std::string known;
+  for (const Kind& each : kKinds) {
+    if (each.name == kind->text) return each.make(node, problems);
+    known += (known.empty() ? "" : ", ") + std::string(each.name);
+  }
+  problems.add(kind->place, "robot: kind '" + kind->text + "' is unknown; known: " + known);
+  return nullptr;
+}
+
+std::vector<std::string_view> robot_kinds() {
+  std::vector<std::string_view> names;
+  for (const Kind& each : kKinds) names.push_back(each.name);
+  return names;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,112 @@
+// The machine as the identification sees it: named parameters, the location of a body and its
+// generalized Jacobian Psi (Khalil and Dombre, equations 11.10 to 11.18).
+//
+// Everything is evaluated for a block of up to kLanes configurations at once. In every array the
+// lanes are contiguous, so that the same operation runs over all of them.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinematics/description.h"
+#include "kinematics/parameter.h"
+
+namespace selfcal {
+
+inline constexpr int kLanes = 32;
+
+/// kLanes x columns without the heap. The rows are counted at run time so that the compiler loops
+/// over them: unrolled, one expression becomes hundreds of instructions.
+template <int columns>
+using LaneArray = Eigen::Array<double, Eigen::Dynamic, columns, 0, kLanes, columns>;
+
+/// One number a lane; always kLanes long.
+using Lanes = LaneArray<1>;
+
+/// Joint readings of a block: kLanes x joints (rad or m). Lanes past `count` repeat the last one.
+struct ConfigurationBlock {
+  Eigen::ArrayXXd q;
+  int count = 0;
+};
+
+/// Location of a body in the world frame, lane by lane.
+struct Locations {
+  LaneArray<9> rotation{kLanes, 9};  ///< column 3 j + i holds R(i, j)
+  LaneArray<3> position{kLanes, 3};  ///< m
+
+  Eigen::Matrix3d R(int lane) const;
+  Eigen::Vector3d p(int lane) const { return position.row(lane).matrix().transpose(); }
+};
+
+/// Psi of a block, (6 kLanes) x parameters: row c kLanes + lane is component c (dx dy dz of the
+/// body's origin, then the rotation vector, both in the world frame) of configuration `lane`.
+using PsiBlock = Eigen::MatrixXd;
+
+/// The body whose location is asked for: the tool's frame, or the last moving link (whose location
+/// the tool parameters do not change).
+enum class Body { endpoint, last_link };
+
+struct Joint {
+  std::string name;  ///< the frame that it moves
+  Quantity quantity = Quantity::angle;
+  double lower = 0, upper = 0;  ///< of the joint reading; equal when the file gives none
+  bool limited() const { return upper > lower; }
+};
+
+/// One kind of machine. Immutable; a vector xi of parameter values goes beside it.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  virtual std::string_view kind() const = 0;
+  virtual const std::string& name() const = 0;
+  virtual const std::vector<Joint>& joints() const = 0;
+
+  /// Every candidate parameter in the order of the file; xi has one value for each.
+  virtual const std::vector<Parameter>& parameters() const = 0;
+
+  /// Indices into parameters(), most preferred first (Khalil and Dombre 11.4.2.1): of a dependent
+  /// group the earlier ones are identified and the later ones are grouped with them.
+  virtual const std::vector<int>& preference() const = 0;
+
+  /// Location of `body` at each configuration and, unless null, its derivatives to every parameter
+  /// (`psi` is resized). `xi` has parameters().size() entries.
+  virtual void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                      Locations& X, PsiBlock* psi) const = 0;
+
+  /// dX of `body` per joint reading, (6 kLanes) x joints, laid out as Psi; `psi` is that of the
+  /// block.
+  virtual void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
+                              Eigen::MatrixXd& J) const = 0;
+
+  /// The robot file's content with parameter values `xi`; the prior's centre is kept as `nominal`.
+  virtual Node describe(const Eigen::VectorXd& xi) const = 0;
+
+  /// Text that is equal for two files of one machine whatever their calibration: the maker's
+  /// figures and the structure. Its SHA-256 is the model hash.
+  virtual std::string identity() const = 0;
+
+  /// What `robot check` tells a person about the model beside its parameters, line by line.
+  virtual std::vector<std::string> remarks() const = 0;
+};
+
+/// Values of all parameters as the file has them.
+Eigen::VectorXd values(const Robot& robot);
+/// Centres of the priors.
+Eigen::VectorXd nominal_values(const Robot& robot);
+
+/// Index of the parameter called `name` (its name or FRAME.FIELD), or -1.
+int find_parameter(const Robot& robot, std::string_view name);
+/// Indices of all parameters whose name or FRAME.FIELD matches `pattern`, in which * stands for any
+/// text.
+std::vector<int> match_parameters(const Robot& robot, std::string_view pattern);
+
+/// The robot that `node` describes, by its `kind` (see robots.def). Null after a problem.
+std::unique_ptr<Robot> make_robot(const Node& node, Problems& problems);
+/// The kinds that make_robot knows.
+std::vector<std::string_view> robot_kinds();
+
+}  // namespace selfcal

@@ -1,0 +1,18 @@
+// Rotation vectors: the exponential, the logarithm and its derivatives, exact for large angles.
+//   exp(phi) is the rotation by |phi| about phi; log its inverse, |log| <= pi.
+//   log(exp(d) R) = log(R) + Jl^-1 d,  log(R exp(d)) = log(R) + Jr^-1 d,  Jr^-1 = Jl^-T.
+// The orientation error of Khalil and Dombre 11.41, 11.42 is such a vector: u alpha = log(A_r
+// A_m^T).
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace selfcal {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+Eigen::Matrix3d exp_rotation(const Eigen::Vector3d& phi);
+Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R);
+/// Inverse of the left Jacobian of SO(3) at phi, |phi| < 2 pi.
+Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
+
+}  // namespace selfcal
