@@ -1,0 +1,246 @@
+// Newton steps of least length on a method's residual, kLanes random starts at once:
+//   dq = (G J)^+ (wanted - r),  J the joint Jacobian of the body.
+#include "constraints/configurations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/endpoint_sigma.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kSteps = 40;
+constexpr double kLongestStep = 0.5;  // rad or m
+constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
+constexpr int kEnough = 8;            // lanes that reach it before the others are given up
+constexpr int kTries = 60;            // blocks of starts before a row is given up
+
+Location location(const Locations& X, int lane) { return {X.R(lane), X.p(lane)}; }
+
+class Sampler {
+ public:
+  Sampler(const Robot& robot, const Eigen::VectorXd& xi, Random& random, DataSet& data)
+      : robot_(robot), xi_(xi), random_(random), data_(data) {}
+
+  Sampled run(const std::vector<SampleRequest>& requests) {
+    sampled_.truth.xi = xi_;
+    sampled_.truth.own.resize(data_.sets.size());
+    sampled_.truth.groups.resize(data_.sets.size());
+    reserve(requests);
+    // A set that refers to another comes after it: its own values start from the other's.
+    for (const bool referring : {false, true})
+      for (const SampleRequest& request : requests)
+        if ((data_.sets[request.set].reference >= 0) == referring) fill(request);
+    shrink();
+    return std::move(sampled_);
+  }
+
+ private:
+  void reserve(const std::vector<SampleRequest>& requests) {
+    Eigen::Index rows = 0;
+    for (const SampleRequest& request : requests) rows += request.rows + 1;
+    Observations& d = data_.rows;
+    d.q.resize(rows, static_cast<Eigen::Index>(robot_.joints().size()));
+    d.position.setConstant(rows, 3, std::nan(""));
+    d.orientation.setConstant(rows, 4, std::nan(""));
+    d.distance.setConstant(rows, std::nan(""));
+    d.normal.setConstant(rows, 3, std::nan(""));
+  }
+
+  void shrink() {
+    Observations& d = data_.rows;
+    const auto rows = static_cast<Eigen::Index>(d.set.size());
+    d.q.conservativeResize(rows, Eigen::NoChange);
+    d.position.conservativeResize(rows, Eigen::NoChange);
+    d.orientation.conservativeResize(rows, Eigen::NoChange);
+    d.distance.conservativeResize(rows);
+    d.normal.conservativeResize(rows, Eigen::NoChange);
+    d.check.assign(rows, 0);
+  }
+
+  ConfigurationBlock starts() {
+    ConfigurationBlock block;
+    block.q = random_poses(robot_, nullptr, kLanes, random_()).array();
+    block.count = kLanes;
+    return block;
+  }
+
+  Location anywhere(const Method& method, const Patch& patch) {
+    Locations X;
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      robot_.locate(starts(), xi_, method.body(), X, nullptr);
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (patch.contains(X.p(lane))) return location(X, lane);
+    }
+    return location(X, 0);
+  }
+
+  void fill(const SampleRequest& request) {
+    Set& set = data_.sets[request.set];
+    const Method& method = *set.method;
+    Eigen::VectorXd& own = sampled_.truth.own[request.set];
+    const Eigen::VectorXd* reference =
+        set.reference < 0 ? nullptr : &sampled_.truth.own[set.reference];
+    own = request.own ? *request.own
+                      : method.through(anywhere(method, request.patch), reference, random_);
+    int last_of_group = -1;
+    for (int i = 0; i < request.rows; ++i) {
+      int group = method.paired() ? 0 : -1;
+      if (method.group_freedom() > 0) group = i / request.rows_per_group;
+      if (group >= opened_groups(request.set)) open_group(request, set, last_of_group);
+      if (!append(request, i, group, last_of_group)) {
+        sampled_.unreached = "set " + set.name + ": only " + std::to_string(i) + " of " +
+                             std::to_string(request.rows) +
+                             " configurations within the joint limits were found";
+        return;
+      }
+    }
+  }
+
+  int opened_groups(int set) const {
+    return data_.sets[set].method->group_freedom() > 0
+               ? static_cast<int>(sampled_.truth.groups[set].cols())
+               : static_cast<int>(data_.sets[set].groups.size());
+  }
+
+  void open_group(const SampleRequest& request, Set& set, int& last_of_group) {
+    const Method& method = *set.method;
+    if (opened_groups(request.set) >= static_cast<int>(set.groups.size()))
+      set.groups.push_back("g" + std::to_string(set.groups.size()));
+    last_of_group = -1;
+    if (method.group_freedom() == 0) return;
+    Eigen::MatrixXd& groups = sampled_.truth.groups[request.set];
+    const Eigen::VectorXd values = method.start_group({anywhere(method, request.patch)});
+    groups.conservativeResize(values.size(), groups.cols() + 1);
+    groups.rightCols(1) = values;
+  }
+
+  /// Finds and writes one row; false when none was reached.
+  bool append(const SampleRequest& request, int i, int group, int& last_of_group) {
+    const Method& method = *data_.sets[request.set].method;
+    const int row = static_cast<int>(data_.rows.set.size());
+    const auto equations = static_cast<Eigen::Index>(method.equations().size());
+    const Eigen::VectorXd wanted =
+        request.residual ? request.residual(i) : Eigen::VectorXd::Zero(equations);
+    data_.rows.set.push_back(request.set);
+    data_.rows.group.push_back(group);
+    const int reference = data_.sets[request.set].reference;
+    method.approach(sampled_.truth.own[request.set],
+                    reference < 0 ? nullptr : &sampled_.truth.own[reference], data_.rows, row);
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      ConfigurationBlock block = starts();
+      Locations X;
+      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
+      const std::vector<int> found = must ? newton(request, wanted, row, last_of_group, block, X)
+                                          : everywhere(method, block, X);
+      for (const int lane : found) {
+        if (!within_limits(block, lane) || !request.patch.contains(X.p(lane))) continue;
+        data_.rows.q.row(row) = block.q.row(lane).matrix();
+        const Location before = last_of_group < 0 ? Location{} : at(last_of_group, method.body());
+        method.measure(location(X, lane), before, sampled_.truth.own[request.set], data_.rows, row);
+        last_of_group = row;
+        return true;
+      }
+    }
+    data_.rows.set.pop_back();
+    data_.rows.group.pop_back();
+    return false;
+  }
+
+  std::vector<int> everywhere(const Method& method, const ConfigurationBlock& block, Locations& X) {
+    robot_.locate(block, xi_, method.body(), X, nullptr);
+    std::vector<int> lanes(kLanes);
+    for (int lane = 0; lane < kLanes; ++lane) lanes[lane] = lane;
+    return lanes;
+  }
+
+  Location at(int row, Body body) const {
+    ConfigurationBlock block;
+    block.q = data_.rows.q.row(row).replicate(kLanes, 1).array();
+    block.count = 1;
+    Locations X;
+    robot_.locate(block, xi_, body, X, nullptr);
+    return location(X, 0);
+  }
+
+  /// Lanes that reached the wanted residual; moves block.q there and leaves their locations in X.
+  std::vector<int> newton(const SampleRequest& request, const Eigen::VectorXd& wanted, int row,
+                          int previous, ConfigurationBlock& block, Locations& X) const {
+    const Set& set = data_.sets[request.set];
+    const Method& method = *set.method;
+    const auto equations = static_cast<int>(wanted.size());
+    Locations before = X;
+    if (previous >= 0) {
+      ConfigurationBlock held;
+      held.q = data_.rows.q.row(previous).replicate(kLanes, 1).array();
+      robot_.locate(held, xi_, method.body(), before, nullptr);
+    }
+    const std::vector<int> rows(kLanes, row);
+    MethodInput in{kLanes,
+                   &data_.rows,
+                   rows.data(),
+                   &X,
+                   &before,
+                   &sampled_.truth.own[request.set],
+                   set.reference < 0 ? nullptr : &sampled_.truth.own[set.reference],
+                   &sampled_.truth.groups[request.set]};
+    MethodOutput out;
+    PsiBlock psi;
+    Eigen::MatrixXd J;
+    Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
+    for (int step = 0; step < kSteps; ++step) {
+      robot_.locate(block, xi_, method.body(), X, &psi);
+      robot_.joint_jacobian(xi_, psi, J);
+      out.resize(equations, method.own_freedom(),
+                 set.reference < 0 ? 0 : data_.sets[set.reference].method->own_freedom(),
+                 method.group_freedom());
+      method.evaluate(in, out);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Eigen::VectorXd miss = wanted - out.r.row(lane).matrix().transpose();
+        left[lane] = miss.norm();
+        if (left[lane] < kExact / 10) continue;
+        Eigen::MatrixXd A(equations, J.cols());
+        for (int a = 0; a < equations; ++a) {
+          A.row(a).setZero();
+          for (int c = 0; c < 6; ++c)
+            A.row(a) += out.G_now(lane, 6 * a + c) * J.row(c * kLanes + lane);
+        }
+        Eigen::VectorXd dq = least_squares(A, miss);
+        if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
+        block.q.row(lane) += dq.transpose().array();
+      }
+      if ((left < kExact / 10).count() >= kEnough) break;
+    }
+    std::vector<int> reached;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (left[lane] < kExact) reached.push_back(lane);
+    robot_.locate(block, xi_, method.body(), X, nullptr);
+    return reached;
+  }
+
+  bool within_limits(const ConfigurationBlock& block, int lane) const {
+    for (size_t j = 0; j < robot_.joints().size(); ++j) {
+      const Joint& joint = robot_.joints()[j];
+      const double q = block.q(lane, static_cast<Eigen::Index>(j));
+      if (joint.limited() && (q < joint.lower || q > joint.upper)) return false;
+    }
+    return true;
+  }
+
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  Random& random_;
+  DataSet& data_;
+  Sampled sampled_;
+};
+
+}  // namespace
+
+Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
+                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data) {
+  return Sampler(robot, xi, random, data).run(requests);
+}
+
+}  // namespace selfcal

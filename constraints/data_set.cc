@@ -1,0 +1,108 @@
+// Making a set from its entry in the file, and tying sets together that share unknowns.
+#include "constraints/data_set.h"
+
+#include <algorithm>
+
+#include "constraints/methods/maker.h"
+
+namespace selfcal {
+
+#define X(identifier, text) MethodPtr make_##identifier(SetEntry& entry);
+#include "constraints/methods.def"
+#undef X
+
+namespace {
+
+struct Kind {
+  std::string_view name;
+  MethodPtr (*make)(SetEntry&);
+};
+
+constexpr Kind kKinds[] = {
+#define X(identifier, text) {text, make_##identifier},
+#include "constraints/methods.def"
+#undef X
+};
+
+bool has_angles(const Method& method) {
+  const std::vector<Quantity> all = method.equations();
+  return std::find(all.begin(), all.end(), Quantity::angle) != all.end();
+}
+
+double read_noise(Fields& fields, const char* key) {
+  const double noise = fields.number(key, 0);
+  if (fields.has(key) && !(noise > 0 && noise < 1))
+    fields.fail(key, "1 sigma of one residual, above 0 and below 1 (m or rad)");
+  return noise;
+}
+
+}  // namespace
+
+int group_index(std::vector<std::string>& groups, const std::string& name) {
+  const auto found = std::find(groups.begin(), groups.end(), name);
+  if (found == groups.end()) {
+    groups.push_back(name);
+    return static_cast<int>(groups.size()) - 1;
+  }
+  return static_cast<int>(found - groups.begin());
+}
+
+bool read_unknown(Fields& fields, std::string_view key) {
+  if (!fields.has(key)) return false;
+  if (fields.text(key) != "unknown") fields.fail(key, "'unknown', or the key left out");
+  return true;
+}
+
+std::optional<Eigen::Vector3d> read_direction(Fields& fields, std::string_view key) {
+  const auto v = fields.numbers(key, 3);
+  if (!v) return std::nullopt;
+  if (v->norm() < 1e-9) fields.fail(key, "a direction that is not zero");
+  return Eigen::Vector3d(v->normalized());
+}
+
+Set make_set(const std::string& name, const Node& node, Problems& problems) {
+  Set set;
+  set.name = name;
+  Fields fields(node, "set " + name, problems);
+  const std::string method = fields.text("method");
+  SetEntry entry{name, fields, problems, set.groups};
+  for (const Kind& kind : kKinds)
+    if (kind.name == method) set.method = kind.make(entry);
+  if (!set.method) {
+    std::string known;
+    for (const Kind& kind : kKinds) known += (known.empty() ? "" : ", ") + std::string(kind.name);
+    fields.fail("method", "one of " + known);
+    return set;
+  }
+  set.noise = read_noise(fields, "noise");
+  if (has_angles(*set.method)) set.noise_angle = read_noise(fields, "noise_angle");
+  fields.refuse_unknown();
+  return set;
+}
+
+void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
+  for (Set& set : sets) {
+    if (!set.method || set.method->reference().empty()) continue;
+    const std::string wanted = set.method->reference();
+    const auto other = std::find_if(sets.begin(), sets.end(),
+                                    [&](const Set& each) { return each.name == wanted; });
+    const Node* entry = node.find(set.name);
+    const Place place = entry ? entry->place : node.place;
+    if (other == sets.end())
+      problems.add(place, "set " + set.name + ": parallel_to names no set '" + wanted + "'");
+    else if (!other->method || other->method->name() != "plane" ||
+             !other->method->reference().empty())
+      problems.add(place, "set " + set.name + ": parallel_to needs a set of method plane that is " +
+                              "not itself parallel to another, '" + wanted + "' is not");
+    else
+      set.reference = static_cast<int>(other - sets.begin());
+  }
+}
+
+std::vector<std::string_view> method_names() {
+  std::vector<std::string_view> names;
+  for (const Kind& kind : kKinds) names.push_back(kind.name);
+  return names;
+}
+
+}  // namespace selfcal

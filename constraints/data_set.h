@@ -1,0 +1,39 @@
+// A data set: rows, and for each set of rows the method that says what they mean.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constraints/method.h"
+#include "constraints/observations.h"
+
+namespace selfcal {
+
+/// Rows of one method with one set of own unknowns.
+struct Set {
+  std::string name;
+  std::shared_ptr<const Method> method;
+  double noise = 0;        ///< 1 sigma of one scalar residual as the data sheet says (m); 0 unknown
+  double noise_angle = 0;  ///< the same for angles (rad); 0 unknown
+  int reference = -1;      ///< index of the set whose own unknowns it shares
+  std::vector<std::string> groups;  ///< names, indexed by Observations::group
+};
+
+struct DataSet {
+  std::vector<Set> sets;
+  Observations rows;
+  double target = 1.0e-3;  ///< end-position accuracy wanted (m, 1 sigma)
+};
+
+/// Reads one entry of `sets`: the method, its options and the noise. Known groups are appended to
+/// `set.groups` as the options name them. The set is without a method after a problem.
+Set make_set(const std::string& name, const Node& node, Problems& problems);
+
+/// Resolves references between sets and checks that they are possible.
+void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems);
+
+/// The methods that make_set knows.
+std::vector<std::string_view> method_names();
+
+}  // namespace selfcal

@@ -1,0 +1,82 @@
+// D = J L with covariance L L^T gives the deviation of every pose at once; D - B (B^T B)^-1 B^T D
+// is what remains after a rigid motion of the world and a shift of the target are taken out.
+#include "constraints/endpoint_sigma.h"
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+
+#include "kinematics/linear_algebra.h"
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+/// L with L L^T = C for a symmetric C that may be singular.
+Eigen::MatrixXd root(const Eigen::MatrixXd& C) {
+  const Symmetric eigen = symmetric_eigen(C);
+  return eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace
+
+Eigen::MatrixXd random_poses(const Robot& robot, const Observations* data, int count,
+                             unsigned long long seed) {
+  std::mt19937_64 random(seed);
+  const auto& joints = robot.joints();
+  Eigen::MatrixXd q(count, joints.size());
+  for (int i = 0; i < count; ++i)
+    for (size_t j = 0; j < joints.size(); ++j) {
+      double lower = joints[j].lower, upper = joints[j].upper;
+      if (!joints[j].limited()) {
+        const auto column = static_cast<Eigen::Index>(j);
+        const double reach = joints[j].quantity == Quantity::angle ? std::numbers::pi : 1.0;
+        lower = data ? data->q.col(column).minCoeff() : -reach;
+        upper = data ? data->q.col(column).maxCoeff() : reach;
+      }
+      q(i, static_cast<Eigen::Index>(j)) =
+          lower + (upper - lower) * std::generate_canonical<double, 53>(random);
+    }
+  return q;
+}
+
+EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
+  const Robot& robot = *question.robot;
+  const Eigen::MatrixXd q = random_poses(robot, question.data, question.poses, question.seed);
+  const Eigen::MatrixXd L = root(question.covariance);
+  const Eigen::Index motions = question.unseen.cols(), points = question.point_unknown ? 3 : 0;
+  Eigen::MatrixXd D(3 * question.poses, L.cols()), B(3 * question.poses, motions + points);
+  ConfigurationBlock block;
+  Locations X, link;
+  PsiBlock psi;
+  for (int first = 0; first < question.poses; first += kLanes) {
+    block.count = std::min(kLanes, question.poses - first);
+    block.q.resize(kLanes, q.cols());
+    for (int lane = 0; lane < kLanes; ++lane)
+      block.q.row(lane) = q.row(std::min(first + lane, question.poses - 1)).array();
+    robot.locate(block, question.xi, Body::endpoint, X, &psi);
+    robot.locate(block, question.xi, Body::last_link, link, nullptr);
+    for (int lane = 0; lane < block.count; ++lane) {
+      Eigen::MatrixXd J(3, psi.cols());
+      for (int i = 0; i < 3; ++i) J.row(i) = psi.row(i * kLanes + lane);
+      Eigen::Matrix<double, 3, 6> motion;
+      motion << Eigen::Matrix3d::Identity(), -skew(X.p(lane));
+      D.middleRows<3>(3 * (first + lane)) = J * L;
+      B.block(3 * (first + lane), 0, 3, motions) = motion * question.unseen;
+      if (points > 0) B.block(3 * (first + lane), motions, 3, 3) = link.R(lane);
+    }
+  }
+  D = beyond(B, D);
+  std::vector<double> variance(question.poses);
+  for (int i = 0; i < question.poses; ++i) variance[i] = D.middleRows<3>(3 * i).squaredNorm();
+  std::sort(variance.begin(), variance.end());
+  EndpointSigma result;
+  result.aligned = B.cols() > 0;
+  result.poses = question.poses;
+  result.rms = std::sqrt(D.squaredNorm() / question.poses);
+  result.median = std::sqrt(variance[variance.size() / 2]);
+  result.max = std::sqrt(variance.back());
+  return result;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,194 @@
+// From rows and a state to R of [W | Delta Y] (11.21 to 11.26), block by block.
+//
+// For each row r(X, own, group) of a method, W = G Psi (chain rule) and Delta Y = -r, both divided
+// by the set's sigma and by the root of the row's Huber weight.
+#include "constraints/equations_inner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+/// Adds G (of one side) times Psi to the rows of W, equation by equation.
+void add_product(const MethodOutput::Block& G, const PsiBlock& psi, int equations,
+                 Eigen::MatrixXd& W) {
+  for (int a = 0; a < equations; ++a)
+    for (int c = 0; c < 6; ++c) {
+      const auto g = G.col(6 * a + c);
+      if ((g == 0).all()) continue;
+      W.middleRows(a * kLanes, kLanes).leftCols(psi.cols()).array() +=
+          psi.middleRows(c * kLanes, kLanes).array().colwise() * g;
+    }
+}
+
+/// Columns of a rigid motion of the world: shifts, then turns about the origin.
+void motion_columns(const Locations& X, PsiBlock& psi) {
+  psi.setZero(6 * kLanes, kMotions);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Eigen::Matrix3d turn = -skew(X.p(lane));
+    for (int i = 0; i < 3; ++i) {
+      psi(i * kLanes + lane, i) = 1;
+      psi((3 + i) * kLanes + lane, 3 + i) = 1;
+      for (int k = 0; k < 3; ++k) psi(k * kLanes + lane, 3 + i) = turn(k, i);
+    }
+  }
+}
+
+}  // namespace
+
+double RowResidual::sigmas(const Scale& scale) const {
+  return std::hypot(length / scale.length, angle / scale.angle);
+}
+
+Equations::Equations(const Robot& robot, const DataSet& data, Use use)
+    : robot_(robot), data_(data), plans_(data.sets.size()) {
+  own_end_ = robot_columns();
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) {
+    make_plan(s, use);
+    own_at_.push_back(own_end_);
+    own_count_.push_back(plans_[s].items.empty() ? 0 : data.sets[s].method->own_freedom());
+    own_end_ += own_count_.back();
+  }
+}
+
+int Equations::group_freedoms(int set) const {
+  size_t groups = 0;
+  for (const SetPlan::Cluster& cluster : plans_[set].clusters) groups += cluster.groups.size();
+  return static_cast<int>(groups) * data_.sets[set].method->group_freedom();
+}
+
+int Equations::all_own_freedoms() const {
+  int freedoms = own_columns();
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) freedoms += group_freedoms(s);
+  return freedoms;
+}
+
+void Equations::evaluate(int set, int first, int count, const State& state, Block& block,
+                         bool jacobian) const {
+  const Set& s = data_.sets[set];
+  const Method& method = *s.method;
+  const auto load = [&](ConfigurationBlock& into, bool previous) {
+    into.q.resize(kLanes, data_.rows.q.cols());
+    into.count = count;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const SetPlan::Item& item = plans_[set].items[first + std::min(lane, count - 1)];
+      into.q.row(lane) = data_.rows.q.row(previous ? item.previous : item.row).array();
+    }
+  };
+  block.rows.resize(count);
+  for (int lane = 0; lane < count; ++lane) block.rows[lane] = plans_[set].items[first + lane].row;
+  load(block.now, false);
+  robot_.locate(block.now, state.xi, method.body(), block.X_now,
+                jacobian ? &block.psi_now : nullptr);
+  if (method.paired()) {
+    load(block.before, true);
+    robot_.locate(block.before, state.xi, method.body(), block.X_before,
+                  jacobian ? &block.psi_before : nullptr);
+  }
+  block.quantities = method.equations();
+  block.out.resize(static_cast<int>(block.quantities.size()), method.own_freedom(),
+                   s.reference < 0 ? 0 : data_.sets[s.reference].method->own_freedom(),
+                   method.group_freedom());
+  MethodInput in;
+  in.count = count;
+  in.data = &data_.rows;
+  in.rows = block.rows.data();
+  in.now = &block.X_now;
+  in.before = &block.X_before;
+  in.own = &state.own[set];
+  in.reference = s.reference < 0 ? nullptr : &state.own[s.reference];
+  in.groups = &state.groups[set];
+  method.evaluate(in, block.out);
+}
+
+RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
+                         int row, int set) {
+  RowResidual r{row, set};
+  for (size_t a = 0; a < quantities.size(); ++a) {
+    const double value = out.r(lane, static_cast<Eigen::Index>(a));
+    const bool angle = quantities[a] == Quantity::angle;
+    r.scalars[a] = value;
+    (angle ? r.angle : r.length) += value * value;
+    ++(angle ? r.angles : r.lengths);
+  }
+  r.length = std::sqrt(r.length);
+  r.angle = std::sqrt(r.angle);
+  return r;
+}
+
+std::vector<RowResidual> Equations::residuals(const State& state) const {
+  std::vector<RowResidual> list;
+  Block block;
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    const int items = static_cast<int>(plans_[s].items.size());
+    for (int first = 0; first < items; first += kLanes) {
+      const int count = std::min(kLanes, items - first);
+      evaluate(s, first, count, state, block, false);
+      for (int lane = 0; lane < count; ++lane)
+        list.push_back(row_residual(block.out, block.quantities, lane, block.rows[lane], s));
+    }
+  }
+  return list;
+}
+
+void Equations::chain_rule(const Block& block, int set, bool motions, Eigen::MatrixXd& W) const {
+  const Set& s = data_.sets[set];
+  const int equations = static_cast<int>(block.quantities.size());
+  W.setZero(equations * kLanes, columns() + (motions ? kMotions : 0) + 1);
+  add_product(block.out.G_now, block.psi_now, equations, W);
+  if (s.method->paired()) add_product(block.out.G_before, block.psi_before, equations, W);
+  const auto own_block = [&](const MethodOutput::Block& D, int of) {
+    const int m = own_count_[of];
+    for (int a = 0; m > 0 && a < equations; ++a)
+      W.block(a * kLanes, own_at_[of], kLanes, m) = D.middleCols(a * m, m).matrix();
+  };
+  own_block(block.out.D_own, set);
+  if (s.reference >= 0) own_block(block.out.D_reference, s.reference);
+  if (motions) {
+    PsiBlock psi;
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(W.rows(), kMotions);
+    motion_columns(block.X_now, psi);
+    add_product(block.out.G_now, psi, equations, M);
+    if (s.method->paired()) {
+      motion_columns(block.X_before, psi);
+      add_product(block.out.G_before, psi, equations, M);
+    }
+    W.middleCols(columns(), kMotions) = M;
+  }
+  for (int a = 0; a < equations; ++a)
+    W.col(W.cols() - 1).segment(a * kLanes, kLanes) = -block.out.r.col(a).matrix();
+}
+
+State Equations::stepped(const State& state, const Linearised& at,
+                         const Eigen::VectorXd& step) const {
+  State next = state;
+  next.xi += step.head(robot_columns());
+  size_t cluster_index = 0;
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    const Method& method = *data_.sets[s].method;
+    if (own_count_[s] > 0) method.retract(next.own[s], step.segment(own_at_[s], own_count_[s]));
+    const int freedom = method.group_freedom();
+    for (const SetPlan::Cluster& cluster : plans_[s].clusters) {
+      if (cluster.groups.empty()) continue;
+      const Eigen::MatrixXd& factor = at.clusters[cluster_index++].rows;
+      const Eigen::Index local = factor.rows();
+      const Eigen::VectorXd right =
+          factor.rightCols(1) - factor.middleCols(local, step.size()) * step;
+      Eigen::VectorXd move = right;
+      for (Eigen::Index i = local - 1; i >= 0; --i) {
+        const double diagonal = factor(i, i);
+        move[i] -= factor.row(i).segment(i + 1, local - 1 - i).dot(move.tail(local - 1 - i));
+        move[i] = std::abs(diagonal) > 1e-12 ? move[i] / diagonal : 0;
+      }
+      for (size_t g = 0; g < cluster.groups.size(); ++g)
+        method.retract_group(next.groups[s].col(cluster.groups[g]),
+                             move.segment(static_cast<Eigen::Index>(g) * freedom, freedom));
+    }
+  }
+  return next;
+}
+
+}  // namespace selfcal

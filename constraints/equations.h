@@ -1,0 +1,147 @@
+// The system of equations that a data set gives: from rows and a state to R of [W | Delta Y].
+//
+// Columns of the system: every parameter of the robot, then the own freedoms of each set, then (on
+// demand) the six motions of the world, then Delta Y. The unknowns of a group of rows (a shared
+// point) are eliminated as its rows pass by Householder reflections on the group's columns, so that
+// the system stays small however many groups there are.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "constraints/data_set.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+/// What is estimated: the robot's parameters, each set's own values, each set's group values
+/// (one column a group).
+struct State {
+  Eigen::VectorXd xi;
+  std::vector<Eigen::VectorXd> own;
+  std::vector<Eigen::MatrixXd> groups;
+};
+
+/// 1 sigma of one scalar residual of a set, by quantity (m, rad).
+struct Scale {
+  double length = 1, angle = 1;
+  double of(Quantity quantity) const { return quantity == Quantity::angle ? angle : length; }
+};
+
+/// Residual of one row: the length of its length and angle parts and the scalars of each.
+struct RowResidual {
+  int row = 0, set = 0;
+  double length = 0, angle = 0;  ///< norms (m, rad)
+  int lengths = 0, angles = 0;   ///< counts of scalars
+  std::array<double, kMostEquations>
+      scalars{};  ///< lengths + angles entries, in the method's order
+  /// Distance from zero in sigmas.
+  double sigmas(const Scale& scale) const;
+};
+
+/// Weights of the rows.
+struct Weighting {
+  std::vector<Scale> scale;     ///< by set
+  std::vector<char> put_aside;  ///< by row of the data set; 1 weighs nothing
+  double soft_quantile = 0.99;  ///< rows beyond this chi quantile are weighed down (Huber)
+};
+
+enum class Use { fit, check, align };
+
+/// The factor of one cluster of groups: enough to get its unknowns back from the global step.
+struct ClusterFactor {
+  Eigen::MatrixXd rows;  ///< local freedoms x [local | global | Delta Y], upper triangular in local
+};
+
+struct Linearised {
+  Eigen::MatrixXd R;  ///< [W | Delta Y], whitened and weighed, square upper triangular
+  double cost = 0;    ///< sum of the rows' Huber costs and of the squares of the own equations
+  int equations = 0;  ///< scalars that took part
+  std::vector<RowResidual> residuals;  ///< of every row of the use, put aside or not
+  std::vector<ClusterFactor> clusters;
+};
+
+/// Rows of one set in the order of evaluation, and how its groups hang together.
+struct SetPlan {
+  struct Item {
+    int row, previous;  ///< previous row of the group for paired methods, else -1
+  };
+  struct Cluster {
+    int first, last;          ///< items, one past the end
+    std::vector<int> groups;  ///< group indices; empty when the method has no group unknowns
+    std::vector<GroupLink> links;
+    /// Position of `group` in groups, which are in ascending order.
+    int place(int group) const {
+      return static_cast<int>(std::lower_bound(groups.begin(), groups.end(), group) -
+                              groups.begin());
+    }
+  };
+  std::vector<Item> items;
+  std::vector<Cluster> clusters;
+};
+
+/// The equations of the rows of one use. `fit`: rows that identify. `align`: `check` rows of the
+/// sets and groups that have no `fit` rows. `check`: all rows that judge.
+class Equations {
+ public:
+  Equations(const Robot& robot, const DataSet& data, Use use);
+
+  const Robot& robot() const { return robot_; }
+  const DataSet& data() const { return data_; }
+  const SetPlan& plan(int set) const { return plans_[set]; }
+
+  int robot_columns() const { return static_cast<int>(robot_.parameters().size()); }
+  int own_columns() const { return own_end_ - robot_columns(); }
+  /// First column of the own freedoms of `set`, and their count (0 for a set without rows here).
+  int own_at(int set) const { return own_at_[set]; }
+  int own_freedom(int set) const { return own_count_[set]; }
+  /// Columns before Delta Y, without the motions.
+  int columns() const { return own_end_; }
+  int group_freedoms(int set) const;
+  /// Freedoms of all own unknowns, those of groups included.
+  int all_own_freedoms() const;
+
+  /// Own and group values that fit the rows best with parameters xi; other entries of `state` stay.
+  void start(State& state) const;
+
+  Linearised linearise(const State& state, const Weighting& weighting, bool motions = false) const;
+  /// R of [W | -r_vv] at `state`, r_vv the second derivative of the rows along `step` (which gives
+  /// the unweighed rows' second difference over a tenth of the step); `at` is the linearisation at
+  /// `state`.
+  Eigen::MatrixXd bend(const State& state, const Weighting& weighting, const Linearised& at,
+                       const Eigen::VectorXd& step) const;
+  std::vector<RowResidual> residuals(const State& state) const;
+
+  /// The state after a step of the global columns (columns() entries).
+  State stepped(const State& state, const Linearised& at, const Eigen::VectorXd& step) const;
+
+ private:
+  struct Block;
+  struct Bend;
+  class Gatherer;
+
+  void make_plan(int set, Use use);
+  void evaluate(int set, int first, int count, const State& state, Block& block,
+                bool jacobian) const;
+  void chain_rule(const Block& block, int set, bool motions, Eigen::MatrixXd& W) const;
+  void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
+             Linearised& out) const;
+  void gather(int set, const SetPlan::Cluster& cluster, const Block& block,
+              const Eigen::MatrixXd& W, Gatherer& gatherer) const;
+  void gather_links(int set, const SetPlan::Cluster& cluster, const State& state, bool bent,
+                    Gatherer& gatherer, Linearised& out) const;
+  Linearised sweep(const State& state, const Weighting& weighting, bool motions,
+                   const Bend* bend) const;
+  void bend_right_side(int set, int first, int count, const Bend& bend, Eigen::MatrixXd& W) const;
+  void own_equations(const State& state, Linearised& out, Eigen::MatrixXd& rows) const;
+
+  const Robot& robot_;
+  const DataSet& data_;
+  std::vector<SetPlan> plans_;
+  std::vector<int> own_at_, own_count_;
+  int own_end_ = 0;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,29 @@
+// What the two halves of the equations share; nobody else includes this.
+#pragma once
+
+#include "constraints/equations.h"
+
+namespace selfcal {
+
+inline constexpr int kMotions = 6;  ///< columns of the world's motions
+
+/// Everything about up to kLanes rows of one set.
+struct Equations::Block {
+  ConfigurationBlock now, before;
+  Locations X_now, X_before;
+  PsiBlock psi_now, psi_before;
+  MethodOutput out;
+  std::vector<int> rows;
+  std::vector<Quantity> quantities;
+};
+
+/// States a little ahead and behind along a step, and in between.
+struct Equations::Bend {
+  static constexpr double kPart = 0.1;  ///< of the step
+  State ahead, middle, behind;
+};
+
+RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
+                         int row, int set);
+
+}  // namespace selfcal

@@ -1,0 +1,183 @@
+// One sweep over all rows: weights, groups eliminated as they pass, R of what is left.
+//
+// Each row of W and Delta Y is divided by its set's sigma and multiplied by the root of its Huber
+// weight.
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/equations_inner.h"
+#include "constraints/statistics.h"
+#include "constraints/streaming_qr.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+
+/// Collects the rows of one cluster, eliminates the group's columns and passes the rest on.
+class Equations::Gatherer {
+ public:
+  Gatherer(int local, int global, StreamingQr& qr)
+      : local_(local), rows_(std::max(4 * local, 192), local + global), qr_(qr) {}
+
+  /// A row to be filled by the caller, zero to begin with.
+  Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> next() {
+    if (filled_ == rows_.rows()) eliminate();
+    rows_.row(filled_).setZero();
+    return rows_.row(filled_++);
+  }
+
+  /// The cluster's factor; the gatherer must not be used afterwards.
+  ClusterFactor finish() {
+    while (filled_ < local_) next();
+    eliminate();
+    ClusterFactor factor;
+    factor.rows = rows_.topRows(local_);
+    return factor;
+  }
+
+ private:
+  void eliminate() {
+    auto rows = rows_.topRows(filled_);
+    selfcal::eliminate(rows, local_);
+    qr_.push(rows.bottomRightCorner(filled_ - local_, rows_.cols() - local_));
+    filled_ = local_;
+  }
+
+  Eigen::Index local_, filled_ = 0;
+  Eigen::MatrixXd rows_;
+  StreamingQr& qr_;
+};
+
+void Equations::own_equations(const State& state, Linearised& out, Eigen::MatrixXd& rows) const {
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    const int reference = data_.sets[s].reference;
+    if (plans_[s].items.empty()) continue;
+    const auto equations = data_.sets[s].method->own_equations(
+        state.own[s], reference < 0 ? nullptr : &state.own[reference]);
+    for (const OwnEquation& each : equations) {
+      rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
+      auto row = rows.row(rows.rows() - 1);
+      row.setZero();
+      row.segment(own_at_[s], own_count_[s]) = each.D_own.transpose() / each.sigma;
+      row.segment(own_at_[reference], own_count_[reference]) =
+          each.D_reference.head(own_count_[reference]).transpose() / each.sigma;
+      row[row.size() - 1] = -each.residual / each.sigma;
+      out.cost += std::pow(each.residual / each.sigma, 2);
+      ++out.equations;
+    }
+  }
+}
+
+void Equations::weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
+                      Linearised& out) const {
+  const int count = static_cast<int>(block.rows.size());
+  const int equations = static_cast<int>(block.quantities.size());
+  const Scale& scale = weighting.scale[set];
+  const double soft = chi_quantile(equations, weighting.soft_quantile);
+  Lanes root_weight = Lanes::Zero(kLanes);
+  for (int lane = 0; lane < count; ++lane) {
+    const int row = block.rows[lane];
+    out.residuals.push_back(row_residual(block.out, block.quantities, lane, row, set));
+    if (weighting.put_aside[row]) continue;
+    const double t = out.residuals.back().sigmas(scale);
+    root_weight[lane] = t > soft ? std::sqrt(soft / t) : 1;  // Huber
+    out.cost += t > soft ? soft * (2 * t - soft) : t * t;
+    out.equations += equations;
+  }
+  const Eigen::Index freedom = block.out.D_group.cols() / equations;
+  for (int a = 0; a < equations; ++a) {
+    const Lanes factor = root_weight / scale.of(block.quantities[a]);
+    W.middleRows(a * kLanes, kLanes).array().colwise() *= factor;
+    block.out.D_group.middleCols(a * freedom, freedom).colwise() *= factor;
+  }
+}
+
+void Equations::gather(int set, const SetPlan::Cluster& cluster, const Block& block,
+                       const Eigen::MatrixXd& W, Gatherer& gatherer) const {
+  const int freedom = data_.sets[set].method->group_freedom();
+  for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+    const int at = freedom * cluster.place(data_.rows.group[block.rows[lane]]);
+    for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
+      auto row = gatherer.next();
+      row.segment(at, freedom) = block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
+      row.tail(W.cols()) = W.row(a * kLanes + lane);
+    }
+  }
+}
+
+void Equations::gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
+                             bool bent, Gatherer& gatherer, Linearised& out) const {
+  const Method& method = *data_.sets[set].method;
+  const int freedom = method.group_freedom();
+  for (const GroupLink& link : cluster.links) {
+    Eigen::VectorXd D_a, D_b;
+    const double r = method.link_residual(link, state.groups[set].col(link.a),
+                                          state.groups[set].col(link.b), D_a, D_b);
+    auto row = gatherer.next();
+    row.segment(freedom * cluster.place(link.a), freedom) = D_a.transpose() / link.noise;
+    row.segment(freedom * cluster.place(link.b), freedom) = D_b.transpose() / link.noise;
+    row[row.size() - 1] = bent ? 0 : -r / link.noise;
+    out.cost += std::pow(r / link.noise, 2);
+    ++out.equations;
+  }
+}
+
+void Equations::bend_right_side(int set, int first, int count, const Bend& bend,
+                                Eigen::MatrixXd& W) const {
+  Block ahead, middle, behind;
+  evaluate(set, first, count, bend.ahead, ahead, false);
+  evaluate(set, first, count, bend.middle, middle, false);
+  evaluate(set, first, count, bend.behind, behind, false);
+  const Eigen::ArrayXXd r_vv =
+      (ahead.out.r - 2 * middle.out.r + behind.out.r) / (Bend::kPart * Bend::kPart);
+  for (Eigen::Index a = 0; a < r_vv.cols(); ++a)
+    W.col(W.cols() - 1).segment(a * kLanes, kLanes) = -r_vv.col(a).matrix();
+}
+
+Eigen::MatrixXd Equations::bend(const State& state, const Weighting& weighting,
+                                const Linearised& at, const Eigen::VectorXd& step) const {
+  const Bend bend{stepped(state, at, Bend::kPart * step), stepped(state, at, 0 * step),
+                  stepped(state, at, -Bend::kPart * step)};
+  return sweep(state, weighting, false, &bend).R;
+}
+
+Linearised Equations::linearise(const State& state, const Weighting& weighting,
+                                bool motions) const {
+  return sweep(state, weighting, motions, nullptr);
+}
+
+Linearised Equations::sweep(const State& state, const Weighting& weighting, bool motions,
+                            const Bend* bend) const {
+  const int global = columns() + (motions ? kMotions : 0) + 1;
+  StreamingQr qr(global);
+  Linearised result;
+  Block block;
+  Eigen::MatrixXd W;
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s)
+    for (const SetPlan::Cluster& cluster : plans_[s].clusters) {
+      const int local =
+          static_cast<int>(cluster.groups.size()) * data_.sets[s].method->group_freedom();
+      Gatherer gatherer(local, global, qr);
+      for (int first = cluster.first; first < cluster.last; first += kLanes) {
+        const int count = std::min(kLanes, cluster.last - first);
+        evaluate(s, first, count, state, block, true);
+        chain_rule(block, s, motions, W);
+        if (bend) bend_right_side(s, first, count, *bend, W);
+        weigh(s, weighting, block, W, result);
+        if (local > 0)
+          gather(s, cluster, block, W, gatherer);
+        else
+          for (size_t a = 0; a < block.quantities.size(); ++a)
+            qr.push(W.middleRows(static_cast<Eigen::Index>(a) * kLanes, count));
+      }
+      gather_links(s, cluster, state, bend != nullptr, gatherer, result);
+      if (local > 0) result.clusters.push_back(gatherer.finish());
+    }
+  Eigen::MatrixXd rows(0, global);
+  own_equations(state, result, rows);
+  if (bend) rows.rightCols(1).setZero();  // hardly bent: a plane's step, a length
+  qr.push(rows);
+  result.R = qr.R();
+  return result;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,28 @@
+// What the rows can never see: the scale of touches, the place of the base, the target's point.
+#pragma once
+
+#include <vector>
+
+#include "constraints/equations.h"
+#include "constraints/identification.h"
+
+namespace selfcal {
+
+/// Parameters that are held before anything is estimated, with the reason: the base frames when
+/// every set is measured by a device whose own frame is unknown.
+std::vector<Note> held_base(const Robot& robot, const Equations& equations);
+
+/// The link length that is held because the rows leave the scale free, if they do: the scale is
+/// known worse than the maker's tolerance tells it. Judged on whitened R; `free` are the free
+/// parameters.
+std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
+                             const std::vector<char>& free);
+
+/// Orthonormal combinations (columns, 6 x k) of the world's motions that the rows do not see, own
+/// unknowns being unknown. R is whitened, with the six motion columns before its last.
+Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd& R);
+
+/// True when every set with rows measures an unknown point instead of the tool.
+bool point_is_unknown(const Equations& equations);
+
+}  // namespace selfcal

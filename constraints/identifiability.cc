@@ -1,0 +1,124 @@
+// QR in a given order: modified Gram-Schmidt, each column projected twice ("twice is enough",
+// Parlett), on the columns of a square R, which has the same column space geometry as W.
+#include "constraints/identifiability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace selfcal {
+namespace {
+
+/// An orthonormal basis that grows column by column, with R of the columns taken.
+class Basis {
+ public:
+  Basis(Eigen::Index rows, Eigen::Index most)
+      : Q_(rows, most), R_(Eigen::MatrixXd::Zero(most, most)) {}
+
+  struct Projection {
+    Eigen::VectorXd coefficients, rest;
+  };
+  Projection project(const Eigen::VectorXd& v) const {
+    const auto Q = Q_.leftCols(count_);
+    Projection p{Q.transpose() * v, {}};
+    p.rest = v - Q * p.coefficients;
+    const Eigen::VectorXd again = Q.transpose() * p.rest;
+    p.rest -= Q * again;
+    p.coefficients += again;
+    return p;
+  }
+  void take(const Projection& p) {
+    const double length = p.rest.norm();
+    R_.col(count_).head(count_) = p.coefficients;
+    R_(count_, count_) = length;
+    Q_.col(count_++) = p.rest / length;
+  }
+  /// Coefficients of the taken columns themselves.
+  Eigen::VectorXd combination(const Projection& p) const {
+    return R_.topLeftCorner(count_, count_).triangularView<Eigen::Upper>().solve(p.coefficients);
+  }
+
+ private:
+  Eigen::MatrixXd Q_, R_;
+  Eigen::Index count_ = 0;
+};
+
+/// tau of 11.28, with the largest column for max |R_ii|: no diagonal element is larger.
+double tolerance(const Eigen::MatrixXd& R, const std::vector<int>& order, const RankRule& rule) {
+  if (rule.rows == 0) return 1 / rule.least_sigma;
+  double largest = 0;
+  for (const int c : order) largest = std::max(largest, R.col(c).norm());
+  return rule.rows * std::numeric_limits<double>::epsilon() * largest;
+}
+
+/// Coefficients smaller than this say nothing (structural: rounding; real data: noise).
+double least_coefficient(const RankRule& rule) { return rule.rows == 0 ? 1e-2 : 1e-7; }
+
+}  // namespace
+
+std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
+                                     int leading, const RankRule& rule) {
+  const double tau = tolerance(R, order, rule);
+  Basis basis(R.rows(), static_cast<Eigen::Index>(order.size()));
+  std::vector<int> taken;  // positions in order
+  std::vector<ColumnRank> ranks;
+  for (int i = 0; i < static_cast<int>(order.size()); ++i) {
+    const Eigen::VectorXd column = R.col(order[i]);
+    const Basis::Projection p = basis.project(column);
+    const bool independent = p.rest.norm() > tau;
+    if (i >= leading) ranks.emplace_back();
+    if (independent) {
+      basis.take(p);
+      taken.push_back(i);
+    } else if (i >= leading) {
+      ColumnRank& rank = ranks.back();
+      rank.status = column.norm() > tau ? Status::grouped : Status::no_effect;
+      if (rank.status == Status::no_effect) continue;
+      const Eigen::VectorXd c = basis.combination(p);
+      for (Eigen::Index k = 0; k < c.size(); ++k)
+        if (std::abs(c[k]) > least_coefficient(rule)) rank.carriers.emplace_back(taken[k], c[k]);
+    }
+  }
+  return ranks;
+}
+
+int Identifiability::total() const {
+  return static_cast<int>(std::count(status.begin(), status.end(), Status::identified));
+}
+
+Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
+                                const std::vector<char>& candidate, const RankRule& rule) {
+  const Robot& robot = equations.robot();
+  std::vector<int> order, set_of;
+  for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s)
+    for (int k = 0; k < equations.own_freedom(s); ++k) {
+      order.push_back(equations.own_at(s) + k);
+      set_of.push_back(s);
+    }
+  const int leading = static_cast<int>(order.size());
+  for (const int p : robot.preference())
+    if (candidate[p]) order.push_back(p);
+  const std::vector<ColumnRank> ranks = rank_columns(R, order, leading, rule);
+
+  Identifiability result;
+  result.status.assign(robot.parameters().size(), Status::fixed);
+  result.grouped_with.resize(robot.parameters().size());
+  for (size_t i = 0; i < ranks.size(); ++i) {
+    const int p = order[leading + i];
+    result.status[p] = ranks[i].status;
+    std::vector<double> by_set(equations.data().sets.size(), 0);
+    for (const auto& [at, coefficient] : ranks[i].carriers) {
+      if (at >= leading)
+        result.grouped_with[p].push_back({robot.parameters()[order[at]].name, coefficient});
+      else
+        by_set[set_of[at]] = std::hypot(by_set[set_of[at]], coefficient);
+    }
+    // A set's own freedoms have no names of their own: the set carries with the length of its part.
+    for (size_t s = 0; s < by_set.size(); ++s)
+      if (by_set[s] > 0)
+        result.grouped_with[p].push_back({equations.data().sets[s].name, by_set[s]});
+  }
+  return result;
+}
+
+}  // namespace selfcal

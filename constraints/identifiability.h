@@ -1,0 +1,47 @@
+// Which columns of W the rows can tell apart (Khalil and Dombre, 11.4.2.1).
+//
+// Columns are taken in the order of preference; one that depends on those taken before is grouped
+// with them. So the first independent ones win, and the same marks come out every time.
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "constraints/equations.h"
+#include "constraints/identification.h"
+
+namespace selfcal {
+
+/// When a column counts as dependent: what is left of it after projecting the ones taken before
+/// out.
+struct RankRule {
+  /// Structural question, tau = r epsilon max |R_ii| (11.28), r the count of rows; 0 for real data.
+  double rows = 0;
+  /// Real data (whitened W): a parameter that the rows determine no better than this, m or rad.
+  double least_sigma = 2.0e-3;
+};
+
+struct ColumnRank {
+  Status status = Status::identified;
+  /// Grouped: position in `order` of each carrier and its coefficient (column = sum coefficient
+  /// carrier).
+  std::vector<std::pair<int, double>> carriers;
+};
+
+/// Ranks the columns order[leading...] of R given that the columns order[0...leading) (own
+/// unknowns) are unknown as well. One entry for each of order[leading...].
+std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
+                                     int leading, const RankRule& rule);
+
+/// Status and carriers of every parameter of the robot from R of `equations`. Parameters that
+/// `candidate` leaves out are fixed (or held) and have no say.
+struct Identifiability {
+  std::vector<Status> status;
+  std::vector<std::vector<Carrier>> grouped_with;
+  int total() const;
+};
+Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
+                                const std::vector<char>& candidate, const RankRule& rule);
+
+}  // namespace selfcal

@@ -1,0 +1,156 @@
+// Residual figures and the answer: the end position must be known to the target, and a paired test
+// on the check rows (Wilcoxon's signed ranks of |before| - |after|) must say that they improved, at
+// 95 %. Where the end position is not known to the target, but the check rows are no better and the
+// fitted rows do not contradict the maker's figures either, there is nothing to improve: that is an
+// answer too.
+#include "constraints/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kSignificance = 0.05;
+/// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
+const double kFar = NoiseRule{}.far_quantile;
+
+struct Pair {
+  const RowResidual* before;
+  const RowResidual* after;
+};
+
+Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_out) {
+  Figures f;
+  double kept = 0, kept_rows = 0;
+  for (const Pair& pair : pairs) {
+    ++f.rows;
+    const double b = pair.before->length, a = pair.after->length;
+    f.rms_before += b * b;
+    f.rms_after += a * a;
+    f.mean_after += a;
+    f.max_after = std::max(f.max_after, a);
+    if (left_out[pair.after->row]) continue;
+    kept += a * a;
+    ++kept_rows;
+  }
+  if (f.rows == 0) return f;
+  f.rms_before = std::sqrt(f.rms_before / f.rows);
+  f.rms_after = std::sqrt(f.rms_after / f.rows);
+  f.mean_after /= f.rows;
+  f.rms_without_rejected = kept_rows > 0 ? std::sqrt(kept / kept_rows) : 0;
+  return f;
+}
+
+bool is_far(const RowResidual& r, const Judged& judged) {
+  return r.sigmas(judged.check_scale[r.set]) > chi_quantile(r.lengths + r.angles, kFar);
+}
+
+std::string print(const char* format, double a, double b = 0, double c = 0) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b, c);
+  return text;
+}
+
+}  // namespace
+
+Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
+             const Fit& fitted) {
+  Judged judged;
+  judged.state = fitted.state;
+  judged.fit = fit_equations.residuals(fitted.state);
+  judged.check_scale = fitted.noise.used;
+  judged.aligned.assign(data.sets.size(), 0);
+  const Equations align(robot, data, Use::align);
+  align.start(judged.state);
+  Prior held;
+  held.free.assign(robot.parameters().size(), 0);
+  const Fit aligned = fit(align, judged.state, held, {});
+  judged.state = aligned.state;
+  judged.align_noise = aligned.noise;
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    if (align.plan(static_cast<int>(s)).items.empty()) continue;
+    judged.aligned[s] = 1;
+    if (fit_equations.plan(static_cast<int>(s)).items.empty())
+      judged.check_scale[s] = aligned.noise.used[s];
+  }
+  judged.check = Equations(robot, data, Use::check).residuals(judged.state);
+  return judged;
+}
+
+Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
+                           const std::vector<char>& put_aside) {
+  Residuals result;
+  std::vector<Pair> fit, check;
+  for (size_t i = 0; i < after.fit.size(); ++i)
+    if (!put_aside[after.fit[i].row]) fit.push_back({&before.fit[i], &after.fit[i]});
+  std::vector<char> far(put_aside.size(), 0);
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    check.push_back({&before.check[i], &after.check[i]});
+    far[after.check[i].row] = is_far(after.check[i], after);
+  }
+  result.fit = figures(fit, put_aside);
+  result.check = figures(check, far);
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    std::vector<Pair> of_set;
+    for (const Pair& pair : check)
+      if (pair.after->set == static_cast<int>(s)) of_set.push_back(pair);
+    if (!of_set.empty())
+      result.check_by_set.push_back(
+          {data.sets[s].name, after.aligned[s] != 0, figures(of_set, far)});
+  }
+  return result;
+}
+
+std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
+                                    const std::vector<char>& put_aside) {
+  std::vector<Rejected> list;
+  const auto add = [&](const RowResidual& r, bool check) {
+    list.push_back({r.row + 1, data.sets[r.set].name, r.length, check,
+                    check ? "outlier among the check rows: counted all the same" : "outlier"});
+  };
+  for (const RowResidual& r : after.fit)
+    if (put_aside[r.row]) add(r, false);
+  for (const RowResidual& r : after.check)
+    if (is_far(r, after)) add(r, true);
+  std::sort(list.begin(), list.end(),
+            [](const Rejected& a, const Rejected& b) { return a.row < b.row; });
+  return list;
+}
+
+Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
+                const EndpointSigma& endpoint, double target, bool converged,
+                bool nominal_explains) {
+  Verdict v;
+  if (residual.check.rows == 0) {
+    v.why = "no check rows to judge by";
+    return v;
+  }
+  std::vector<double> gain;
+  for (size_t i = 0; i < after.check.size(); ++i)
+    gain.push_back(before.check[i].length - after.check[i].length);
+  v.p_value = signed_rank_p(gain);
+  const std::string change =
+      print("check residual %.4g to %.4g mm (p ", 1e3 * residual.check.rms_before,
+            1e3 * residual.check.rms_after) +
+      (v.p_value < 1e-9 ? "< 1e-9" : print("= %.2g", v.p_value)) + "); end position known to " +
+      print("%.3g mm", 1e3 * endpoint.rms);
+  const bool better = v.p_value < kSignificance;
+  if (!converged) {
+    v.why = "the identification did not converge; " + change;
+  } else if (endpoint.rms <= target) {
+    v.answer = better ? Answer::improved : Answer::not_improved;
+    v.why = change;
+  } else {
+    v.why = change + print(", %.3g mm wanted", 1e3 * target);
+    if (better || !nominal_explains) return v;
+    v.answer = Answer::not_improved;
+    v.why += "; the rows ask for no other robot than the maker's";
+  }
+  return v;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,39 @@
+// The judge: residual figures before and after, on rows that identified and on rows kept aside, and
+// the answer that follows from them.
+#pragma once
+
+#include <vector>
+
+#include "constraints/fit.h"
+#include "constraints/identification.h"
+
+namespace selfcal {
+
+/// Residuals of one model (before or after) on every row that counts.
+struct Judged {
+  std::vector<RowResidual> fit, check;
+  std::vector<Scale> check_scale;  ///< by set: the noise that a check row is compared with
+  std::vector<char> aligned;       ///< by set: own unknowns were fitted to the check rows
+  State state;                     ///< with the aligned unknowns filled in
+  Noise align_noise;
+};
+
+/// Fits the unknowns of sets and groups that have only `check` rows with the robot of `fit` held,
+/// and takes the residuals of all rows.
+Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
+             const Fit& fit);
+
+Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
+                           const std::vector<char>& put_aside);
+
+/// Rows beyond the noise: those put aside, and `check` rows that would have been (they still
+/// count).
+std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
+                                    const std::vector<char>& put_aside);
+
+/// `nominal_explains`: the moves of the parameters stay within what the maker's tolerances allow.
+Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
+                const EndpointSigma& endpoint, double target, bool converged,
+                bool nominal_explains);
+
+}  // namespace selfcal

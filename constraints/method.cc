@@ -1,0 +1,40 @@
+// What a method does unless it says otherwise: it has no unknowns of its own.
+#include "constraints/method.h"
+
+namespace selfcal {
+
+void MethodOutput::resize(int equations, int own, int reference, int group) {
+  r.setZero(kLanes, equations);
+  G_now.setZero(kLanes, 6 * equations);
+  G_before.setZero(kLanes, 6 * equations);
+  D_own.setZero(kLanes, equations * own);
+  D_reference.setZero(kLanes, equations * reference);
+  D_group.setZero(kLanes, equations * group);
+}
+
+Eigen::VectorXd Method::start(const std::vector<Location>&, const std::vector<int>&,
+                              const Observations&, const Eigen::VectorXd*, const Location&) const {
+  return {};
+}
+void Method::retract(Eigen::VectorXd&, const Eigen::VectorXd&) const {}
+std::vector<OwnReport> Method::report(const Eigen::VectorXd&, const Eigen::VectorXd*) const {
+  return {};
+}
+std::vector<OwnEquation> Method::own_equations(const Eigen::VectorXd&,
+                                               const Eigen::VectorXd*) const {
+  return {};
+}
+Eigen::VectorXd Method::start_group(const std::vector<Location>&) const { return {}; }
+void Method::retract_group(Eigen::Ref<Eigen::VectorXd>, const Eigen::VectorXd&) const {}
+double Method::link_residual(const GroupLink&, const Eigen::VectorXd&, const Eigen::VectorXd&,
+                             Eigen::VectorXd&, Eigen::VectorXd&) const {
+  return 0;
+}
+Eigen::VectorXd Method::through(const Location&, const Eigen::VectorXd*, Random&) const {
+  return {};
+}
+void Method::approach(const Eigen::VectorXd&, const Eigen::VectorXd*, Observations&, int) const {}
+void Method::measure(const Location&, const Location&, const Eigen::VectorXd&, Observations&,
+                     int) const {}
+
+}  // namespace selfcal

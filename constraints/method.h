@@ -1,0 +1,143 @@
+// What one kind of measurement says: the residual of a row, its derivative to the endpoint's
+// location, the unknowns it brings along and what it can never see.
+//
+// A method never touches Psi. It gives r and G = dr/dX for each row; the equations multiply G by
+// Psi (chain rule) to get rows of W, Delta Y = -r. So one method serves every kind of robot.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "constraints/observations.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+using Random = std::mt19937_64;
+
+/// Most scalar equations that one row of any method gives (the calibration index of 11.5).
+inline constexpr int kMostEquations = 6;
+
+/// One location of the endpoint.
+struct Location {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+};
+
+/// Rows of one set to be evaluated together, one a lane.
+struct MethodInput {
+  int count = 0;
+  const Observations* data = nullptr;
+  const int* rows = nullptr;             ///< row index per lane
+  const Locations* now = nullptr;        ///< of the method's body
+  const Locations* before = nullptr;     ///< of the previous row of the group; paired methods only
+  const Eigen::VectorXd* own = nullptr;  ///< the set's own values
+  const Eigen::VectorXd* reference = nullptr;  ///< own values of the set referred to, if any
+  const Eigen::MatrixXd* groups = nullptr;     ///< group values, one column per group of the set
+};
+
+/// Residuals and derivatives, lane by lane; sized by the equations, zero before evaluate.
+struct MethodOutput {
+  using Block = Eigen::ArrayXXd;
+  Block r;            ///< column a is equation a
+  Block G_now;        ///< column 6 a + c is dr_a / d(component c of the location)
+  Block G_before;     ///< the same for the previous row
+  Block D_own;        ///< column a m + k, m the own freedom
+  Block D_reference;  ///< column a m + k, m the own freedom of the set referred to
+  Block D_group;      ///< column a g + k, g the group freedom
+
+  /// Makes room and sets everything to zero.
+  void resize(int equations, int own, int reference, int group);
+};
+
+/// One equation between own unknowns that no row carries (a known step between planes).
+struct OwnEquation {
+  double residual = 0, sigma = 1;
+  Eigen::VectorXd D_own, D_reference;
+};
+
+/// One equation between two groups of a set (a known distance between two sockets).
+struct GroupLink {
+  int a = 0, b = 0;
+  double distance = 0, noise = 0;
+};
+
+/// A number that a method reports of its own unknowns: name without the set's ("nx"), value, and
+/// its gradient to the own freedoms and to those of the set referred to.
+struct OwnReport {
+  std::string name;
+  double value = 0;
+  Eigen::VectorXd D_own, D_reference;
+};
+
+/// One constraint method with the options of one set. Immutable. "Values" describe an unknown fully
+/// (a plane's unit normal and distance), its "freedom" is the number of independent changes.
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  virtual std::string_view name() const = 0;
+  /// Quantity of each scalar equation of a row (length or angle); their count is the calibration
+  /// index.
+  virtual std::vector<Quantity> equations() const = 0;
+  /// Columns of the data set that every row needs ("x", "qw", "distance", "nx", "group").
+  virtual std::vector<std::string> columns() const { return {}; }
+  /// True when each row is compared with the previous row of its group.
+  virtual bool paired() const { return false; }
+  /// The gauge: true when the equations stay satisfied by a robot of any size.
+  virtual bool leaves_scale_free() const { return false; }
+  /// True when rows are measured in the frame of a device whose pose is an own unknown.
+  virtual bool frame_unknown() const { return false; }
+  /// True when the target point is an unknown of the set, in place of the tool frames.
+  virtual bool point_unknown() const { return false; }
+  /// True when a row holds only at certain configurations (a touch); false for an instrument's
+  /// reading, which any configuration has.
+  virtual bool constrains() const { return true; }
+  Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
+
+  /// Name of another set whose own unknowns this one shares, or empty.
+  virtual std::string reference() const { return {}; }
+
+  virtual int own_freedom() const { return 0; }
+  /// Own values that fit locations X (of body()) of the rows best, as a start.
+  virtual Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
+                                const Observations& data, const Eigen::VectorXd* reference,
+                                const Location& tool) const;
+  virtual void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const;
+  virtual std::vector<OwnReport> report(const Eigen::VectorXd& own,
+                                        const Eigen::VectorXd* reference) const;
+  virtual std::vector<OwnEquation> own_equations(const Eigen::VectorXd& own,
+                                                 const Eigen::VectorXd* reference) const;
+
+  virtual int group_freedom() const { return 0; }
+  virtual Eigen::VectorXd start_group(const std::vector<Location>& X) const;
+  virtual void retract_group(Eigen::Ref<Eigen::VectorXd> group, const Eigen::VectorXd& step) const;
+  /// Names, without set and group ("x"), of the group values that are reported: the first ones,
+  /// each moved by the freedom of its own place.
+  virtual std::vector<std::string> group_names() const { return {}; }
+  virtual std::vector<GroupLink> links() const { return {}; }
+  /// Residual of a link and its derivatives to the two groups' freedoms.
+  virtual double link_residual(const GroupLink& link, const Eigen::VectorXd& a,
+                               const Eigen::VectorXd& b, Eigen::VectorXd& D_a,
+                               Eigen::VectorXd& D_b) const;
+
+  /// Residuals and derivatives of `in.count` rows.
+  virtual void evaluate(const MethodInput& in, MethodOutput& out) const = 0;
+
+  /// Simulation: own values of a random instance of the constraint that location X satisfies
+  /// (of a plane parallel to the reference: the one at the known distance from it).
+  virtual Eigen::VectorXd through(const Location& X, const Eigen::VectorXd* reference,
+                                  Random& random) const;
+  /// Simulation: writes what a row knows before it is reached (the outward normal of a touch).
+  virtual void approach(const Eigen::VectorXd& own, const Eigen::VectorXd* reference,
+                        Observations& data, int row) const;
+  /// Simulation: writes what a perfect instrument reads at X (and `before`) into row `row`.
+  virtual void measure(const Location& X, const Location& before, const Eigen::VectorXd& own,
+                       Observations& data, int row) const;
+};
+
+}  // namespace selfcal

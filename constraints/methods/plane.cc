@@ -1,0 +1,211 @@
+// Touches of one plane (11.5.4.1), kept as unit normal n and distance d so that planes through the
+// origin are allowed:
+//   r = n . (P - rho n_out) - d,   dr = n . Psi_p dxi + P . dn - dd
+// rho is the probe's radius, n_out the outward normal of the touched surface (columns nx ny nz).
+// The chapter's coefficients (a x + b y + c z + 1 = 0, 11.51) are a b c = -n / d.
+// With `parallel_to` the normal is that of another set and |d - d_other| is known.
+#include <cmath>
+
+#include "constraints/methods/maker.h"
+#include "constraints/methods/unit_normal.h"
+
+namespace selfcal {
+namespace {
+
+/// The plane that own values [nx ny nz d] describe.
+struct Plane {
+  Eigen::Vector3d n;
+  double d;
+};
+
+Plane plane_of(const Eigen::VectorXd& v) { return {v.head<3>(), v[3]}; }
+
+Eigen::VectorXd values_of(const Eigen::Vector3d& n, double d) {
+  return (Eigen::VectorXd(4) << n, d).finished();
+}
+
+/// nx ny nz d a b c of a plane whose n moves by D_n (3 x tangents) and d by D_d, over all freedoms.
+std::vector<OwnReport> describe(Plane plane, Eigen::MatrixXd D_n, Eigen::RowVectorXd D_d) {
+  if (plane.d < 0) {
+    plane = {-plane.n, -plane.d};
+    D_n = -D_n;
+    D_d = -D_d;
+  }
+  std::vector<OwnReport> list;
+  static constexpr const char* kNames[] = {"nx", "ny", "nz"};
+  for (int i = 0; i < 3; ++i) list.push_back({kNames[i], plane.n[i], D_n.row(i), {}});
+  list.push_back({"d", plane.d, D_d, {}});
+  if (plane.d < 1e-6) return list;  // a b c do not exist for a plane through the origin
+  static constexpr const char* kCoefficients[] = {"a", "b", "c"};
+  for (int i = 0; i < 3; ++i)
+    list.push_back({kCoefficients[i],
+                    -plane.n[i] / plane.d,
+                    (-D_n.row(i) / plane.d + plane.n[i] / (plane.d * plane.d) * D_d).transpose(),
+                    {}});
+  return list;
+}
+
+/// What every plane method shares: the touched point and its columns.
+class Touch : public Method {
+ public:
+  explicit Touch(double probe_radius) : probe_radius_(probe_radius) {}
+  std::string_view name() const override { return "plane"; }
+  std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  std::vector<std::string> columns() const override {
+    if (probe_radius_ > 0) return {"nx", "ny", "nz"};
+    return {};
+  }
+  void approach(const Eigen::VectorXd& own, const Eigen::VectorXd* reference, Observations& data,
+                int row) const override {
+    data.normal.row(row) = (reference ? *reference : own).head<3>().transpose();
+  }
+
+ protected:
+  Eigen::Vector3d touched(const MethodInput& in, int lane) const {
+    Eigen::Vector3d P = in.now->p(lane);
+    if (probe_radius_ > 0) P -= probe_radius_ * in.data->normal.row(in.rows[lane]).transpose();
+    return P;
+  }
+
+ private:
+  double probe_radius_;
+};
+
+class OnePlane final : public Touch {
+ public:
+  OnePlane(double probe_radius, std::optional<Plane> known) : Touch(probe_radius), known_(known) {}
+
+  bool leaves_scale_free() const override { return true; }
+  int own_freedom() const override { return known_ ? 0 : 3; }
+
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
+                        const Observations&, const Eigen::VectorXd*,
+                        const Location&) const override {
+    if (known_) return values_of(known_->n, known_->d);
+    const Eigen::Vector3d n = best_normal(X);
+    double d = 0;
+    for (const Location& each : X) d += n.dot(each.p) / static_cast<double>(X.size());
+    return values_of(d < 0 ? Eigen::Vector3d(-n) : n, std::abs(d));
+  }
+  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
+    if (known_) return;
+    own.head<3>() = tilted(own.head<3>(), step.head<2>());
+    own[3] += step[2];
+  }
+  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+    if (known_) return {};
+    Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 3);
+    D_n.leftCols<2>() = tangents(own.head<3>());
+    return describe(plane_of(own), D_n, Eigen::RowVector3d(0, 0, 1));
+  }
+
+  void evaluate(const MethodInput& in, MethodOutput& out) const override {
+    const Plane plane = plane_of(*in.own);
+    const Eigen::Matrix<double, 3, 2> T = tangents(plane.n);
+    for (int lane = 0; lane < in.count; ++lane) {
+      const Eigen::Vector3d P = touched(in, lane);
+      out.r(lane, 0) = plane.n.dot(P) - plane.d;
+      set_linear(out.G_now, lane, 0, plane.n);
+      if (known_) continue;
+      out.D_own.row(lane).segment<2>(0) = P.transpose() * T;
+      out.D_own(lane, 2) = -1;
+    }
+  }
+
+  Eigen::VectorXd through(const Location& X, const Eigen::VectorXd*,
+                          Random& random) const override {
+    if (known_) return values_of(known_->n, known_->d);
+    const Eigen::Vector3d n = random_direction(random);
+    const double d = n.dot(X.p);
+    return values_of(d < 0 ? Eigen::Vector3d(-n) : n, std::abs(d));
+  }
+
+ private:
+  std::optional<Plane> known_;
+};
+
+/// Own values [d, side]: the normal is the reference's, d - d_reference has the sign of `side`.
+class ParallelPlane final : public Touch {
+ public:
+  ParallelPlane(double probe_radius, std::string reference, double distance, double noise)
+      : Touch(probe_radius), reference_(std::move(reference)), distance_(distance), noise_(noise) {}
+
+  bool leaves_scale_free() const override { return true; }
+  std::string reference() const override { return reference_; }
+  int own_freedom() const override { return 1; }
+
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
+                        const Observations&, const Eigen::VectorXd* reference,
+                        const Location&) const override {
+    double d = 0;
+    for (const Location& each : X)
+      d += reference->head<3>().dot(each.p) / static_cast<double>(X.size());
+    return Eigen::Vector2d(d, d < (*reference)[3] ? -1 : 1);
+  }
+  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
+    own[0] += step[0];
+  }
+  Eigen::VectorXd through(const Location&, const Eigen::VectorXd* reference,
+                          Random&) const override {
+    return Eigen::Vector2d((*reference)[3] + distance_, 1);
+  }
+  std::vector<OwnEquation> own_equations(const Eigen::VectorXd& own,
+                                         const Eigen::VectorXd* reference) const override {
+    const double side = own[1];
+    return {{side * (own[0] - (*reference)[3]) - distance_, noise_,
+             Eigen::VectorXd::Constant(1, side), Eigen::Vector3d(0, 0, -side)}};
+  }
+  std::vector<OwnReport> report(const Eigen::VectorXd& own,
+                                const Eigen::VectorXd* reference) const override {
+    const Plane plane{reference->head<3>(), own[0]};
+    Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 4);
+    D_n.middleCols<2>(1) = tangents(plane.n);
+    std::vector<OwnReport> list = describe(plane, D_n, Eigen::RowVector4d(1, 0, 0, 0));
+    for (OwnReport& each : list) {
+      each.D_reference = each.D_own.tail<3>();
+      each.D_own = Eigen::VectorXd(each.D_own.head<1>());
+    }
+    return list;
+  }
+
+  void evaluate(const MethodInput& in, MethodOutput& out) const override {
+    const Eigen::Vector3d n = in.reference->head<3>();
+    const Eigen::Matrix<double, 3, 2> T = tangents(n);
+    for (int lane = 0; lane < in.count; ++lane) {
+      const Eigen::Vector3d P = touched(in, lane);
+      out.r(lane, 0) = n.dot(P) - (*in.own)[0];
+      set_linear(out.G_now, lane, 0, n);
+      out.D_own(lane, 0) = -1;
+      if (out.D_reference.cols() > 0) out.D_reference.row(lane).head<2>() = P.transpose() * T;
+    }
+  }
+
+ private:
+  std::string reference_;
+  double distance_, noise_;
+};
+
+}  // namespace
+
+MethodPtr make_plane(SetEntry& entry) {
+  const double radius = entry.fields.number("probe_radius", 0);
+  if (radius < 0) entry.fields.fail("probe_radius", "a radius of at least 0 m");
+  const auto known = entry.fields.numbers("plane", 3);
+  const Node* parallel = entry.fields.node("parallel_to");
+  if (known && parallel) entry.fields.fail("parallel_to", "either `plane` or `parallel_to`");
+  if (parallel) {
+    Fields fields(*parallel, entry.fields.what() + " parallel_to", entry.problems);
+    const std::string other = fields.text("set");
+    const double distance = fields.number("distance"), noise = fields.number("noise");
+    if (!(distance > 0)) fields.fail("distance", "a positive distance (m)");
+    if (!(noise > 0)) fields.fail("noise", "a positive 1 sigma (m)");
+    fields.refuse_unknown();
+    return std::make_unique<ParallelPlane>(radius, other, distance, noise);
+  }
+  if (!known) return std::make_unique<OnePlane>(radius, std::nullopt);
+  const Eigen::Vector3d abc = *known;
+  if (abc.norm() < 1e-9) entry.fields.fail("plane", "[a, b, c] of a x + b y + c z + 1 = 0");
+  return std::make_unique<OnePlane>(radius, Plane{-abc.normalized(), 1 / abc.norm()});
+}
+
+}  // namespace selfcal

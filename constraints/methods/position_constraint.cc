@@ -1,0 +1,103 @@
+// Rows of one group share the endpoint's position, an unknown c (11.48 to 11.50, first three
+// equations, here against the shared point rather than row against row, so that groups may have any
+// size):
+//   r = R^T (P(q) - c),   dr = R^T (dP + [P - c]x delta - dc)
+// in the tool's axes: noise has no direction, and a turn of the world then leaves r exactly alone.
+// Two groups' points may be a known distance apart: |c_a - c_b| - D with its own noise.
+#include <algorithm>
+
+#include "constraints/methods/maker.h"
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+class PositionConstraint final : public Method {
+ public:
+  explicit PositionConstraint(std::vector<GroupLink> links) : links_(std::move(links)) {}
+
+  std::string_view name() const override { return "position-constraint"; }
+  std::vector<Quantity> equations() const override { return {3, Quantity::length}; }
+  std::vector<std::string> columns() const override { return {"group"}; }
+  bool leaves_scale_free() const override { return true; }
+  int group_freedom() const override { return 3; }
+  std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
+  std::vector<GroupLink> links() const override { return links_; }
+
+  Eigen::VectorXd start_group(const std::vector<Location>& X) const override {
+    Eigen::Vector3d c;
+    for (int i = 0; i < 3; ++i) {
+      std::vector<double> v;
+      for (const Location& each : X) v.push_back(each.p[i]);
+      c[i] = median(std::move(v));
+    }
+    return c;
+  }
+  void retract_group(Eigen::Ref<Eigen::VectorXd> group,
+                     const Eigen::VectorXd& step) const override {
+    group += step;
+  }
+
+  double link_residual(const GroupLink& link, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                       Eigen::VectorXd& D_a, Eigen::VectorXd& D_b) const override {
+    const double length = (a - b).norm();
+    D_a = length > 0 ? Eigen::VectorXd((a - b) / length) : Eigen::VectorXd::Zero(3);
+    D_b = -D_a;
+    return length - link.distance;
+  }
+
+  void evaluate(const MethodInput& in, MethodOutput& out) const override {
+    for (int lane = 0; lane < in.count; ++lane) {
+      const Eigen::Vector3d c = in.groups->col(in.data->group[in.rows[lane]]);
+      const Eigen::Vector3d miss = in.now->p(lane) - c;
+      const Eigen::Matrix3d to_tool = in.now->R(lane).transpose();
+      const Eigen::Matrix3d by_turn = to_tool * skew(miss);
+      out.r.row(lane) = (to_tool * miss).transpose();
+      for (int a = 0; a < 3; ++a) {
+        set_linear(out.G_now, lane, a, to_tool.row(a));
+        set_angular(out.G_now, lane, a, by_turn.row(a));
+        out.D_group.row(lane).segment<3>(3 * a) = -to_tool.row(a);
+      }
+    }
+  }
+
+ private:
+  std::vector<GroupLink> links_;
+};
+
+GroupLink read_link(const Node& node, SetEntry& entry) {
+  Fields fields(node, entry.fields.what() + " apart", entry.problems);
+  GroupLink link;
+  const std::vector<std::string> names = fields.texts("groups");
+  if (names.size() == 2 && names[0] != names[1]) {
+    link.a = group_index(entry.groups, names[0]);
+    link.b = group_index(entry.groups, names[1]);
+  } else {
+    fields.fail("groups", "two different groups, [FIRST, SECOND]");
+  }
+  link.distance = fields.number("distance");
+  link.noise = fields.number("noise");
+  if (link.distance < 0) fields.fail("distance", "a distance of at least 0 m");
+  if (!(link.noise > 0)) fields.fail("noise", "a positive 1 sigma (m)");
+  fields.refuse_unknown();
+  return link;
+}
+
+}  // namespace
+
+MethodPtr make_position_constraint(SetEntry& entry) {
+  std::vector<GroupLink> links;
+  if (const Node* list = entry.fields.node("apart")) {
+    if (list->kind != Node::Kind::list)
+      entry.fields.fail("apart", "a list of {groups: [A, B], distance: D, noise: S}");
+    for (const Node& item : list->items) links.push_back(read_link(item, entry));
+  }
+  return std::make_unique<PositionConstraint>(std::move(links));
+}
+
+}  // namespace selfcal

@@ -1,0 +1,106 @@
+// The endpoint lies on a sphere (a ball probed from all sides, a ball bar, two arms that touch):
+//   r = |P - c| - rho,   dr = u . (Psi_p dxi - dc) - drho,   u = (P - c) / |P - c|
+// Centre and radius are unknown unless given; the radius is that of the endpoint's locus.
+#include <cmath>
+
+#include "constraints/methods/maker.h"
+#include "constraints/methods/unit_normal.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+class Sphere final : public Method {
+ public:
+  Sphere(std::optional<Eigen::Vector3d> centre, std::optional<double> radius)
+      : centre_(centre), radius_(radius) {}
+
+  std::string_view name() const override { return "sphere"; }
+  std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  bool leaves_scale_free() const override { return true; }
+  int own_freedom() const override { return radius_at() + (radius_ ? 0 : 1); }
+
+  /// |P|^2 = 2 P . c + (rho^2 - |c|^2), linear in c and the constant.
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
+                        const Observations&, const Eigen::VectorXd*,
+                        const Location&) const override {
+    Eigen::MatrixXd A(X.size(), 4);
+    Eigen::VectorXd b(X.size());
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Location& each : X) mean += each.p / static_cast<double>(X.size());
+    for (size_t i = 0; i < X.size(); ++i) {
+      const Eigen::Vector3d p = X[i].p - mean;
+      A.row(static_cast<Eigen::Index>(i)) << 2 * p.transpose(), 1;
+      b[static_cast<Eigen::Index>(i)] = p.squaredNorm();
+    }
+    const Eigen::Vector4d fit = least_squares(A, b);
+    Eigen::VectorXd own(4);
+    own.head<3>() = centre_.value_or(mean + fit.head<3>());
+    double radius = 0;
+    for (const Location& each : X)
+      radius += (each.p - own.head<3>()).norm() / static_cast<double>(X.size());
+    own[3] = radius_.value_or(radius);
+    return own;
+  }
+  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
+    if (!centre_) own.head<3>() += step.head<3>();
+    if (!radius_) own[3] += step[radius_at()];
+  }
+  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+    static constexpr const char* kNames[] = {"cx", "cy", "cz"};
+    std::vector<OwnReport> list;
+    const auto unit = [&](int i) {
+      Eigen::VectorXd D = Eigen::VectorXd::Zero(own_freedom());
+      D[i] = 1;
+      return D;
+    };
+    for (int i = 0; !centre_ && i < 3; ++i) list.push_back({kNames[i], own[i], unit(i), {}});
+    if (!radius_) list.push_back({"radius", own[3], unit(radius_at()), {}});
+    return list;
+  }
+
+  void evaluate(const MethodInput& in, MethodOutput& out) const override {
+    const Eigen::Vector3d c = in.own->head<3>();
+    for (int lane = 0; lane < in.count; ++lane) {
+      const Eigen::Vector3d step = in.now->p(lane) - c;
+      const double length = step.norm();
+      const Eigen::Vector3d u =
+          length > 0 ? Eigen::Vector3d(step / length) : Eigen::Vector3d::Zero();
+      out.r(lane, 0) = length - (*in.own)[3];
+      set_linear(out.G_now, lane, 0, u);
+      if (!centre_) out.D_own.row(lane).head<3>() = -u.transpose();
+      if (!radius_) out.D_own(lane, radius_at()) = -1;
+    }
+  }
+
+  Eigen::VectorXd through(const Location& X, const Eigen::VectorXd*,
+                          Random& random) const override {
+    std::uniform_real_distribution<double> size(0.05, 0.3);
+    Eigen::VectorXd own(4);
+    if (centre_) {
+      own << *centre_, radius_.value_or((X.p - *centre_).norm());
+    } else {
+      own[3] = radius_.value_or(size(random));
+      own.head<3>() = X.p + own[3] * random_direction(random);
+    }
+    return own;
+  }
+
+ private:
+  int radius_at() const { return centre_ ? 0 : 3; }
+
+  std::optional<Eigen::Vector3d> centre_;
+  std::optional<double> radius_;
+};
+
+}  // namespace
+
+MethodPtr make_sphere(SetEntry& entry) {
+  std::optional<Eigen::Vector3d> centre;
+  if (const auto c = entry.fields.numbers("center", 3)) centre = *c;
+  const std::optional<double> radius = entry.fields.optional_number("radius");
+  if (radius && !(*radius > 0)) entry.fields.fail("radius", "a positive radius (m)");
+  return std::make_unique<Sphere>(centre, radius);
+}
+
+}  // namespace selfcal

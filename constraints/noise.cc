@@ -1,0 +1,121 @@
+// Noise by set: robust first (median of the residual lengths over the median of the chi
+// distribution), then the root mean square of the rows that stay, both corrected for the fitted
+// freedoms (11.34).
+#include "constraints/noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+/// Equations over equations less fitted freedoms, at most 10: a set with hardly more equations than
+/// unknowns says little of its noise.
+double freedom_factor(double equations, double fitted) {
+  return std::sqrt(equations / std::max(equations - fitted, 0.1 * equations));
+}
+
+struct SetNoise {
+  std::vector<const RowResidual*> rows;
+  double equations = 0, fitted = 0;
+};
+
+double robust(const SetNoise& set, bool angle) {
+  std::vector<double> norms;
+  for (const RowResidual* r : set.rows) norms.push_back(angle ? r->angle : r->length);
+  const int count = angle ? set.rows.front()->angles : set.rows.front()->lengths;
+  if (count == 0) return 1;
+  return median(std::move(norms)) / chi_quantile(count, 0.5) *
+         freedom_factor(set.equations, set.fitted);
+}
+
+double root_mean_square(const SetNoise& set, const std::vector<char>& put_aside, bool angle) {
+  double sum = 0, count = 0, kept = 0;
+  for (const RowResidual* r : set.rows) {
+    if (put_aside[r->row]) continue;
+    sum += angle ? r->angle * r->angle : r->length * r->length;
+    count += angle ? r->angles : r->lengths;
+    kept += r->angles + r->lengths;
+  }
+  if (count == 0) return 1;
+  return std::sqrt(sum / count) * freedom_factor(kept, set.fitted);
+}
+
+Scale at_least(Scale a, double length, double angle) {
+  return {std::max(a.length, length), std::max(a.angle, angle)};
+}
+
+/// Puts the rows aside that lie farther than any noise of their set, the farthest first, within the
+/// bound.
+bool put_far_rows_aside(const SetNoise& set, const Scale& scale, const NoiseRule& rule,
+                        std::vector<char>& put_aside) {
+  std::vector<std::pair<double, int>> far;
+  for (const RowResidual* r : set.rows) {
+    const double t = r->sigmas(scale);
+    if (t > chi_quantile(r->lengths + r->angles, rule.far_quantile)) far.emplace_back(-t, r->row);
+  }
+  std::sort(far.begin(), far.end());
+  const size_t most =
+      static_cast<size_t>(rule.most_rejected * static_cast<double>(set.rows.size()));
+  for (size_t i = 0; i < std::min(most, far.size()); ++i) put_aside[far[i].second] = 1;
+  return far.size() > most;
+}
+
+}  // namespace
+
+Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>& residuals,
+                     const NoiseRule& rule) {
+  const std::vector<Set>& sets = equations.data().sets;
+  std::vector<SetNoise> by_set(sets.size());
+  double total = 0;
+  for (const RowResidual& r : residuals) {
+    by_set[r.set].rows.push_back(&r);
+    by_set[r.set].equations += r.lengths + r.angles;
+    total += r.lengths + r.angles;
+  }
+  Noise noise;
+  noise.estimated.resize(sets.size());
+  noise.used.resize(sets.size());
+  noise.at_bound.assign(sets.size(), 0);
+  noise.put_aside.assign(equations.data().rows.rows(), 0);
+  for (size_t s = 0; s < sets.size(); ++s) {
+    SetNoise& set = by_set[s];
+    if (set.rows.empty()) continue;
+    set.fitted =
+        rule.global_freedom * set.equations / total + equations.group_freedoms(static_cast<int>(s));
+    Scale scale{robust(set, false), robust(set, true)};
+    const Scale weighed =
+        at_least(at_least(scale, sets[s].noise, sets[s].noise_angle), kLeastNoise, kLeastNoise);
+    if (rule.reject) {
+      noise.at_bound[s] = put_far_rows_aside(set, weighed, rule, noise.put_aside);
+      scale = {root_mean_square(set, noise.put_aside, false),
+               root_mean_square(set, noise.put_aside, true)};
+    }
+    noise.estimated[s] = at_least(scale, kLeastNoise, kLeastNoise);
+    noise.used[s] = at_least(noise.estimated[s], sets[s].noise, sets[s].noise_angle);
+  }
+  return noise;
+}
+
+double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
+                    const std::vector<char>& put_aside) {
+  if (data.rows.repeat.empty()) return -1;
+  std::map<int, std::vector<const RowResidual*>> repeats;
+  for (const RowResidual& r : residuals)
+    if (r.set == set && data.rows.repeat[r.row] >= 0 && !put_aside[r.row])
+      repeats[data.rows.repeat[r.row]].push_back(&r);
+  double sum = 0, freedom = 0;
+  for (const auto& [id, rows] : repeats)
+    for (int a = 0; a < rows.front()->lengths; ++a) {
+      double mean = 0;
+      for (const RowResidual* r : rows) mean += r->scalars[a] / static_cast<double>(rows.size());
+      for (const RowResidual* r : rows) sum += std::pow(r->scalars[a] - mean, 2);
+      freedom += static_cast<double>(rows.size()) - 1;
+    }
+  return freedom > 0 ? std::sqrt(sum / freedom) : -1;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,27 @@
+// Rows of a data set, column by column. Row i here is row i + 1 of the file (the header not
+// counted).
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+namespace selfcal {
+
+/// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
+/// reader has made sure that the cells a row's method needs are there and finite.
+struct Observations {
+  Eigen::MatrixXd q;            ///< rows x joints, readings (rad or m)
+  Eigen::MatrixXd position;     ///< rows x 3, x y z (m)
+  Eigen::MatrixXd orientation;  ///< rows x 4, qw qx qy qz, unit
+  Eigen::VectorXd distance;     ///< rows, to the previous row of the group (m)
+  Eigen::MatrixXd normal;       ///< rows x 3, outward normal of the touched surface, world, unit
+  std::vector<int> set;         ///< rows, index into the data set's sets
+  std::vector<int> group;       ///< rows, index into its set's group names; -1 without a group
+  std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column
+  std::vector<char> check;  ///< rows, 1 for rows kept aside to judge
+
+  int rows() const { return static_cast<int>(q.rows()); }
+};
+
+}  // namespace selfcal

@@ -1,0 +1,23 @@
+// The few distributions that the identification judges by.
+#pragma once
+
+#include <vector>
+
+namespace selfcal {
+
+/// Quantile of the chi distribution (length of a standard normal vector of `freedom` entries).
+double chi_quantile(int freedom, double probability);
+/// Probability that a chi-square variable of `freedom` (any positive number) exceeds `value`.
+double chi_square_exceeds(double value, double freedom);
+/// Probability that an F variable exceeds `value`.
+double f_exceeds(double value, double upper_freedom, double lower_freedom);
+
+/// One-sided Wilcoxon signed-rank test that the differences are positive rather than symmetric
+/// about zero; exact up to 50 differences without ties, normal approximation with tie correction
+/// beyond. Zeros are dropped; 1 when nothing is left.
+double signed_rank_p(const std::vector<double>& differences);
+
+/// Median; 0 of nothing.
+double median(std::vector<double> values);
+
+}  // namespace selfcal
