@@ -1,0 +1,39 @@
+// Rows of a CSV file, one after the other, without holding the file (libcsv).
+//
+// RFC 4180: cells between commas, quoted where they hold commas, quotes or line ends; lines end in
+// LF, CR or CRLF, the last one may lack its end. A UTF-8 byte order mark is skipped, blanks around
+// a cell are dropped, blank lines may stand at the end only.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/result.h"
+
+namespace selfcal {
+
+/// The cells of one row; valid until the next one.
+using Cells = std::span<const std::string_view>;
+
+/// What is wrong with a row, and in which column (from 0) if one cell is at fault.
+struct RowFault {
+  std::string what;
+  std::optional<std::size_t> column = std::nullopt;
+};
+
+/// Takes the header's names. A fault ends the reading.
+using TakeHeader = std::function<std::optional<RowFault>(Cells names)>;
+/// Takes a row, numbered from 1, with as many cells as the header. A fault ends the reading.
+using TakeRow = std::function<std::optional<RowFault>(Cells cells, int row)>;
+
+/// Calls `header` once and `row` for each row. Fails with "FILE: row 17: column x: ..." on the
+/// first fault, on a row of another length, on an unfinished quotation and on an empty or repeated
+/// name.
+Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
+                      const TakeRow& row);
+
+}  // namespace selfcal

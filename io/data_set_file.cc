@@ -1,0 +1,100 @@
+// dataset.yaml: what was measured, on which robot, how well it is to be known. Paths in it are
+// relative to its own folder.
+#include "io/data_set_file.h"
+
+#include <system_error>
+#include <utility>
+
+#include "io/observations_csv.h"
+#include "io/robot_file.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kDefaultTarget = 1.0e-3;  // m, 1 sigma
+constexpr double kCoarsest = 1;            // m: no target is that coarse
+
+/// What dataset.yaml says beside the sets.
+struct Description {
+  std::filesystem::path robot, observations;
+};
+
+void read_sets(const Node& node, DataSet& data, Problems& problems) {
+  if (node.kind != Node::Kind::map || node.items.empty()) {
+    problems.add(node.place, "sets: expected one set or more, each as `name: {method: ...}`");
+    return;
+  }
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    if (node.keys[i].empty()) problems.add(node.items[i].place, "sets: a set has no name");
+    data.sets.push_back(make_set(node.keys[i], node.items[i], problems));
+  }
+  if (!problems.any()) link_sets(data.sets, node, problems);
+}
+
+Description read_description(const Node& node, DataSet& data, Problems& problems) {
+  Fields fields(node, "data set", problems);
+  Description description{fields.text("robot"), fields.text("observations")};
+  if (fields.has("robot") && description.robot.empty()) fields.fail("robot", "a file's name");
+  if (fields.has("observations") && description.observations.empty()) {
+    fields.fail("observations", "a file's name");
+  }
+  data.target = fields.positive("target", kDefaultTarget);
+  if (data.target >= kCoarsest) fields.fail("target", "metres below 1 (millimetres?)");
+  // Only effects use the velocities; their meaning is checked wherever it stands.
+  const std::string dq = fields.text("dq", "velocity");
+  if (dq != "velocity" && dq != "sign") fields.fail("dq", "velocity or sign");
+  const Node* sets = fields.node("sets");
+  if (sets == nullptr) fields.fail("sets", "a mapping of sets");
+  fields.refuse_unknown();
+  if (sets != nullptr) read_sets(*sets, data, problems);
+  return description;
+}
+
+/// A set that shares another's unknowns needs rows that identify them.
+Result<void> check_references(const DataSet& data, const std::string& file) {
+  std::vector<char> fitted(data.sets.size(), 0);
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) fitted[data.rows.set[row]] = 1;
+  for (const Set& set : data.sets)
+    if (set.reference >= 0 && !fitted[set.reference])
+      return bad_input(file + ": set " + set.name + " is parallel to " +
+                       data.sets[set.reference].name + ", which has no `fit` rows");
+  return {};
+}
+
+/// The folder's own name, also when it is given as "." or with a slash at its end.
+std::string folder_name(const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::canonical(folder, error);
+  return (error ? folder : whole).filename().string();
+}
+
+}  // namespace
+
+Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
+  std::error_code error;
+  const bool is_folder = std::filesystem::is_directory(path, error);
+  const std::filesystem::path file = is_folder ? path / "dataset.yaml" : path;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+
+  const Result<Node> node = read_yaml(file);
+  if (!node) return tl::unexpected(node.error());
+  LoadedDataSet loaded;
+  loaded.name = folder_name(folder);
+  Problems problems;
+  const Description description = read_description(*node, loaded.data, problems);
+  if (problems.any()) return bad_input(problems);
+
+  Result<std::unique_ptr<Robot>> robot = load_robot(folder / description.robot);
+  if (!robot) return tl::unexpected(robot.error());
+  loaded.robot = std::move(*robot);
+  const Result<void> read = read_observations(folder / description.observations, *loaded.robot,
+                                              loaded.data, loaded.notices);
+  if (!read) return tl::unexpected(read.error());
+  if (const auto checked = check_references(loaded.data, file.string()); !checked)
+    return tl::unexpected(checked.error());
+  return loaded;
+}
+
+}  // namespace selfcal

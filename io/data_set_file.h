@@ -1,0 +1,26 @@
+// A data set from its folder: dataset.yaml, the robot it names and the rows.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constraints/data_set.h"
+#include "io/result.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+struct LoadedDataSet {
+  std::string name;                  ///< the folder's
+  std::unique_ptr<Robot> robot;      ///< nominal, as its file has it
+  DataSet data;                      ///< fits the robot: one column of q for each joint
+  std::vector<std::string> notices;  ///< what a person should know of an accepted data set
+};
+
+/// Reads the data set at `path`, a folder or the dataset.yaml in it. Everything that a file breaks
+/// is refused with its line, or its row and column.
+Result<LoadedDataSet> load_data_set(const std::filesystem::path& path);
+
+}  // namespace selfcal

@@ -1,0 +1,25 @@
+// A robot's file is YAML; what its keys mean is each kind of robot's own affair
+// (kinematics/robots).
+#include "io/robot_file.h"
+
+#include "io/file.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+
+Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path) {
+  const Result<Node> node = read_yaml(path);
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  std::unique_ptr<Robot> robot = make_robot(*node, problems);
+  if (problems.any()) return bad_input(problems);
+  return robot;
+}
+
+std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi) {
+  return write_yaml(robot.describe(xi));
+}
+
+std::string model_hash(const Robot& robot) { return "sha256:" + sha256_hex(robot.identity()); }
+
+}  // namespace selfcal

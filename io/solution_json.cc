@@ -1,0 +1,155 @@
+// One function for each part of result.json, in the order of the file.
+#include "io/solution_json.h"
+
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+/// Standard deviations are negative where there is none.
+Json sigma(double number) { return number < 0 ? Json(nullptr) : finite(number); }
+
+template <class List, class Convert>
+Json array_of(const List& list, Convert convert) {
+  Json array = Json::array();
+  for (const auto& each : list) array.push_back(convert(each));
+  return array;
+}
+
+Json of_verdict(const Verdict& verdict) {
+  return Json::object({{"answer", to_string(verdict.answer)},
+                       {"why", verdict.why},
+                       {"p_value", finite(verdict.p_value)}});
+}
+
+Json of_parameter(const ParameterResult& result) {
+  const auto carrier = [](const Carrier& each) {
+    return Json::object({{"name", each.name}, {"coefficient", finite(each.coefficient)}});
+  };
+  return Json::object({{"name", result.parameter.name},
+                       {"frame", result.parameter.frame},
+                       {"unit", unit(result.parameter.quantity)},
+                       {"nominal", finite(result.parameter.nominal)},
+                       {"value", finite(result.value)},
+                       {"sigma", sigma(result.sigma)},
+                       {"prior_sigma", finite(result.parameter.tolerance)},
+                       {"status", to_string(result.status)},
+                       {"grouped_with", array_of(result.grouped_with, carrier)}});
+}
+
+Json of_covariance(const Solution& solution) {
+  Json matrix = Json::array();
+  for (Eigen::Index i = 0; i < solution.covariance.rows(); ++i) {
+    matrix.push_back(array_of(solution.covariance.row(i), finite));
+  }
+  return Json::object({{"order", solution.covariance_order}, {"matrix", std::move(matrix)}});
+}
+
+Json of_set(const SetResult& set) {
+  const auto own = [](const OwnResult& each) {
+    return Json::object(
+        {{"name", each.name}, {"value", finite(each.value)}, {"sigma", sigma(each.sigma)}});
+  };
+  Json json = Json::object({{"name", set.name},
+                            {"method", set.method},
+                            {"rows", set.rows},
+                            {"used", set.used},
+                            {"aligned", set.aligned},
+                            {"noise_sigma", finite(set.noise_sigma)}});
+  if (set.noise_angle_sigma > 0) json["noise_angle_sigma"] = finite(set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) json["repeat_sigma"] = finite(set.repeat_sigma);
+  json["own"] = array_of(set.own, own);
+  return json;
+}
+
+Json of_rejected(const Rejected& rejected) {
+  return Json::object({{"row", rejected.row},
+                       {"set", rejected.set},
+                       {"residual", finite(rejected.residual)},
+                       {"why", rejected.why}});
+}
+
+/// Appends figures to `json`; without rows there are none.
+void add_figures(const Figures& figures, Json& json) {
+  const auto known = [&](double number) {
+    return figures.rows > 0 ? finite(number) : Json(nullptr);
+  };
+  json["rows"] = figures.rows;
+  json["rms_before"] = known(figures.rms_before);
+  json["rms_after"] = known(figures.rms_after);
+  json["mean_after"] = known(figures.mean_after);
+  json["max_after"] = known(figures.max_after);
+}
+
+Json of_residuals(const Residuals& residuals) {
+  Json fit = Json::object(), check = Json::object();
+  add_figures(residuals.fit, fit);
+  add_figures(residuals.check, check);
+  check["rms_without_rejected"] =
+      residuals.check.rows > 0 ? finite(residuals.check.rms_without_rejected) : Json(nullptr);
+  check["by_set"] = array_of(residuals.check_by_set, [](const SetFigures& set) {
+    Json json = Json::object({{"name", set.name}, {"aligned", set.aligned}});
+    add_figures(set.figures, json);
+    return json;
+  });
+  return Json::object({{"fit", std::move(fit)}, {"check", std::move(check)}});
+}
+
+Json of_endpoint(const EndpointSigma& endpoint) {
+  return Json::object({{"aligned", endpoint.aligned},
+                       {"rms", finite(endpoint.rms)},
+                       {"median", finite(endpoint.median)},
+                       {"max", finite(endpoint.max)},
+                       {"poses", endpoint.poses}});
+}
+
+Json of_prior(const Solution& solution) {
+  return Json::object({{"value", finite(solution.prior_chi2)},
+                       {"dof", finite(solution.prior_dof)},
+                       {"widening", finite(solution.prior_widening)}});
+}
+
+Json of_observability(const Observability& observability) {
+  return Json::object({{"condition", finite(observability.condition)},
+                       {"o1", finite(observability.o1)},
+                       {"o2", finite(observability.o2)},
+                       {"o3", finite(observability.o3)},
+                       {"o4", finite(observability.o4)},
+                       {"o5", finite(observability.o5)}});
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const Solution& solution, const std::string& robot_name,
+                               const std::string& model_hash) {
+  const auto note_as = [](const char* key) {
+    return [key](const Note& note) {
+      return Json::object({{"parameter", note.parameter}, {key, note.text}});
+    };
+  };
+  Json json = Json::object();
+  json["robot"] = robot_name;
+  json["model_hash"] = model_hash;
+  json["converged"] = solution.converged;
+  json["stop_reason"] = solution.stop_reason;
+  json["iterations"] = solution.iterations;
+  json["verdict"] = of_verdict(solution.verdict);
+  json["parameters"] = array_of(solution.parameters, of_parameter);
+  json["covariance"] = of_covariance(solution);
+  json["gauge"] = array_of(solution.gauge, note_as("why"));
+  json["unexcited"] = array_of(solution.unexcited, note_as("what"));
+  json["sets"] = array_of(solution.sets, of_set);
+  json["rejected"] = array_of(solution.rejected, of_rejected);
+  json["residual"] = of_residuals(solution.residual);
+  json["endpoint_sigma"] = of_endpoint(solution.endpoint);
+  json["prior_chi2"] = of_prior(solution);
+  json["observability"] = of_observability(solution.observability);
+  json["warnings"] = solution.warnings;
+  return json;
+}
+
+}  // namespace selfcal
