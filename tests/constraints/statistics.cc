@@ -1,0 +1,121 @@
+// Distributions against published tables, the signed-rank test against enumeration.
+#include "constraints/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+TEST(ChiQuantile, IsTheRootOfThePublishedChiSquareQuantile) {
+  struct Published {
+    int freedom;
+    double probability, chi_square;
+  };
+  // Any table of chi-square, with three or four decimals: half a unit of the third.
+  for (const Published& p : {Published{1, 0.95, 3.8415},
+                             {1, 0.99, 6.6349},
+                             {2, 0.99, 9.2103},
+                             {3, 0.99, 11.3449},
+                             {6, 0.99, 16.8119},
+                             {10, 0.95, 18.307}})
+    EXPECT_NEAR(std::pow(chi_quantile(p.freedom, p.probability), 2), p.chi_square, 5e-4);
+}
+
+TEST(ChiQuantile, DoesNotMixUpWhatItWasAskedBefore) {
+  const double one = chi_quantile(1, 0.99), nine = chi_quantile(9, 0.99),
+               half = chi_quantile(1, 0.5);
+  EXPECT_EQ(chi_quantile(1, 0.99), one);
+  EXPECT_EQ(chi_quantile(9, 0.99), nine);
+  EXPECT_EQ(chi_quantile(1, 0.5), half);
+  EXPECT_NEAR(half, 0.67449, 1e-5);  // quartile of the normal distribution
+}
+
+TEST(ChiSquareExceeds, IsThePublishedLevelAtThePublishedQuantile) {
+  EXPECT_NEAR(chi_square_exceeds(3.8415, 1), 0.05, 1e-5);  // four decimals of the quantile
+  EXPECT_NEAR(chi_square_exceeds(18.307, 10), 0.05, 1e-5);
+  EXPECT_NEAR(chi_square_exceeds(2 * 3.0, 2), std::exp(-3.0), 1e-12);  // exponential
+  EXPECT_EQ(chi_square_exceeds(5, 0), 1);
+}
+
+TEST(FExceeds, IsThePublishedLevelAtThePublishedQuantile) {
+  EXPECT_NEAR(f_exceeds(3.3258, 5, 10), 0.05, 1e-5);
+  EXPECT_NEAR(f_exceeds(10.0443, 1, 10), 0.01, 1e-5);
+  EXPECT_NEAR(f_exceeds(161.4476, 1, 1), 0.05, 1e-6);
+}
+
+/// Differences 1 to n, positive so that their ranks add up to `sum`.
+std::vector<double> differences(int n, int sum) {
+  std::vector<double> d;
+  for (int rank = n; rank >= 1; --rank) {
+    const bool positive = rank <= sum;
+    if (positive) sum -= rank;
+    d.push_back(positive ? rank : -rank);
+  }
+  return d;
+}
+
+TEST(SignedRank, OfFiveDifferencesIsTheShareOfSignsThatReachTheSum) {
+  for (int sum = 0; sum <= 15; ++sum) {
+    int reached = 0;
+    for (int signs = 0; signs < 32; ++signs) {
+      int positive = 0;
+      for (int rank = 1; rank <= 5; ++rank)
+        if (signs & (1 << (rank - 1))) positive += rank;
+      if (positive >= sum) ++reached;
+    }
+    EXPECT_DOUBLE_EQ(signed_rank_p(differences(5, sum)), reached / 32.0) << sum;
+  }
+}
+
+TEST(SignedRank, HasThePublishedCriticalValues) {
+  EXPECT_DOUBLE_EQ(signed_rank_p(differences(10, 45)), 43.0 / 1024);  // 0.042
+  EXPECT_NEAR(signed_rank_p(differences(15, 90)), 0.0473, 5e-5);      // tables of four decimals
+  EXPECT_NEAR(signed_rank_p(differences(20, 150)), 0.0487, 5e-5);
+}
+
+TEST(SignedRank, LooksAtRanksOnlyAndDropsZeros) {
+  EXPECT_DOUBLE_EQ(signed_rank_p({1e-9, 0, 5, -3, 0, 1e6, 7, 0}), signed_rank_p({1, 3, -2, 5, 4}));
+}
+
+TEST(SignedRank, OfManyDifferencesWithTiesIsNearTheExactOne) {
+  // Magnitudes 1 and 2, both positive, replaced by two 1.5: the same sum, but by the approximation.
+  // It leaves out the Edgeworth series' next term, 3.6 / n / 24 |z^3 - 3 z| phi(z) < 1.7e-3 at n
+  // = 50.
+  for (const int sum : {500, 640, 738, 810, 900}) {
+    std::vector<double> d = differences(50, sum);
+    d[48] = 2;
+    d[49] = 1;
+    const double exact = signed_rank_p(d);
+    d[48] = d[49] = 1.5;
+    EXPECT_NEAR(signed_rank_p(d), exact, 2e-3) << sum;
+    EXPECT_NE(signed_rank_p(d), exact);
+  }
+}
+
+TEST(SignedRank, JoinsItsApproximationWithoutAStep) {
+  // 50 differences are exact, 51 are not: the same sum in sigmas, rounded to a whole one, which
+  // moves p by at most 0.005 sigma x phi(1.67); the series' next term is 3e-4 there.
+  const double z = (810 - 637.5) / std::sqrt(50 * 51 * 101 / 24.0);
+  const int sum = static_cast<int>(std::lround(663 + z * std::sqrt(51 * 52 * 103 / 24.0)));
+  EXPECT_NEAR(signed_rank_p(differences(51, sum)), signed_rank_p(differences(50, 810)), 1e-3);
+}
+
+TEST(SignedRank, OfNothingSaysNothing) {
+  EXPECT_EQ(signed_rank_p({}), 1);
+  EXPECT_EQ(signed_rank_p({0, 0}), 1);
+}
+
+TEST(SignedRank, IsOneHalfOrMoreForASymmetricSampleAndSmallForPositiveOnes) {
+  EXPECT_GT(signed_rank_p({1, -1, 2, -2, 3, -3}), 0.5);
+  EXPECT_DOUBLE_EQ(signed_rank_p(differences(20, 210)), std::pow(0.5, 20));
+}
+
+TEST(Median, IsTheMiddleOne) {
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({}), 0);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,146 @@
+// The whole system against a dense one from central differences: R^T R = W^T W once the groups'
+// columns are eliminated, that is the Schur complement.
+#include "constraints/equations.h"
+
+#include <gtest/gtest.h>
+
+#include "kinematics/linear_algebra.h"
+#include "tests/contracts/equations_case.h"
+
+namespace selfcal {
+namespace {
+
+// W by differences of step 1e-6 errs by 1e-9 (rounding, metres) over the sigmas of 0.02, 5e-8;
+// third derivatives of the unknown device frames are of the same size. Products are compared
+// relative to the longest column, where 1e-6 leaves a factor of 20.
+constexpr double kRelative = 1e-6;
+
+Eigen::MatrixXd gram(const Eigen::MatrixXd& A) { return A.transpose() * A; }
+
+/// W^T W over [global | Delta Y] after eliminating the columns [global, global + local).
+Eigen::MatrixXd schur(const Eigen::MatrixXd& W, int global) {
+  const Eigen::Index local = W.cols() - 1 - global;
+  Eigen::MatrixXd kept(W.rows(), global + 1);
+  kept << W.leftCols(global), W.rightCols(1);
+  return gram(beyond(W.middleCols(global, local), kept));
+}
+
+/// Largest difference of two Gram matrices, each entry relative to its two columns' lengths before
+/// the elimination.
+double difference(const Eigen::MatrixXd& N, const Eigen::MatrixXd& M,
+                  const Eigen::VectorXd& lengths) {
+  double most = 0;
+  for (Eigen::Index i = 0; i < N.rows(); ++i)
+    for (Eigen::Index j = 0; j < N.cols(); ++j)
+      most = std::max(most, std::abs(N(i, j) - M(i, j)) / ((lengths[i] + 1) * (lengths[j] + 1)));
+  return most;
+}
+
+void expect_dense_system(const EquationsCase& made) {
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Linearised at = equations.linearise(made.state, made.weighting);
+  const int global = equations.columns();
+  const Eigen::MatrixXd W = made.dense(equations);
+  Eigen::VectorXd lengths(global + 1);
+  lengths << W.leftCols(global).colwise().norm().transpose(), W.rightCols(1).norm();
+  ASSERT_EQ(at.R.rows(), global + 1);
+  ASSERT_EQ(at.R.cols(), global + 1);
+  EXPECT_TRUE(at.R.isUpperTriangular(0));
+  EXPECT_LT(difference(gram(at.R), schur(W, global), lengths), kRelative);
+}
+
+TEST(Equations, HaveTheProductOfTheDenseSystem) {
+  EquationsCase made(1);
+  made.weighting.soft_quantile = 1 - 1e-12;  // nothing is weighed down
+  expect_dense_system(made);
+}
+
+TEST(Equations, WeighDownFarRowsAndLeaveOutThosePutAside) {
+  EquationsCase made(2);
+  made.weighting.soft_quantile = 0.5;  // about half of the rows are beyond
+  for (int row = 0; row < made.data.rows.rows(); row += 7) made.weighting.put_aside[row] = 1;
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Eigen::VectorXd weights = made.root_weights(equations);
+  ASSERT_TRUE((weights.array() == 0).any());
+  ASSERT_TRUE((weights.array() == 1).any());
+  ASSERT_TRUE((weights.array() > 0 && weights.array() < 1).any());
+  expect_dense_system(made);
+}
+
+TEST(Equations, CostTheSquaresWithinTheQuantileAndLinesBeyond) {
+  EquationsCase made(3);
+  made.weighting.soft_quantile = 0.5;
+  made.weighting.put_aside[3] = 1;
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Linearised at = equations.linearise(made.state, made.weighting);
+  double cost = 0;
+  int scalars = 0, rows = 0;
+  for (const RowResidual& row : equations.residuals(made.state)) {
+    const int count = row.lengths + row.angles;
+    rows += count;
+    if (made.weighting.put_aside[row.row]) continue;
+    const double t = row.sigmas(made.weighting.scale[row.set]), soft = chi_quantile(count, 0.5);
+    cost += t <= soft ? t * t : 2 * soft * t - soft * soft;  // Huber
+    scalars += count;
+  }
+  const Eigen::VectorXd all = made.residuals(equations, made.state);
+  const Eigen::Index beside = all.size() - rows;  // own equations and links
+  ASSERT_EQ(beside, 2);
+  EXPECT_NEAR(at.cost, cost + all.tail(beside).squaredNorm(), 1e-10 * at.cost);  // rounding
+  EXPECT_EQ(at.equations, scalars + 2);
+  EXPECT_EQ(at.residuals.size(), equations.residuals(made.state).size());
+}
+
+TEST(Equations, StepGroupsToWhereTheDenseSystemPutsThem) {
+  EquationsCase made(4);
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Linearised at = equations.linearise(made.state, made.weighting);
+  const Eigen::MatrixXd W = made.dense(equations);
+  const int global = equations.columns();
+  const Eigen::Index local = W.cols() - 1 - global;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 0.01);
+  Eigen::VectorXd step(global + local);
+  for (double& v : step) v = normal(random);
+  step.tail(local) = least_squares(W.middleCols(global, local),
+                                   W.rightCols(1) - W.leftCols(global) * step.head(global));
+  const State expected = made.stepped(equations, step);
+  const State found = equations.stepped(made.state, at, step.head(global));
+  EXPECT_LT((found.xi - expected.xi).norm(), 1e-15);
+  for (size_t s = 0; s < made.data.sets.size(); ++s) {
+    EXPECT_LT((found.own[s] - expected.own[s]).norm(), 1e-15) << made.data.sets[s].name;
+    // Differences of 5e-8 in W times steps of 0.1 m.
+    if (found.groups[s].size() > 0) {
+      EXPECT_LT((found.groups[s] - expected.groups[s]).norm(), 1e-7) << made.data.sets[s].name;
+    }
+  }
+}
+
+TEST(Equations, MoveTheWorldAsTheBaseFramesDo) {
+  EquationsCase made(6);
+  made.state.xi = values(*made.robot);  // base frames as in the file: along the world's axes
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Eigen::MatrixXd R = equations.linearise(made.state, made.weighting, true).R;
+  const int global = equations.columns();
+  ASSERT_EQ(R.cols(), global + 6 + 1);
+  // Shifts along x, y, z, turns about them: see arm.h. Rounding of columns of length 1000.
+  const char* const kMotions[] = {"d0", "r1", "r0", "alpha0", "beta0", "theta0"};
+  for (int i = 0; i < 6; ++i) {
+    const int p = find_parameter(*made.robot, kMotions[i]);
+    EXPECT_GT(R.col(p).norm(), 1) << kMotions[i];
+    EXPECT_LT((R.col(global + i) - R.col(p)).norm(), 1e-10) << kMotions[i];
+  }
+}
+
+TEST(Equations, HaveTheSameFactorWithAndWithoutMotions) {
+  EquationsCase made(7);
+  const Equations equations(*made.robot, made.data, Use::fit);
+  const Eigen::MatrixXd with = equations.linearise(made.state, made.weighting, true).R;
+  const Eigen::MatrixXd without = equations.linearise(made.state, made.weighting).R;
+  const int global = equations.columns();
+  const Eigen::MatrixXd N = gram(with.leftCols(global)), M = gram(without.leftCols(global));
+  EXPECT_LT((N - M).norm(), 1e-13 * M.norm());  // rounding
+}
+
+}  // namespace
+}  // namespace selfcal

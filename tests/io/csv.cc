@@ -1,0 +1,125 @@
+// CSV in every form that spreadsheets and loggers give it, and the words for what is broken.
+#include "io/csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/io/scratch.h"
+
+namespace selfcal {
+namespace {
+
+using Table = std::vector<std::vector<std::string>>;
+using testing::HasSubstr;
+
+/// The header and the rows, or the error.
+tl::expected<Table, std::string> read(const std::filesystem::path& path) {
+  Table table;
+  const auto keep = [&](Cells cells) {
+    table.emplace_back(cells.begin(), cells.end());
+    return std::optional<RowFault>();
+  };
+  const auto result = read_csv(path, keep, [&](Cells cells, int row) {
+    EXPECT_EQ(row, static_cast<int>(table.size()));
+    return keep(cells);
+  });
+  if (!result) return tl::unexpected(result.error().what);
+  return table;
+}
+
+Table table_of(std::string_view text) {
+  const Scratch scratch;
+  const auto table = read(scratch.write("f.csv", text));
+  EXPECT_TRUE(table.has_value()) << table.error();
+  return table.value_or(Table());
+}
+
+std::string error_of(std::string_view text) {
+  const Scratch scratch;
+  const auto table = read(scratch.write("f.csv", text));
+  if (table) return "no error";
+  return table.error().substr(table.error().find("f.csv"));
+}
+
+const Table kTable = {{"a", "b"}, {"1", "2"}, {"3", ""}};
+
+TEST(Csv, ReadsEveryLineEndAndTheLastLineWithoutOne) {
+  for (const char* text : {"a,b\n1,2\n3,\n", "a,b\r\n1,2\r\n3,\r\n", "a,b\r1,2\r3,\r",
+                           "a,b\n1,2\n3,", "a,b\r\n1,2\r\n3,",
+                           "\xEF\xBB\xBF"
+                           "a,b\n1,2\n3,\n",
+                           "a,b\n1,2\n3,\n\n\n", "a,b\r\n1,2\r\n3,\r\n\r\n  \r\n",
+                           " a , b \n 1, 2\n3 , \n", "\"a\",\"b\"\n\"1\",2\n3,\"\"\n"}) {
+    EXPECT_EQ(table_of(text), kTable) << text;
+  }
+}
+
+TEST(Csv, KeepsCommasQuotesAndLineEndsInsideQuotations) {
+  EXPECT_EQ(table_of("a,b\n\"x, y\",\"say \"\"no\"\"\"\n\"1\n2\",\"\"\n"),
+            (Table{{"a", "b"}, {"x, y", "say \"no\""}, {"1\n2", ""}}));
+}
+
+TEST(Csv, ReadsAHeaderWithoutRows) { EXPECT_EQ(table_of("a,b\n"), (Table{{"a", "b"}})); }
+
+TEST(Csv, NamesTheRowOfAWrongCountOfCells) {
+  EXPECT_EQ(error_of("a,b\n1,2\n3\n"), "f.csv: row 2: expected 2 cells as in the header, got 1");
+  EXPECT_EQ(error_of("a,b\n1,2,3\n"), "f.csv: row 1: expected 2 cells as in the header, got 3");
+}
+
+TEST(Csv, RefusesBrokenQuotations) {
+  EXPECT_EQ(error_of("a,b\n1,2\n3,\"4\n"), "f.csv: row 2: the file ends inside a quotation");
+  EXPECT_THAT(error_of("a,b\n1,2\n3,4\"5\n"), HasSubstr("row 2: a quotation mark stands inside"));
+  EXPECT_THAT(error_of("a,b\n1,\"" + std::string(3 << 20, 'x')),
+              HasSubstr("row 1: longer than 1 MiB; is a quotation left open?"));
+}
+
+TEST(Csv, RefusesABrokenHeader) {
+  EXPECT_EQ(error_of(""), "f.csv: header: expected a line with the names of the columns");
+  EXPECT_EQ(error_of("\n\n"), "f.csv: header: expected a line with the names of the columns");
+  EXPECT_EQ(error_of("a,,b\n"), "f.csv: header: column 2 has no name");
+  EXPECT_EQ(error_of("a,b,a\n"), "f.csv: header: column 'a' appears twice");
+  EXPECT_EQ(error_of("a;b\n1;2\n"),
+            "f.csv: header: expected commas between the columns, got semicolons");
+}
+
+TEST(Csv, RefusesBlankLinesBetweenRowsAndBytesThatAreNoText) {
+  EXPECT_EQ(error_of("a,b\n1,2\n\n3,4\n"), "f.csv: row 2: stands below a blank line");
+  EXPECT_EQ(error_of(std::string_view("a,b\n1,\0\n", 8)),
+            "f.csv: row 1: expected UTF-8 text, got other bytes");
+  EXPECT_EQ(error_of("a,b\n1,J\xF6rg\n"), "f.csv: row 1: expected UTF-8 text, got other bytes");
+  EXPECT_THAT(error_of(std::string_view("\xFF\xFE"
+                                        "a\0,\0b\0",
+                                        8)),
+              HasSubstr("f.csv: header: expected UTF-8 text"));
+}
+
+TEST(Csv, NamesRowAndColumnOfAFault) {
+  const Scratch scratch;
+  const auto path = scratch.write("f.csv", "a,b\n1,2\n3,4\n5,6\n");
+  int taken = 0;
+  const auto result = read_csv(
+      path, [](Cells) { return std::optional<RowFault>(); },
+      [&](Cells, int row) {
+        ++taken;
+        return row == 2 ? std::optional(RowFault{"is bad", 1}) : std::nullopt;
+      });
+  ASSERT_FALSE(result.has_value());
+  EXPECT_THAT(result.error().what, HasSubstr("f.csv: row 2: column b: is bad"));
+  EXPECT_EQ(result.error().exit_status, kBadInput);
+  EXPECT_EQ(taken, 2);
+}
+
+TEST(Csv, ReadsRowsAcrossItsBlocks) {
+  std::string text = "a,b\r\n";
+  Table expected = {{"a", "b"}};
+  for (int i = 0; i < 30000; ++i) {
+    expected.push_back({std::to_string(i), "\"" + std::to_string(i * 7)});
+    text += std::to_string(i) + ",\"\"\"" + std::to_string(i * 7) + "\"\r\n";
+  }
+  EXPECT_EQ(table_of(text), expected);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,130 @@
+// Decompositions against their definitions.
+#include "kinematics/linear_algebra.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace selfcal {
+namespace {
+
+constexpr double kRounding = 1e-12;  // matrices of 20 x 8 normal numbers, condition below 100
+
+Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+Eigen::MatrixXd gram(const Eigen::MatrixXd& A) { return A.transpose() * A; }
+
+TEST(Triangularise, LeavesAnUpperTriangleWithTheSameProduct) {
+  std::mt19937_64 random(41);
+  for (const Eigen::Index rows : {20, 8, 5}) {
+    const Eigen::MatrixXd A = random_matrix(rows, 8, random);
+    Eigen::MatrixXd R = A;
+    triangularise(R);
+    EXPECT_TRUE(R.isUpperTriangular(0));
+    EXPECT_LT((gram(R) - gram(A)).norm(), kRounding) << rows;
+  }
+}
+
+TEST(Triangularise, WorksOnTheTopRowsOfALargerMatrix) {
+  std::mt19937_64 random(42);
+  const Eigen::MatrixXd A = random_matrix(20, 4, random);
+  Eigen::MatrixXd B = A;
+  triangularise(B.topRows(12));
+  EXPECT_LT((gram(B.topRows(12)) - gram(A.topRows(12))).norm(), kRounding);
+  EXPECT_EQ(B.bottomRows(8), A.bottomRows(8));
+}
+
+TEST(Eliminate, ReflectsOnlyTheFirstColumnsIntoATriangle) {
+  std::mt19937_64 random(43);
+  for (const Eigen::Index rows : {20, 3, 2}) {
+    const Eigen::MatrixXd A = random_matrix(rows, 8, random);
+    Eigen::MatrixXd B = A;
+    eliminate(B, 3);
+    EXPECT_TRUE(B.leftCols(3).isUpperTriangular(0));
+    EXPECT_LT((gram(B) - gram(A)).norm(), kRounding) << rows;
+  }
+}
+
+TEST(Eliminate, LeavesBelowTheTriangleTheSchurComplement) {
+  std::mt19937_64 random(44);
+  const Eigen::MatrixXd A = random_matrix(20, 8, random);
+  Eigen::MatrixXd B = A;
+  eliminate(B, 3);
+  const Eigen::MatrixXd N = gram(A);
+  const Eigen::MatrixXd schur = N.bottomRightCorner(5, 5) - N.bottomLeftCorner(5, 3) *
+                                                                N.topLeftCorner(3, 3).inverse() *
+                                                                N.topRightCorner(3, 5);
+  EXPECT_LT((gram(B.bottomRightCorner(17, 5)) - schur).norm(), kRounding);
+}
+
+TEST(InverseOfTriangle, TimesTheTriangleIsTheIdentity) {
+  std::mt19937_64 random(45);
+  Eigen::MatrixXd R = random_matrix(6, 6, random).triangularView<Eigen::Upper>();
+  R.diagonal().array() += 5.0;
+  EXPECT_TRUE((inverse_of_triangle(R) * R).isIdentity(kRounding));
+}
+
+TEST(LeastSquares, LeavesAResidualNormalToEveryColumn) {
+  std::mt19937_64 random(46);
+  const Eigen::MatrixXd A = random_matrix(20, 5, random);
+  const Eigen::VectorXd b = random_matrix(20, 1, random);
+  const Eigen::VectorXd x = least_squares(A, b);
+  EXPECT_LT((A.transpose() * (A * x - b)).norm(), kRounding);
+}
+
+TEST(LeastSquares, IsTheShortestWhereManySolve) {
+  std::mt19937_64 random(47);
+  Eigen::MatrixXd A = random_matrix(20, 4, random);
+  A.col(3) = 2 * A.col(0);
+  const Eigen::VectorXd x = least_squares(A, A.col(0));
+  // x0 + 2 x3 = 1 with the least x0^2 + x3^2.
+  EXPECT_LT((x - Eigen::Vector4d(0.2, 0, 0, 0.4)).norm(), kRounding);
+  const Eigen::MatrixXd wide = random_matrix(2, 5, random);
+  const Eigen::VectorXd b = random_matrix(2, 1, random);
+  const Eigen::VectorXd y = least_squares(wide, b);
+  EXPECT_LT((y - wide.transpose() * gram(wide.transpose()).inverse() * b).norm(), kRounding);
+}
+
+TEST(Beyond, IsNormalToWhatIsProjectedOutAndDiffersByItsCombinations) {
+  std::mt19937_64 random(48);
+  Eigen::MatrixXd onto = random_matrix(20, 4, random);
+  onto.col(3) = onto.col(1) - onto.col(2);  // a dependent column must do no harm
+  const Eigen::MatrixXd M = random_matrix(20, 3, random);
+  const Eigen::MatrixXd rest = beyond(onto, M);
+  EXPECT_LT((onto.transpose() * rest).norm(), kRounding);
+  EXPECT_LT((beyond(onto, M - rest)).norm(), kRounding);
+  EXPECT_EQ(beyond(Eigen::MatrixXd(20, 0), M), M);
+  EXPECT_EQ(beyond(Eigen::MatrixXd::Zero(20, 2), M), M);
+}
+
+TEST(SingularValues, DescendAndComeWithTheirDirections) {
+  std::mt19937_64 random(49);
+  Eigen::MatrixXd A = random_matrix(20, 4, random);
+  A.col(3).setZero();
+  const SingularValues found = singular_values(A);
+  ASSERT_EQ(found.values.size(), 4);
+  for (int i = 0; i < 4; ++i) {
+    if (i > 0) {
+      EXPECT_GE(found.values[i - 1], found.values[i]);
+    }
+    EXPECT_NEAR((A * found.directions.col(i)).norm(), found.values[i], kRounding);
+  }
+  EXPECT_TRUE(gram(found.directions).isIdentity(kRounding));
+  EXPECT_NEAR(std::abs(found.directions(3, 3)), 1, kRounding);
+  EXPECT_NEAR(found.values[3], 0, kRounding);
+}
+
+TEST(SymmetricEigen, AscendsAndRebuildsTheMatrix) {
+  std::mt19937_64 random(50);
+  const Eigen::MatrixXd A = gram(random_matrix(6, 4, random));
+  const Symmetric found = symmetric_eigen(A);
+  EXPECT_LT((found.vectors * found.values.asDiagonal() * found.vectors.transpose() - A).norm(),
+            kRounding);
+  for (int i = 1; i < 4; ++i) EXPECT_LE(found.values[i - 1], found.values[i]);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,77 @@
+// Gravity on a serial robot, by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "kinematics/robots/serial.h"
+#include "tests/kinematics/parsed_robot.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kRounding = 1e-12;  // N m of tens
+
+serial::Model model_of(const std::string& text) {
+  Problems problems;
+  const serial::Model model = serial::read(parsed(text), problems);
+  for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
+  return model;
+}
+
+/// Two horizontal, parallel axes: z of both joints is -y of the world, so that a positive reading
+/// lifts the link from x towards z.
+const char* const kArm =
+    "  - {name: base, joint: fixed, alpha: 1.5707963267948966}\n"
+    "  - {name: j1, joint: revolute, mass: 4, com: [0.25, 0, 0]}\n"
+    "  - {name: j2, joint: revolute, d: 0.5, mass: 2, com: [0.15, 0, 0]}\n"
+    "  - {name: tool, joint: fixed, d: 0.3, mass: 1}\n";
+
+TEST(GravityTorques, OfATwoJointArmAreTheOnesWorkedByHand) {
+  const serial::Model model = model_of(with_frames(kArm));
+  const double g = 9.81;
+  // Stretched along x: 4 kg at 0.25 m, 2 kg at 0.65 m, 1 kg at 0.8 m from j1; 0.15 m, 0.3 m from
+  // j2.
+  const Eigen::VectorXd level = serial::gravity_torques(model, Eigen::Vector2d(0, 0));
+  EXPECT_NEAR(level[0], -g * (4 * 0.25 + 2 * 0.65 + 1 * 0.8), kRounding);
+  EXPECT_NEAR(level[1], -g * (2 * 0.15 + 1 * 0.3), kRounding);
+  // Upright: nothing to hold.
+  const Eigen::VectorXd upright =
+      serial::gravity_torques(model, Eigen::Vector2d(std::numbers::pi / 2, 0));
+  EXPECT_LT(upright.norm(), kRounding);
+  // Upper arm up, forearm level: both joints carry the forearm alone.
+  const double quarter = std::numbers::pi / 2;
+  const Eigen::VectorXd bent = serial::gravity_torques(model, Eigen::Vector2d(quarter, -quarter));
+  EXPECT_NEAR(bent[0], -g * 0.6, kRounding);
+  EXPECT_NEAR(bent[1], -g * 0.6, kRounding);
+}
+
+TEST(GravityTorques, TurnTheirSignWithGravity) {
+  const serial::Model hung = model_of("gravity: [0, 0, 9.81]\n" + with_frames(kArm));
+  EXPECT_NEAR(serial::gravity_torques(hung, Eigen::Vector2d(0, 0))[1], 9.81 * 0.6, kRounding);
+}
+
+TEST(GravityTorques, AreForcesAlongPrismaticJoints) {
+  const serial::Model lift = model_of(with_frames(
+      "  - {name: j1, joint: prismatic, mass: 3}\n  - {name: tool, joint: fixed, mass: 2}\n"));
+  const Eigen::VectorXd force = serial::gravity_torques(lift, Eigen::VectorXd::Constant(1, 0.4));
+  EXPECT_NEAR(force[0], -9.81 * 5, kRounding);
+}
+
+TEST(SerialRemarks, SayWhereGravityPointsAndWhatHoldsTheArm) {
+  using testing::HasSubstr;
+  const auto robot = robot_of(with_frames(kArm));
+  ASSERT_NE(robot, nullptr);
+  const std::vector<std::string> lines = robot->remarks();
+  ASSERT_EQ(lines.size(), 4u);
+  // y of j1's frame is z of the world.
+  EXPECT_THAT(lines[0], testing::AllOf(HasSubstr("j1"), HasSubstr("-9.810")));
+  EXPECT_THAT(lines[2], HasSubstr("j1 -30.41 N m"));  // -9.81 x 3.1
+  EXPECT_THAT(lines[3], HasSubstr("j2 -5.89 N m"));   // -9.81 x 0.6
+  const auto light = robot_of(with_frames("  - {name: j1, joint: revolute}\n"));
+  ASSERT_NE(light, nullptr);
+  EXPECT_THAT(light->remarks(), testing::Contains(HasSubstr("no masses given")));
+}
+
+}  // namespace
+}  // namespace selfcal
