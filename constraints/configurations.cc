@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constraints/endpoint_sigma.h"
+#include "constraints/methods/unit_normal.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -112,7 +113,13 @@ class Sampler {
     last_of_group = -1;
     if (method.group_freedom() == 0) return;
     Eigen::MatrixXd& groups = sampled_.truth.groups[request.set];
-    const Eigen::VectorXd values = method.start_group({anywhere(method, request.patch)});
+    Eigen::VectorXd values = method.start_group({anywhere(method, request.patch)});
+    for (const GroupLink& link : method.links()) {  // a known distance from a group opened before
+      const auto self = static_cast<int>(groups.cols());
+      const int other = link.a == self ? link.b : link.b == self ? link.a : self;
+      if (other >= self) continue;
+      values.head<3>() = groups.col(other).head<3>() + link.distance * random_direction(random_);
+    }
     groups.conservativeResize(values.size(), groups.cols() + 1);
     groups.rightCols(1) = values;
   }

@@ -98,8 +98,7 @@ void Equations::make_plan(int set, Use use) {
     const bool check = is_check(data_, item);
     bool take = use == Use::fit ? !check : check;
     if (use == Use::align)
-      take = check &&
-             (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit && method.own_freedom() > 0);
+      take = check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
     if (take) plan.items.push_back(item);
   }
   if (plan.items.empty()) return;

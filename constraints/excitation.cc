@@ -71,7 +71,8 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
 
 Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
                            const std::vector<char>& candidate, int rows, unsigned long long seed,
-                           std::string* unreached, int* own_freedom) {
+                           std::string* unreached, int* own_freedom,
+                           const std::vector<char>& used) {
   DataSet data;
   std::vector<SampleRequest> requests;
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -79,7 +80,7 @@ Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
     data.sets.back().groups.clear();
     SampleRequest request;
     request.set = static_cast<int>(s);
-    request.rows = rows;
+    request.rows = used.empty() || used[s] ? rows : 0;
     requests.push_back(request);
   }
   Random random(seed);
@@ -100,10 +101,12 @@ Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
 
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
                             const std::vector<char>& candidate) {
-  std::vector<Set> sets;
-  for (size_t s = 0; s < data.sets.size(); ++s) sets.push_back(data.sets[s]);
+  std::vector<char> used(data.sets.size(), 0);
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
   constexpr int kRows = 80;
-  const Identifiability possible = structural(robot, sets, candidate, kRows, 1);
+  const Identifiability possible =
+      structural(robot, data.sets, candidate, kRows, 1, nullptr, nullptr, used);
   std::vector<Note> notes;
   for (size_t i = 0; i < robot.parameters().size(); ++i)
     if (possible.status[i] == Status::identified &&

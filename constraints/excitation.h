@@ -11,10 +11,12 @@
 namespace selfcal {
 
 /// The structural answer: status of every parameter on random configurations that satisfy the
-/// methods of `data.sets` (fresh random surfaces and groups), `rows` of each set.
+/// methods of `data.sets` (fresh random surfaces and groups), `rows` of each set that `used` marks
+/// (all when it is empty).
 Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
                            const std::vector<char>& candidate, int rows, unsigned long long seed,
-                           std::string* unreached = nullptr, int* own_freedom = nullptr);
+                           std::string* unreached = nullptr, int* own_freedom = nullptr,
+                           const std::vector<char>& used = {});
 
 /// Parameters identified structurally but not by `rank`, each with what is missing.
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,

@@ -16,6 +16,7 @@ namespace {
 constexpr double kOwnSigma = 100;
 constexpr double kOwnScale = 50e-3;  ///< m or rad, of own freedoms where a step must be short
 constexpr int kRegroupings = 20;
+constexpr int kAttempts = 14;  ///< dampings tried before an iteration gives up
 
 class Iteration {
  public:
@@ -39,6 +40,12 @@ class Iteration {
       fit_.stop_reason =
           "no convergence within " + std::to_string(rule_.most_iterations) + " iterations";
     spread_covariance();
+    fit_.objective = cost_;
+    for (const RowResidual& r : fit_.at.residuals)
+      if (!fit_.noise.put_aside[r.row])
+        fit_.objective += 2 * r.lengths * std::log(fit_.noise.used[r.set].length) +
+                          2 * r.angles * std::log(fit_.noise.used[r.set].angle);
+    agreed_ = true;  // what is told is each set's own noise
     fit_.noise.estimated =
         estimate_noise(equations_, fit_.at.residuals, noise_rule(freedom())).estimated;
     return std::move(fit_);
@@ -50,6 +57,7 @@ class Iteration {
     rule.global_freedom = freedom;
     rule.most_rejected = rule_.most_rejected;
     rule.reject = settled_;
+    rule.pool = !agreed_;
     return rule;
   }
 
@@ -136,11 +144,12 @@ class Iteration {
     triangle_ = triangle(fit_.at.R, true);
     ++fit_.iterations;
     const double free = std::sqrt(static_cast<double>(columns_.size()));
-    for (int attempt = 0; attempt < 12; ++attempt) {
-      Eigen::VectorXd s = step(triangle_, lambda_);
-      if (lambda_ > 0) s = bent(s, lambda_);
-      if (!s.allFinite()) return stop(false, "the system of equations is singular");
-      const double size = whitened(s);
+    // How far the minimum is: the step without damping, which a short damped one does not tell.
+    const Eigen::VectorXd whole = step(triangle_, 0);
+    if (!whole.allFinite()) return stop(false, "the system of equations is singular");
+    const double distance = whitened(whole);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const Eigen::VectorXd s = lambda_ > 0 ? bent(step(triangle_, lambda_), lambda_) : whole;
       const State trial = equations_.stepped(fit_.state, fit_.at, s);
       Linearised next = equations_.linearise(trial, weighting());
       const double cost = next.cost + prior_cost(trial);
@@ -149,33 +158,34 @@ class Iteration {
         fit_.at = std::move(next);
         cost_ = cost;
         lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
-        // Steps below a tenth of a sigma a parameter: the geometry has settled for these weights.
-        if (size < 0.1 * free) settle(size < rule_.step_tolerance * free || s.norm() < 1e-13);
+        // A tenth of a sigma a parameter left: the geometry has settled for these weights.
+        if (distance < 0.1 * free)
+          settle(distance < rule_.step_tolerance * free || whole.norm() < 1e-13);
         return;
       }
-      if (size < 1e-3 * free) return settle(true);
+      if (distance < 1e-3 * free) return settle(true);  // rounding is all that is left
       lambda_ = lambda_ == 0 ? 1e-2 : lambda_ * 10;
     }
     stop(false, "no step lowers the residual");
   }
 
-  /// Re-estimates noise and rows put aside while the residuals disagree with the noise they are
-  /// weighed by, and once more when they agree; then the noise is kept. Iterated further, the set
+  /// Re-estimates noise and rows put aside: one noise for all sets of a kind until the residuals
+  /// agree with it, then each set's own, once; then the noise is kept. Iterated further, the set
   /// that happens to fit best would take the weight of all others. Ends when the step is small and
   /// nothing changes.
   void settle(bool small_step) {
+    const double agreement = fit_.at.cost / std::max(fit_.at.equations - freedom(), 1.0);
+    const bool agrees = settled_ && agreement > 0.8 && agreement < 1.25;
     const bool was_settled = settled_;
+    const bool keep = agreed_;
     settled_ = true;
-    spread_covariance();
+    agreed_ = agreed_ || agrees;
     const Noise noise = estimate_noise(equations_, fit_.at.residuals, noise_rule(freedom()));
     const bool same_rows = noise.put_aside == fit_.noise.put_aside;
-    if (was_settled && small_step && same_rows && (noise_kept_ || change(noise) < 1e-3))
+    if (was_settled && small_step && same_rows && (keep || change(noise) < 1e-3))
       return stop(true, "step below 1e-5 sigma");
-    if (noise_kept_ && (same_rows || ++regroupings_ > kRegroupings)) return;
-    const double agreement = fit_.at.cost / (fit_.at.equations - freedom());
-    const bool agrees = was_settled && agreement > 0.8 && agreement < 1.25;
-    if (!noise_kept_) fit_.noise.used = noise.used;
-    noise_kept_ = noise_kept_ || agrees;
+    if (keep && (same_rows || ++regroupings_ > kRegroupings)) return;
+    if (!keep) fit_.noise.used = noise.used;
     fit_.noise.put_aside = noise.put_aside;
     fit_.noise.at_bound = noise.at_bound;
     relinearise();
@@ -199,7 +209,8 @@ class Iteration {
 
   /// Freedoms that the rows determine: own ones, and of each parameter the share that is not the
   /// prior's.
-  double freedom() const {
+  double freedom() {
+    spread_covariance();
     double sum = equations_.own_columns();
     for (const int c : columns_)
       if (c < equations_.robot_columns())
@@ -225,7 +236,7 @@ class Iteration {
   Fit fit_;
   Eigen::MatrixXd triangle_;
   double cost_ = 0, lambda_ = 0;
-  bool settled_ = false, noise_kept_ = false, done_ = false;
+  bool settled_ = false, agreed_ = false, done_ = false;
   int regroupings_ = 0;  ///< changes of the rows put aside since the noise is kept
 };
 

@@ -29,6 +29,7 @@ struct Fit {
   Noise noise;
   Linearised at;               ///< at `state`
   Eigen::MatrixXd covariance;  ///< of columns(): posterior; zero rows for what is not free
+  double objective = 0;  ///< -2 log posterior up to a constant: compares fits of the same rows
   int iterations = 0;
   bool converged = false;
   std::string stop_reason;

@@ -36,7 +36,7 @@ std::vector<Note> held_base(const Robot& robot, const Equations& equations) {
 }
 
 std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
-                             const std::vector<char>& free) {
+                             const Eigen::VectorXd& xi, const std::vector<char>& free) {
   if (!every_set(equations, [](const Method& m) { return m.leaves_scale_free(); })) return {};
   const Robot& robot = equations.robot();
   std::vector<int> others;
@@ -46,12 +46,11 @@ std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& 
   for (const int i : robot.preference()) {
     const Parameter& p = robot.parameters()[i];
     if (p.link_length && !free[i]) return {};  // a length that is known gives the scale
-    if (p.link_length) {
-      scale += p.nominal * R.col(i);
+    if (p.quantity == Quantity::length) scale += xi[i] * R.col(i);
+    if (p.link_length)
       last = i;
-    } else if (free[i]) {
+    else if (free[i])
       others.push_back(i);
-    }
   }
   if (last < 0) return {};
   const Parameter& p = robot.parameters()[last];

@@ -16,7 +16,7 @@ std::vector<Note> held_base(const Robot& robot, const Equations& equations);
 /// known worse than the maker's tolerance tells it. Judged on whitened R; `free` are the free
 /// parameters.
 std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
-                             const std::vector<char>& free);
+                             const Eigen::VectorXd& xi, const std::vector<char>& free);
 
 /// Orthonormal combinations (columns, 6 x k) of the world's motions that the rows do not see, own
 /// unknowns being unknown. R is whitened, with the six motion columns before its last.

@@ -42,6 +42,7 @@ struct SetResult {
   std::string name, method;
   int rows = 0;  ///< `fit` rows that give an equation, or `check` rows when there are no others
   int used = 0;  ///< of them, not put aside
+  bool identifies = false;       ///< has `fit` rows
   bool aligned = false;          ///< own unknowns fitted to `check` rows, robot held
   double noise_sigma = 0;        ///< m, one scalar residual
   double noise_angle_sigma = 0;  ///< rad; 0 when the method has no angles
@@ -122,9 +123,10 @@ struct Solution {
 struct Options {
   std::vector<std::string> fix;   ///< names or patterns held at the model's value
   std::vector<std::string> free;  ///< names or patterns freed (gear ratios)
-  bool priors = true;           ///< false: the rows alone (tests); needs every direction determined
-  double most_rejected = 0.05;  ///< share of a set's rows that may be put aside, 0 to 0.5
-  int most_iterations = 100;    ///< 1 to 1000
+  bool priors = true;  ///< false: the rows alone (tests); needs every direction determined
+  double most_rejected =
+      0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it, 0 to 0.5
+  int most_iterations = 200;    ///< 1 to 1000
   unsigned long long seed = 1;  ///< of the poses at which the endpoint is judged
 };
 

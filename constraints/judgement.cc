@@ -68,12 +68,15 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   align.start(judged.state);
   Prior held;
   held.free.assign(robot.parameters().size(), 0);
-  const Fit aligned = fit(align, judged.state, held, {});
+  FitRule rule;
+  rule.most_rejected = 0;  // all rows of a placement left out count
+  const Fit aligned = fit(align, judged.state, held, rule);
   judged.state = aligned.state;
   judged.align_noise = aligned.noise;
   for (size_t s = 0; s < data.sets.size(); ++s) {
     if (align.plan(static_cast<int>(s)).items.empty()) continue;
-    judged.aligned[s] = 1;
+    const Method& method = *data.sets[s].method;
+    judged.aligned[s] = method.own_freedom() + method.group_freedom() > 0;
     if (fit_equations.plan(static_cast<int>(s)).items.empty())
       judged.check_scale[s] = aligned.noise.used[s];
   }

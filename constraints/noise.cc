@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "constraints/statistics.h"
 
@@ -17,6 +18,9 @@ namespace {
 double freedom_factor(double equations, double fitted) {
   return std::sqrt(equations / std::max(equations - fitted, 0.1 * equations));
 }
+
+/// A set with fewer freedoms left has no noise of its own to speak of: its kind's is taken.
+constexpr double kFewFreedoms = 10;
 
 struct SetNoise {
   std::vector<const RowResidual*> rows;
@@ -58,10 +62,36 @@ bool put_far_rows_aside(const SetNoise& set, const Scale& scale, const NoiseRule
     if (t > chi_quantile(r->lengths + r->angles, rule.far_quantile)) far.emplace_back(-t, r->row);
   }
   std::sort(far.begin(), far.end());
-  const size_t most =
-      static_cast<size_t>(rule.most_rejected * static_cast<double>(set.rows.size()));
+  // The share and two sigma of its own scatter: a small set may well have three false rows at 2 %.
+  const double share = rule.most_rejected * static_cast<double>(set.rows.size());
+  const size_t most = static_cast<size_t>(share + 2 * std::sqrt(share));
   for (size_t i = 0; i < std::min(most, far.size()); ++i) put_aside[far[i].second] = 1;
   return far.size() > most;
+}
+
+/// Root mean squares of the scales over all sets of one method and stated noise, weighed by
+/// equations.
+void pool(const std::vector<Set>& sets, const std::vector<SetNoise>& by_set,
+          std::vector<Scale>& scales) {
+  using Kind = std::tuple<std::string_view, double, double>;
+  struct Sum {
+    double length = 0, angle = 0, weight = 0;
+  };
+  std::map<Kind, Sum> sums;
+  const auto kind = [&](size_t s) {
+    return Kind(sets[s].method->name(), sets[s].noise, sets[s].noise_angle);
+  };
+  for (size_t s = 0; s < sets.size(); ++s) {
+    Sum& sum = sums[kind(s)];
+    sum.length += by_set[s].equations * scales[s].length * scales[s].length;
+    sum.angle += by_set[s].equations * scales[s].angle * scales[s].angle;
+    sum.weight += by_set[s].equations;
+  }
+  for (size_t s = 0; s < sets.size(); ++s) {
+    const Sum& sum = sums[kind(s)];
+    if (by_set[s].equations > 0)
+      scales[s] = {std::sqrt(sum.length / sum.weight), std::sqrt(sum.angle / sum.weight)};
+  }
 }
 
 }  // namespace
@@ -81,21 +111,29 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>&
   noise.used.resize(sets.size());
   noise.at_bound.assign(sets.size(), 0);
   noise.put_aside.assign(equations.data().rows.rows(), 0);
+  const auto weighed = [&](size_t s) {
+    const Scale floored = at_least(noise.estimated[s], kLeastNoise, kLeastNoise);
+    return at_least(floored, sets[s].noise, sets[s].noise_angle);
+  };
   for (size_t s = 0; s < sets.size(); ++s) {
     SetNoise& set = by_set[s];
     if (set.rows.empty()) continue;
     set.fitted =
         rule.global_freedom * set.equations / total + equations.group_freedoms(static_cast<int>(s));
-    Scale scale{robust(set, false), robust(set, true)};
-    const Scale weighed =
-        at_least(at_least(scale, sets[s].noise, sets[s].noise_angle), kLeastNoise, kLeastNoise);
-    if (rule.reject) {
-      noise.at_bound[s] = put_far_rows_aside(set, weighed, rule, noise.put_aside);
-      scale = {root_mean_square(set, noise.put_aside, false),
-               root_mean_square(set, noise.put_aside, true)};
-    }
-    noise.estimated[s] = at_least(scale, kLeastNoise, kLeastNoise);
-    noise.used[s] = at_least(noise.estimated[s], sets[s].noise, sets[s].noise_angle);
+    noise.estimated[s] = {robust(set, false), robust(set, true)};
+    if (!rule.reject) continue;
+    noise.at_bound[s] = put_far_rows_aside(set, weighed(s), rule, noise.put_aside);
+    noise.estimated[s] = {root_mean_square(set, noise.put_aside, false),
+                          root_mean_square(set, noise.put_aside, true)};
+  }
+  std::vector<Scale> pooled = noise.estimated;
+  pool(sets, by_set, pooled);
+  for (size_t s = 0; s < sets.size(); ++s)
+    if (rule.pool || by_set[s].equations - by_set[s].fitted < kFewFreedoms)
+      noise.estimated[s] = pooled[s];
+  for (size_t s = 0; s < sets.size(); ++s) {
+    noise.estimated[s] = at_least(noise.estimated[s], kLeastNoise, kLeastNoise);
+    noise.used[s] = weighed(s);
   }
   return noise;
 }

@@ -10,8 +10,11 @@ namespace selfcal {
 /// What the estimate needs beside the residuals.
 struct NoiseRule {
   double global_freedom = 0;    ///< parameters that the rows determine, spread over all equations
-  double most_rejected = 0.05;  ///< share of a set's rows that may be put aside
+  double most_rejected = 0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it
   bool reject = false;          ///< false until the geometry has settled
+  /// One noise for all sets of one method and data sheet: until the geometry has settled, a set
+  /// that happens to fit well must not take the weight of the others.
+  bool pool = false;
   /// A row beyond this chi quantile of its set's robust noise is put aside: one good row in a
   /// million.
   double far_quantile = 1 - 1e-6;
@@ -27,6 +30,7 @@ struct Noise {
 /// Residuals below this are rounding, not noise (m, rad): noise-free data are weighed by it.
 inline constexpr double kLeastNoise = 1e-9;
 
+/// Noise of every set with rows, and its rows that lie beyond it.
 Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>& residuals,
                      const NoiseRule& rule);
 

@@ -115,7 +115,7 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
     SetResult each;
     each.name = set.name;
     each.method = set.method->name();
-    const bool identifies = !equations.plan(s).items.empty();
+    const bool identifies = each.identifies = !equations.plan(s).items.empty();
     each.aligned = after.aligned[s];
     const Scale& noise = identifies ? fit.noise.estimated[s] : after.align_noise.estimated[s];
     for (const SetPlan::Item& item : equations.plan(s).items) {
@@ -124,7 +124,6 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
     }
     if (!identifies)
       for (const RowResidual& r : after.check) each.rows += r.set == s;
-    if (!identifies) each.used = each.rows;
     if (identifies || each.aligned) {
       each.noise_sigma = noise.length;
       const auto quantities = set.method->equations();
@@ -149,11 +148,15 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
 void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
   for (size_t s = 0; s < data.sets.size(); ++s) {
     const SetResult& set = solution.sets[s];
-    if (set.rows == 0 || set.aligned) continue;
+    if (!set.identifies) continue;
     if (fit.noise.at_bound[s])
       solution.warnings.push_back("set " + set.name +
                                   ": more rows lie beyond the noise than may be " +
                                   "put aside; they are structure rather than false rows");
+    if (set.noise_sigma > data.target)
+      solution.warnings.push_back("set " + set.name +
+                                  ": what is left of its rows is larger than the " +
+                                  "end-position accuracy wanted");
     if (data.sets[s].noise > 0 && set.noise_sigma > 3 * data.sets[s].noise)
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, data.sets[s].noise) +

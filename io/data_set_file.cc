@@ -57,7 +57,7 @@ Result<void> check_references(const DataSet& data, const std::string& file) {
   for (int row = 0; row < data.rows.rows(); ++row)
     if (!data.rows.check[row]) fitted[data.rows.set[row]] = 1;
   for (const Set& set : data.sets)
-    if (set.reference >= 0 && !fitted[set.reference])
+    if (set.reference >= 0 && fitted[&set - data.sets.data()] && !fitted[set.reference])
       return bad_input(file + ": set " + set.name + " is parallel to " +
                        data.sets[set.reference].name + ", which has no `fit` rows");
   return {};

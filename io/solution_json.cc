@@ -100,10 +100,11 @@ Json of_residuals(const Residuals& residuals) {
 }
 
 Json of_endpoint(const EndpointSigma& endpoint) {
+  const auto known = [&](double value) { return endpoint.poses > 0 ? finite(value) : Json(); };
   return Json::object({{"aligned", endpoint.aligned},
-                       {"rms", finite(endpoint.rms)},
-                       {"median", finite(endpoint.median)},
-                       {"max", finite(endpoint.max)},
+                       {"rms", known(endpoint.rms)},
+                       {"median", known(endpoint.median)},
+                       {"max", known(endpoint.max)},
                        {"poses", endpoint.poses}});
 }
 

@@ -21,6 +21,7 @@ Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) 
 }
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  if (A.cols() == 0) return {};
   return A.completeOrthogonalDecomposition().solve(b);
 }
 

@@ -30,8 +30,7 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
   const Eigen::Matrix3d S = skew(phi);
   // The coefficient of S^2 by its series below 0.01 rad, where the closed form loses digits:
   // 1/12 + t^2/720 leaves t^4/30240 < 1e-12.
-  const double c =
-      t < 1e-2 ? 1.0 / 12 + t * t / 720 : 1 / (t * t) - 1 / (2 * t * std::tan(t / 2));
+  const double c = t < 1e-2 ? 1.0 / 12 + t * t / 720 : 1 / (t * t) - 1 / (2 * t * std::tan(t / 2));
   return Eigen::Matrix3d::Identity() - 0.5 * S + c * S * S;
 }
 

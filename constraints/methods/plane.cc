@@ -197,7 +197,7 @@ MethodPtr make_plane(SetEntry& entry) {
     Fields fields(*parallel, entry.fields.what() + " parallel_to", entry.problems);
     const std::string other = fields.text("set");
     const double distance = fields.number("distance"), noise = fields.number("noise");
-    if (!(distance > 0)) fields.fail("distance", "a positive distance (m)");
+    if (distance < 0) fields.fail("distance", "a distance of at least 0 m");
     if (!(noise > 0)) fields.fail("noise", "a positive 1 sigma (m)");
     fields.refuse_unknown();
     return std::make_unique<ParallelPlane>(radius, other, distance, noise);

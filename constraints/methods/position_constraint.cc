@@ -4,18 +4,12 @@
 //   r = R^T (P(q) - c),   dr = R^T (dP + [P - c]x delta - dc)
 // in the tool's axes: noise has no direction, and a turn of the world then leaves r exactly alone.
 // Two groups' points may be a known distance apart: |c_a - c_b| - D with its own noise.
-#include <algorithm>
-
 #include "constraints/methods/maker.h"
+#include "constraints/statistics.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
-
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 class PositionConstraint final : public Method {
  public:

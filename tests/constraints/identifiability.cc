@@ -82,13 +82,5 @@ TEST(RankColumns, OfRealRowsAsksWhatTheNoiseAllows) {
   EXPECT_THAT(ranks[2].carriers, ElementsAre(carrier(0, 1)));
 }
 
-TEST(LengthBeyond, IsWhatTheColumnsLeaveOfAVector) {
-  const Eigen::MatrixXd R = hand_made();
-  EXPECT_NEAR(length_beyond(R, {0, 1}, R.col(2), structural_rule()), 0, kRounding);
-  EXPECT_NEAR(length_beyond(R, {0, 1, 2}, Eigen::Vector4d(3, 4, 0, 2), structural_rule()), 2,
-              kRounding);
-  EXPECT_NEAR(length_beyond(R, {}, R.col(0), structural_rule()), R.col(0).norm(), kRounding);
-}
-
 }  // namespace
 }  // namespace selfcal

@@ -1,0 +1,32 @@
+// One subcommand of the program: each has app/NAME.cc and a line in main.cc.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "io/result.h"
+
+namespace selfcal {
+
+/// Exit statuses, the same for every command.
+enum ExitStatus : int {
+  kDone = 0,        ///< done; for identify: improved
+  kAnswerIsNo = 1,  ///< not improved, not determined, not converged, refused
+  kWrongUsage = 2,
+  kInputIsBad = kBadInput,
+  kDeviceIsBad = kDeviceFailed,
+  kBug = 5,
+};
+
+/// Adds a subcommand whose callback puts its exit status into `status`.
+void add_identify(CLI::App& app, int& status);
+void add_identifiable(CLI::App& app, int& status);
+void add_simulate(CLI::App& app, int& status);
+void add_robot(CLI::App& app, int& status);
+
+/// Says `failure` on standard error and returns its exit status.
+int tell(const Failure& failure);
+/// Says what is wrong with the arguments and returns kWrongUsage.
+int wrong_usage(const std::string& what);
+
+}  // namespace selfcal

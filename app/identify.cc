@@ -1,0 +1,82 @@
+// selfcal identify DATASET: identifies, tells, and writes result.json and calibrated.robot.yaml.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "app/progress_line.h"
+#include "app/summary.h"
+#include "io/data_set_file.h"
+#include "io/file.h"
+#include "io/robot_file.h"
+#include "io/solution_json.h"
+
+namespace selfcal {
+namespace {
+
+struct Arguments {
+  std::string data_set, out;
+  Options options;
+  bool json = false;
+};
+
+/// The first name that no parameter has, or empty.
+std::string unknown_name(const Robot& robot, const Options& options) {
+  for (const auto* names : {&options.fix, &options.free})
+    for (const std::string& name : *names)
+      if (match_parameters(robot, name).empty()) return name;
+  return {};
+}
+
+Result<void> write(const Arguments& arguments, const Robot& robot, const Solution& solution,
+                   const std::string& json) {
+  const std::filesystem::path out(arguments.out);
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) return device_failed(arguments.out + ": cannot create the folder: " + error.message());
+  if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
+  return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
+}
+
+int identify_command(const Arguments& arguments) {
+  const auto loaded = load_data_set(arguments.data_set);
+  if (!loaded) return tell(loaded.error());
+  for (const std::string& notice : loaded->notices)
+    std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
+  const Robot& robot = *loaded->robot;
+  if (const std::string name = unknown_name(robot, arguments.options); !name.empty())
+    return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
+                       "'; names are like theta2, K3 or j2.theta, * stands for any text");
+  Solution solution;
+  {
+    ProgressLine line;
+    solution = identify(robot, loaded->data, arguments.options,
+                        [&](std::string_view stage, double share) { line.show(stage, share); });
+  }
+  const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
+  if (!arguments.out.empty())
+    if (const auto written = write(arguments, robot, solution, json); !written)
+      return tell(written.error());
+  if (arguments.json)
+    std::printf("%s\n", json.c_str());
+  else
+    std::fputs(summary(loaded->data, solution).c_str(), stdout);
+  return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("identify", "Identify a robot's parameters from a data set");
+  command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
+  command->add_option("--fix", arguments->options.fix,
+                      "Parameters held at the model's value (theta2, j2.theta, d*)");
+  command->add_option("--free", arguments->options.free, "Parameters freed (K3, K*)");
+  command->add_option("--out", arguments->out, "Folder for result.json and calibrated.robot.yaml");
+  command->add_flag("--json", arguments->json, "Print result.json alone on standard output");
+  command->callback([arguments, &status] { status = identify_command(*arguments); });
+}
+
+}  // namespace selfcal

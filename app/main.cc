@@ -1,0 +1,52 @@
+// The program selfcal: one binary, a subcommand for each job.
+#include <cstdio>
+#include <exception>
+
+#include "app/command.h"
+
+namespace selfcal {
+
+int tell(const Failure& failure) {
+  std::fprintf(stderr, "selfcal: %s\n", failure.what.c_str());
+  return failure.exit_status;
+}
+
+int wrong_usage(const std::string& what) {
+  std::fprintf(stderr, "selfcal: %s\n", what.c_str());
+  return kWrongUsage;
+}
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Self-calibration of robots from their own joint readings", "selfcal"};
+  app.set_version_flag("--version", std::string("selfcal ") + SELFCAL_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Files are in SI units; what a person reads is in mm, mrad and um.\n"
+      "Exit status: 0 done (identify: improved), 1 the answer is no, 2 wrong usage,\n"
+      "3 bad input, 4 device or disk, 5 a bug.");
+  int status = kDone;
+  add_identify(app, status);
+  add_simulate(app, status);
+  add_identifiable(app, status);
+  add_robot(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongUsage;
+  }
+  return status;
+}
+
+}  // namespace
+}  // namespace selfcal
+
+int main(int argc, char** argv) {
+  try {
+    return selfcal::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "selfcal: a bug: %s\n", error.what());
+    return selfcal::kBug;
+  }
+}

@@ -1,0 +1,89 @@
+// selfcal simulate SCENARIO.yaml: a data set from a pretend machine; its truth apart, if asked.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "io/data_set_writer.h"
+#include "io/file.h"
+#include "io/robot_file.h"
+#include "io/yaml.h"
+#include "sim/data_set_maker.h"
+#include "sim/truth_json.h"
+
+namespace selfcal {
+namespace {
+
+struct Arguments {
+  std::string scenario, out, truth;
+};
+
+constexpr std::size_t kMostRobotBytes = 4 << 20;
+
+Result<Scenario> load_scenario(const std::string& path) {
+  const Result<Node> node = read_yaml(path);
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  Scenario scenario = read_scenario(*node, problems);
+  if (problems.any()) return bad_input(problems);
+  return scenario;
+}
+
+Result<void> write(const Arguments& arguments, const Scenario& scenario,
+                   const std::filesystem::path& robot_path, const Robot& robot,
+                   const Simulated& made) {
+  const Result<std::string> text = read_file(robot_path, kMostRobotBytes);
+  if (!text) return tl::unexpected(text.error());
+  const std::string robot_file = robot_path.filename().string();
+  if (auto done = write_data_set(arguments.out, {data_set_description(scenario, robot_file),
+                                                 robot_file, *text, &made.data});
+      !done)
+    return done;
+  if (arguments.truth.empty()) return {};
+  return write_file_atomically(arguments.truth, truth_json(scenario, robot, made).dump(1) + "\n");
+}
+
+int simulate_command(const Arguments& arguments) {
+  const Result<Scenario> scenario = load_scenario(arguments.scenario);
+  if (!scenario) return tell(scenario.error());
+  const std::filesystem::path robot_path =
+      std::filesystem::path(arguments.scenario).parent_path() / scenario->robot;
+  const auto robot = load_robot(robot_path);
+  if (!robot) return tell(robot.error());
+  // Before the work, not after it.
+  if (const auto free = check_replaceable(arguments.out); !free) return tell(free.error());
+  Problems problems;
+  const Simulated made = make_data_set(*scenario, **robot, problems);
+  if (problems.any()) return tell(bad_input(problems).value());
+  if (!made.unreached.empty()) {
+    std::fprintf(stderr, "selfcal: %s: %s\n", arguments.scenario.c_str(), made.unreached.c_str());
+    return kAnswerIsNo;
+  }
+  if (auto done = write(arguments, *scenario, robot_path, **robot, made); !done)
+    return tell(done.error());
+  int check = 0;
+  for (const char each : made.data.rows.check) check += each;
+  std::printf("%s: %d rows in %zu sets, %d of them to check\n", arguments.out.c_str(),
+              made.data.rows.rows(), made.data.sets.size(), check);
+  return kDone;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Make a data set with a pretend machine (see app/examples)");
+  command
+      ->add_option("SCENARIO", arguments->scenario,
+                   "SCENARIO.yaml: the robot, its errors, the sets")
+      ->required();
+  command
+      ->add_option("--out", arguments->out,
+                   "Folder of the data set; new, empty or a simulated data set to be replaced")
+      ->required();
+  command->add_option("--truth", arguments->truth, "File for the truth (JSON); not kept otherwise");
+  command->callback([arguments, &status] { status = simulate_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,169 @@
+// An identification in words.
+#include "app/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+constexpr size_t kMostListed = 12;
+
+[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
+  char text[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// "touches" when every row that identifies is one, else "rows".
+const char* noun(const DataSet& data, const Solution& solution) {
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    const std::string_view method = data.sets[s].method->name();
+    if (solution.sets.size() > s && solution.sets[s].identifies && method != "plane" &&
+        method != "plane-normal" && method != "sphere")
+      return "rows";
+  }
+  return "touches";
+}
+
+std::string carried(const ParameterResult& p) {
+  std::string text = p.parameter.name + " grouped with ";
+  for (size_t i = 0; i < p.grouped_with.size() && i < 2; ++i)
+    text += (i ? ", " : "") + p.grouped_with[i].name;
+  return text + (p.grouped_with.size() > 2 ? "…" : "");
+}
+
+std::string first_line(const DataSet& data, const Solution& solution) {
+  const auto count = std::count_if(solution.parameters.begin(), solution.parameters.end(),
+                                   [](const auto& p) { return p.status == Status::identified; });
+  int rows = 0;
+  for (const SetResult& set : solution.sets)
+    if (set.identifies) rows += set.rows;
+  std::string text =
+      print("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
+  const Figures& check = solution.residual.check;
+  const Figures& fit = solution.residual.fit;
+  if (check.rows > 0)
+    text += print("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
+                  1e3 * check.rms_after, check.rows);
+  else
+    text += print("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
+                  1e3 * fit.rms_before, 1e3 * fit.rms_after);
+  size_t told = 0;
+  for (const Note& note : solution.gauge)
+    if (told < 2) text += (told++ ? ", " : "; ") + note.parameter + " held";
+  for (const ParameterResult& p : solution.parameters)
+    if (p.status == Status::grouped && !p.grouped_with.empty() && told < 4)
+      text += (told++ ? ", " : "; ") + carried(p);
+  return text + "\n";
+}
+
+/// Value in the unit that a person reads.
+struct Shown {
+  double factor;
+  const char* unit;
+};
+Shown shown(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::length:
+      return {1e3, "mm"};
+    case Quantity::angle:
+      return {1e3, "mrad"};
+    case Quantity::ratio:
+      return {1e6, "ppm"};
+  }
+  return {1, ""};
+}
+
+std::string parameter_table(const Solution& solution) {
+  std::string text = "\n  parameter             change      sigma   (mm, mrad, ppm)\n";
+  int grouped = 0, without_effect = 0;
+  for (const ParameterResult& p : solution.parameters) {
+    grouped += p.status == Status::grouped;
+    without_effect += p.status == Status::no_effect;
+    if (p.status != Status::identified) continue;
+    const Shown unit = shown(p.parameter.quantity);
+    const std::string name = p.parameter.name + " " + p.parameter.frame + "." + p.parameter.field;
+    text += print("  %-18s %9.4f  %9.4f %s\n", name.c_str(),
+                  unit.factor * (p.value - p.parameter.nominal), unit.factor * p.sigma, unit.unit);
+  }
+  if (grouped + without_effect > 0)
+    text += print(
+        "  and %d grouped with these, %d without effect on these rows (result.json says "
+        "which)\n",
+        grouped, without_effect);
+  return text;
+}
+
+template <class Items, class Line>
+void list(std::string& text, const char* title, const Items& items, Line line) {
+  if (items.empty()) return;
+  text += std::string("\n") + title + "\n";
+  for (size_t i = 0; i < items.size() && i < kMostListed; ++i) text += "  " + line(items[i]) + "\n";
+  if (items.size() > kMostListed)
+    text += print("  and %d more\n", static_cast<int>(items.size() - kMostListed));
+}
+
+std::string set_line(const SetResult& set) {
+  std::string text = set.name + " (" + set.method + "): ";
+  if (!set.identifies)
+    text += print("%d rows judge%s", set.rows,
+                  set.aligned ? ", own unknowns fitted to them (aligned)" : "");
+  else
+    text += print("%d of %d rows used", set.used, set.rows);
+  if (set.noise_sigma > 0) text += print(", noise %.3g um", 1e6 * set.noise_sigma);
+  if (set.noise_angle_sigma > 0) text += print(" and %.3g urad", 1e6 * set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) text += print(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
+  return text;
+}
+
+std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
+  std::vector<std::string> steps;
+  if (!solution.converged)
+    steps.push_back("Not converged: " + solution.stop_reason +
+                    ". Check that the nominal model, units and joint signs belong to these rows.");
+  if (solution.residual.check.rows == 0)
+    steps.push_back(
+        "Mark about a third of the rows `check` (column part): a result is judged on rows "
+        "it has not seen.");
+  else if (solution.endpoint.rms > data.target)
+    steps.push_back(
+        print("The end position is known to %.3g mm only. Add rows that move the joints "
+              "named above%s.",
+              1e3 * solution.endpoint.rms,
+              solution.gauge.empty() ? "" : ", and a known length for the scale"));
+  else if (solution.verdict.answer == Answer::not_improved)
+    steps.push_back("The maker's figures explain the check rows as well: keep them.");
+  else if (solution.converged)
+    steps.push_back(
+        "The result is a candidate: look at the changes, then use "
+        "calibrated.robot.yaml.");
+  return steps;
+}
+
+}  // namespace
+
+std::string summary(const DataSet& data, const Solution& solution) {
+  std::string text = solution.parameters.empty() ? "" : first_line(data, solution);
+  text += std::string(to_string(solution.verdict.answer)) + ": " + solution.verdict.why + "\n";
+  if (solution.parameters.empty()) return text;
+  text += parameter_table(solution);
+  list(text, "Sets", solution.sets, set_line);
+  list(text, "Held", solution.gauge,
+       [](const Note& note) { return note.parameter + ": " + note.text; });
+  list(text, "Not excited by these rows", solution.unexcited,
+       [](const Note& note) { return note.parameter + ": " + note.text; });
+  list(text, "Rows beyond the noise", solution.rejected, [](const Rejected& r) {
+    return print("row %d (%s): %.3g mm, ", r.row, r.set.c_str(), 1e3 * r.residual) + r.why;
+  });
+  list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
+  list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });
+  return text;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,36 @@
+// The fits of an identification in their order: the placed nominal robot, the free one, again from
+// other starts when in doubt, with a length held when the scale is free, with wider priors when
+// these fail.
+#pragma once
+
+#include <vector>
+
+#include "constraints/fit.h"
+#include "constraints/identification.h"
+
+namespace selfcal {
+
+/// Squares of the moves of the robot's own parameters over the maker's tolerances, and how many of
+/// these directions the rows determine.
+struct Chi2 {
+  double value = 0, freedom = 0;
+};
+
+struct Adjusted {
+  Fit before;  ///< base, tool and own unknowns alone, the robot as its maker says
+  Fit fitted;
+  Prior prior;                  ///< as used in `fitted`
+  std::vector<char> candidate;  ///< by parameter: not fixed by the user or by default
+  std::vector<Note> gauge;      ///< parameters held, and why
+  int scale = -1;               ///< the one of them that is held for the scale
+  Chi2 chi2;                    ///< with the maker's tolerances
+  bool priors_fail = false;     ///< chi2 is beyond 99 %
+  double widening = 1;          ///< common factor on the tolerances of the links and gears
+};
+
+/// True for parameters of base and tool frames, whose priors say where things were put up.
+bool is_placed(const Parameter& p);
+
+Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress);
+
+}  // namespace selfcal

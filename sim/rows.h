@@ -1,0 +1,13 @@
+// Stages of making rows: exact configurations, their repeats, and which of them are to judge.
+#pragma once
+
+#include "sim/data_set_maker.h"
+
+namespace selfcal {
+
+/// Fills made.data.rows and made.truth.groups with exact readings at configurations that satisfy
+/// the methods; `made` has its sets, xi and own values. Of repeated configurations each row is
+/// there.
+void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made);
+
+}  // namespace selfcal

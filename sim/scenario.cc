@@ -1,0 +1,113 @@
+// The scenario as a whole; the entries of its sets are read in scenario_set.cc.
+#include "sim/scenario.h"
+
+#include "sim/scenario_fields.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kLargestError = 1;  // m or rad
+
+Errors read_errors(const Node& node, Problems& problems) {
+  Fields fields(node, "errors", problems);
+  const auto sigma = [&](const char* key) {
+    return number_within(fields, key, 0, 0, kLargestError);
+  };
+  Errors errors;
+  errors.length = sigma("length");
+  errors.angle = sigma("angle");
+  errors.base_length = sigma("base_length");
+  errors.base_angle = sigma("base_angle");
+  errors.tool_length = sigma("tool_length");
+  errors.tool_angle = sigma("tool_angle");
+  errors.gear = sigma("gear");
+  errors.parameters = named_numbers(fields, "parameters", problems);
+  fields.refuse_unknown();
+  return errors;
+}
+
+Repeats read_repeats(const Node& node, Problems& problems) {
+  Fields fields(node, "repeats", problems);
+  Repeats repeats;
+  repeats.share = number_within(fields, "share", 0, 0, 1);
+  repeats.times = fields.integer("times", repeats.times, 2, 100);
+  fields.refuse_unknown();
+  return repeats;
+}
+
+FalseTriggers read_false_triggers(const Node& node, Problems& problems) {
+  Fields fields(node, "false_triggers", problems);
+  FalseTriggers triggers;
+  triggers.share = number_within(fields, "share", 0, 0, 0.5);
+  if (const auto size = fields.numbers("size", 2)) {
+    triggers.least = (*size)[0];
+    triggers.most = (*size)[1];
+    if (!(triggers.least > 0 && triggers.least <= triggers.most && triggers.most <= 0.1))
+      fields.fail("size", "[LEAST, MOST] in metres, above 0 and at most 0.1");
+  }
+  fields.refuse_unknown();
+  return triggers;
+}
+
+void read_sets(Fields& fields, Scenario& scenario, Problems& problems) {
+  const Node* sets = fields.node("sets");
+  if (!sets || sets->kind != Node::Kind::map || sets->items.empty())
+    return fields.fail("sets", "one set or more, each as `name: {method: ...}`");
+  for (std::size_t i = 0; i < sets->keys.size(); ++i)
+    scenario.sets.push_back(read_set_scenario(sets->keys[i], sets->items[i], problems));
+}
+
+}  // namespace
+
+double number_within(Fields& fields, std::string_view key, double fallback, double least,
+                     double most) {
+  const double value = fields.number(key, fallback);
+  if (value < least || value > most)
+    fields.fail(key, "a number from " + format_number(least) + " to " + format_number(most));
+  return value;
+}
+
+std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems) {
+  std::vector<NamedNumber> list;
+  const Node* node = fields.node(key);
+  if (!node) return list;
+  Fields inner(*node, fields.what() + " " + std::string(key), problems);
+  for (std::size_t i = 0; i < node->keys.size(); ++i)
+    list.push_back({node->keys[i], inner.number(node->keys[i]), node->items[i].place});
+  return list;
+}
+
+Scenario read_scenario(const Node& node, Problems& problems) {
+  Fields fields(node, "scenario", problems);
+  Scenario scenario;
+  scenario.robot = fields.text("robot");
+  if (fields.has("robot") && scenario.robot.empty()) fields.fail("robot", "a file's name");
+  scenario.seed = fields.integer("seed", scenario.seed, 0, 2147483647);
+  scenario.target = fields.optional_number("target");
+  if (scenario.target && !(*scenario.target > 0 && *scenario.target < 1))
+    fields.fail("target", "metres above 0 and below 1");
+  if (const Node* errors = fields.node("errors")) scenario.errors = read_errors(*errors, problems);
+  scenario.encoder_step = number_within(fields, "encoder_step", 0, 0, 0.1);
+  scenario.check = number_within(fields, "check", scenario.check, 0, 0.9);
+  if (const Node* repeats = fields.node("repeats"))
+    scenario.repeats = read_repeats(*repeats, problems);
+  if (const Node* triggers = fields.node("false_triggers"))
+    scenario.false_triggers = read_false_triggers(*triggers, problems);
+  scenario.compliance = named_numbers(fields, "compliance", problems);
+  read_sets(fields, scenario, problems);
+  fields.refuse_unknown();
+  return scenario;
+}
+
+Node data_set_description(const Scenario& scenario, const std::string& robot_file) {
+  Node node = Node::map();
+  node.set("robot", Node::of(robot_file));
+  node.set("observations", Node::of(std::string("observations.csv")));
+  if (scenario.target) node.set("target", Node::of(*scenario.target));
+  Node sets = Node::map();
+  for (const SetScenario& set : scenario.sets) sets.set(set.name, set.entry);
+  node.set("sets", std::move(sets));
+  return node;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,21 @@
+// Getters that several parts of a scenario share.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "sim/scenario.h"
+
+namespace selfcal {
+
+/// A number from `least` to `most`.
+double number_within(Fields& fields, std::string_view key, double fallback, double least,
+                     double most);
+
+/// The entries of a mapping of numbers; empty when missing.
+std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems);
+
+/// Reads one entry of `sets`.
+SetScenario read_set_scenario(const std::string& name, const Node& node, Problems& problems);
+
+}  // namespace selfcal

@@ -1,0 +1,34 @@
+// Where the pretend surfaces, balls and instruments really are.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+#include <vector>
+
+#include "constraints/data_set.h"
+#include "kinematics/robot.h"
+#include "sim/scenario.h"
+
+namespace selfcal {
+
+/// The scenario's sets with their methods, references resolved. Options that a method or the
+/// simulation refuses are problems.
+std::vector<Set> make_sets(const Scenario& scenario, Problems& problems);
+
+/// True own values of every set, as its options, its scenario and chance have them. `xi` is the
+/// true robot, which random surfaces are put within the reach of.
+std::vector<Eigen::VectorXd> true_own_values(const Scenario& scenario, const std::vector<Set>& sets,
+                                             const Robot& robot, const Eigen::VectorXd& xi,
+                                             Problems& problems);
+
+/// Unit normal of the residual of a touched plane: the residual is n . P and a constant. Nothing
+/// for other methods.
+std::optional<Eigen::Vector3d> residual_normal(const std::vector<Set>& sets, std::size_t set,
+                                               const std::vector<Eigen::VectorXd>& own);
+
+/// The same turned to the side from which the plane is touched.
+std::optional<Eigen::Vector3d> outward_normal(const Scenario& scenario,
+                                              const std::vector<Set>& sets, std::size_t set,
+                                              const std::vector<Eigen::VectorXd>& own);
+
+}  // namespace selfcal

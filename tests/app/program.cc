@@ -1,0 +1,140 @@
+// The program as its user runs it: exit statuses, files written, words and manual in step.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "constraints/data_set.h"
+
+namespace selfcal {
+namespace {
+
+struct Ran {
+  int status = -1;
+  std::string out;
+};
+
+/// Runs the program; standard error is joined to its output unless `quiet`.
+Ran selfcal_run(const std::string& arguments, bool quiet = false) {
+  Ran ran;
+  FILE* pipe = popen(
+      (std::string(SELFCAL_BINARY) + " " + arguments + (quiet ? " 2>/dev/null" : " 2>&1")).c_str(),
+      "r");
+  std::array<char, 4096> buffer;
+  while (const size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    ran.out.append(buffer.data(), n);
+  ran.status = WEXITSTATUS(pclose(pipe));
+  return ran;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::stringstream stream;
+  stream << file.rdbuf();
+  return stream.str();
+}
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  std::string simulated() {
+    const Ran ran = selfcal_run("simulate " SELFCAL_SOURCE_DIR
+                                "/app/examples/rx90_planes.scenario.yaml --out " +
+                                (folder_ / "data").string());
+    EXPECT_EQ(ran.status, 0) << ran.out;
+    return (folder_ / "data").string();
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(Program, CalibratesTheSimulatedExampleAndWritesTheCandidate) {
+  const std::string data = simulated();
+  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "result").string());
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("improved: check residual"), std::string::npos) << ran.out;
+  const auto json = nlohmann::json::parse(text_of(folder_ / "result/result.json"));
+  EXPECT_EQ(json["verdict"]["answer"], "improved");
+  const Ran again =
+      selfcal_run("robot check " + (folder_ / "result/calibrated.robot.yaml").string());
+  EXPECT_EQ(again.status, 0) << again.out;
+  // One machine keeps one hash whatever its calibration.
+  EXPECT_NE(again.out.find(json["model_hash"].get<std::string>()), std::string::npos) << again.out;
+}
+
+TEST_F(Program, PrintsJsonAloneOnStandardOutput) {
+  const Ran ran = selfcal_run("identify " + simulated() + " --json", true);
+  EXPECT_EQ(nlohmann::json::parse(ran.out)["robot"], "staubli-rx90");
+}
+
+TEST_F(Program, WritesNothingOnBadInputAndNamesTheLine) {
+  const std::string data = simulated();
+  std::ofstream(data + "/dataset.yaml", std::ios::app) << "tarket: 1\n";
+  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "result").string());
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_NE(ran.out.find("dataset.yaml:"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("tarket"), std::string::npos) << ran.out;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "result"));
+}
+
+TEST_F(Program, RefusesUnknownNamesAndMethodsAsWrongUsage) {
+  const std::string data = simulated();
+  const Ran name = selfcal_run("identify " + data + " --fix thetta2");
+  EXPECT_EQ(name.status, 2);
+  EXPECT_NE(name.out.find("thetta2"), std::string::npos);
+  EXPECT_EQ(
+      selfcal_run("identifiable " SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml --method plain")
+          .status,
+      2);
+  EXPECT_EQ(selfcal_run("identify").status, 2);
+  EXPECT_EQ(selfcal_run("calibrate").status, 2);
+}
+
+TEST_F(Program, HoldsWhatTheUserFixes) {
+  const Ran ran = selfcal_run("identify " + simulated() + " --fix 'd*' --json", true);
+  for (const auto& p : nlohmann::json::parse(ran.out)["parameters"])
+    if (p["name"].get<std::string>()[0] == 'd') {
+      EXPECT_EQ(p["status"], "fixed");
+      EXPECT_EQ(p["value"], p["nominal"]);
+    }
+}
+
+TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
+  const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
+  EXPECT_EQ(ran.status, 0);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json["own"],
+            13);  // four planes of three freedoms, and the distance of the parallel one
+  EXPECT_GT(json["total"], 20);
+}
+
+TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
+  const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
+  const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
+  for (const std::string command : {"identify", "identifiable", "simulate", "robot check"}) {
+    std::istringstream help(selfcal_run(command + " --help").out);
+    EXPECT_NE(manual.find("selfcal " + command), std::string::npos) << command;
+    std::string word;
+    while (help >> word) {
+      if (word.rfind("--", 0) != 0 || word == "--help") continue;
+      std::string in_manual;
+      for (const char c : word) in_manual += c == '-' ? std::string("\\-") : std::string(1, c);
+      EXPECT_NE(manual.find(in_manual), std::string::npos) << command << " " << word;
+      EXPECT_NE(completion.find(word), std::string::npos) << command << " " << word;
+    }
+  }
+  for (const std::string_view method : method_names())
+    EXPECT_NE(completion.find(method), std::string::npos) << method;
+}
+
+}  // namespace
+}  // namespace selfcal

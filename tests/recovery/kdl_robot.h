@@ -1,0 +1,95 @@
+// A robot whose forward kinematics and joint Jacobian are KDL's: truths that share no formula with
+// ours.
+#pragma once
+
+#ifdef SELFCAL_HAVE_KDL
+#include <kdl/chain.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
+
+#include "kinematics/robot.h"
+
+namespace selfcal::recovery {
+
+/// Takes names and limits from `model`; parameters are alpha d theta r beta of each frame, then K,
+/// and the frames' motions are read off the joints' names and quantities. Psi is zero: only
+/// joint_jacobian is used.
+class KdlRobot final : public Robot {
+ public:
+  explicit KdlRobot(const Robot& model) : model_(model) {}
+  std::string_view kind() const override { return "kdl"; }
+  const std::string& name() const override { return model_.name(); }
+  const std::vector<Joint>& joints() const override { return model_.joints(); }
+  const std::vector<Parameter>& parameters() const override { return model_.parameters(); }
+  const std::vector<int>& preference() const override { return model_.preference(); }
+  Node describe(const Eigen::VectorXd& xi) const override { return model_.describe(xi); }
+  std::string identity() const override { return model_.identity(); }
+  std::vector<std::string> remarks() const override { return {}; }
+
+  void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
+              PsiBlock* psi) const override {
+    const KDL::Chain chain = make_chain(xi, body);
+    KDL::ChainFkSolverPos_recursive forward(chain);
+    last_q_ = block.q;
+    last_body_ = body;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      KDL::Frame pose;
+      forward.JntToCart(readings(block.q, lane), pose);
+      for (int i = 0; i < 3; ++i) {
+        X.position(lane, i) = pose.p(i);
+        for (int j = 0; j < 3; ++j) X.rotation(lane, 3 * j + i) = pose.M(i, j);
+      }
+    }
+    if (psi) psi->setZero(6 * kLanes, xi.size());
+  }
+
+  /// Of the block that locate was last called with.
+  void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock&,
+                      Eigen::MatrixXd& J) const override {
+    const KDL::Chain chain = make_chain(xi, last_body_);
+    KDL::ChainJntToJacSolver solver(chain);
+    J.setZero(6 * kLanes, static_cast<Eigen::Index>(joints().size()));
+    for (int lane = 0; lane < kLanes; ++lane) {
+      KDL::Jacobian jacobian(static_cast<unsigned>(joints().size()));
+      solver.JntToJac(readings(last_q_, lane), jacobian);
+      for (int c = 0; c < 6; ++c) J.row(c * kLanes + lane) = jacobian.data.row(c);
+    }
+  }
+
+ private:
+  KDL::JntArray readings(const Eigen::ArrayXXd& q, int lane) const {
+    KDL::JntArray array(static_cast<unsigned>(q.cols()));
+    array.data = q.row(lane).matrix().transpose();
+    return array;
+  }
+
+  KDL::Chain make_chain(const Eigen::VectorXd& xi, Body body) const {
+    KDL::Chain chain;
+    const auto frames = static_cast<Eigen::Index>(parameters().size() - joints().size()) / 5;
+    size_t joint = 0;
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      const Eigen::VectorXd v = xi.segment(5 * f, 5);  // alpha d theta r beta
+      KDL::Frame before(KDL::Rotation::RotY(v[4]) * KDL::Rotation::RotX(v[0]));
+      before = before * KDL::Frame(KDL::Vector(v[1], 0, 0));
+      chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), before));
+      const KDL::Frame after = KDL::Frame(KDL::Rotation::RotZ(v[2]), KDL::Vector(0, 0, v[3]));
+      const bool moves = joint < joints().size() &&
+                         parameters()[static_cast<size_t>(5 * f)].frame == joints()[joint].name;
+      KDL::Joint motion(KDL::Joint::None);
+      if (moves)
+        motion = KDL::Joint(joints()[joint].quantity == Quantity::angle ? KDL::Joint::RotZ
+                                                                        : KDL::Joint::TransZ);
+      chain.addSegment(KDL::Segment(motion, after));
+      joint += moves;
+      if (body == Body::last_link && moves && joint == joints().size()) break;
+    }
+    return chain;
+  }
+
+  const Robot& model_;
+  mutable Eigen::ArrayXXd last_q_;
+  mutable Body last_body_ = Body::endpoint;
+};
+
+}  // namespace selfcal::recovery
+#endif
