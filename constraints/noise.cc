@@ -118,8 +118,9 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>&
   for (size_t s = 0; s < sets.size(); ++s) {
     SetNoise& set = by_set[s];
     if (set.rows.empty()) continue;
-    set.fitted =
-        rule.global_freedom * set.equations / total + equations.group_freedoms(static_cast<int>(s));
+    const double shared = std::max(rule.global_freedom - equations.own_columns(), 0.0);
+    set.fitted = shared * set.equations / total + equations.own_freedom(static_cast<int>(s)) +
+                 equations.group_freedoms(static_cast<int>(s));
     noise.estimated[s] = {robust(set, false), robust(set, true)};
     if (!rule.reject) continue;
     noise.at_bound[s] = put_far_rows_aside(set, weighed(s), rule, noise.put_aside);

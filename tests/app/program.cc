@@ -112,8 +112,7 @@ TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
   EXPECT_EQ(ran.status, 0);
   const auto json = nlohmann::json::parse(ran.out);
-  EXPECT_EQ(json["own"],
-            13);  // four planes of three freedoms, and the distance of the parallel one
+  EXPECT_EQ(json["own"], 16);  // five planes of three freedoms, one of the parallel plane
   EXPECT_GT(json["total"], 20);
 }
 
