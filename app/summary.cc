@@ -48,12 +48,16 @@ std::string first_line(const DataSet& data, const Solution& solution) {
       print("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
   const Figures& check = solution.residual.check;
   const Figures& fit = solution.residual.fit;
-  if (check.rows > 0)
+  if (check.rows > 0) {
     text += print("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
                   1e3 * check.rms_after, check.rows);
-  else
+    // False rows among those kept aside count; say what is left without them.
+    if (check.rms_without_rejected < 0.9 * check.rms_after)
+      text += print(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+  } else {
     text += print("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
                   1e3 * fit.rms_before, 1e3 * fit.rms_after);
+  }
   size_t told = 0;
   for (const Note& note : solution.gauge)
     if (told < 2) text += (told++ ? ", " : "; ") + note.parameter + " held";
