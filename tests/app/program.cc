@@ -101,7 +101,8 @@ TEST_F(Program, RefusesUnknownNamesAndMethodsAsWrongUsage) {
 
 TEST_F(Program, HoldsWhatTheUserFixes) {
   const Ran ran = selfcal_run("identify " + simulated() + " --fix 'd*' --json", true);
-  for (const auto& p : nlohmann::json::parse(ran.out)["parameters"])
+  const auto json = nlohmann::json::parse(ran.out);
+  for (const auto& p : json["parameters"])
     if (p["name"].get<std::string>()[0] == 'd') {
       EXPECT_EQ(p["status"], "fixed");
       EXPECT_EQ(p["value"], p["nominal"]);
