@@ -94,7 +94,7 @@ TEST(Recovery, PutsErrorsWithinTheirOwnSigmaAsOftenAsStatisticsSays) {
   EXPECT_NEAR(std::sqrt(score.squares / n), 1.0, 0.08);
 }
 
-TEST(Recovery, IsExactToOneNanometreWithoutNoiseAndPriors) {
+TEST(Recovery, IsExactToOneNanometreWithoutNoise) {
   // With the posterior's priors out of reach of the floor of 1 nm on the noise: their pull is
   // (1e-9 / 1e-3)^2 of a millimetre.
   for (int seed = 1; seed <= 20; ++seed) {
