@@ -1,0 +1,100 @@
+// What the service tells and is told, as plain structs; io/dds carries them over DDS.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/result.h"
+
+namespace selfcal {
+
+/// What the service is and does. Sent on every change.
+struct StatusMessage {
+  std::int64_t unix_ms = 0;
+  std::string robot, model_hash, version;
+  std::string state;                 ///< "collecting"
+  std::string phase;                 ///< "touch"; empty outside collecting
+  std::string hardware;              ///< what the hardware may do in this state, in words
+  std::string why;                   ///< why it is in this state, in words
+  std::int64_t session = 0;          ///< running or last one; 0 before the first
+  std::string kind;                  ///< "full", "check" or empty
+  std::string active;                ///< "factory" or "session 12"
+  std::int64_t active_since_ms = 0;  ///< 0 for factory
+  bool candidate = false;            ///< a result waits for acceptance
+  std::int64_t next_due_ms = 0;      ///< 0 when nothing is scheduled
+  double temperature = 0;            ///< °C; NaN when not known
+};
+
+/// How far the running session is; sent after every touch.
+struct ProgressMessage {
+  std::int64_t unix_ms = 0;
+  std::string robot;
+  std::int64_t session = 0;
+  std::string kind;
+  std::uint32_t done = 0, planned = 0, put_aside = 0;
+  double seconds_left = 0;  ///< NaN when not known
+  std::string set;          ///< of the last touch
+  std::uint32_t index = 0;  ///< of the last touch in the plan
+  double residual = 0;      ///< m, against the active model and the surface as known so far; NaN
+  bool accepted = false;    ///< false: put aside
+  std::string note;         ///< why it was put aside, or the stage of the computation
+};
+
+/// The outcome of a session.
+struct ResultMessage {
+  std::int64_t unix_ms = 0;
+  std::string robot, model_hash;
+  std::int64_t session = 0;
+  std::string kind;      ///< "full" or "check"
+  std::string answer;    ///< "improved", "not-improved", "not-determined"; "explained" or
+                         ///< "not-explained" of a check; "failed"
+  std::string decision;  ///< "applied", "candidate", "rejected", "none"
+  std::string why;
+  double p_value = 0;         ///< of the paired test, or that the active model explains the touches
+  double check_before = 0;    ///< m, rms on rows kept aside with the active model
+  double check_after = 0;     ///< m, with the candidate
+  double endpoint_sigma = 0;  ///< m, rms
+  std::uint32_t touches = 0, rejected = 0, identified = 0;
+  std::string json;  ///< result.json's content; empty for a check
+};
+
+enum class Health : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };
+
+/// One line of diagnostic_msgs/DiagnosticArray.
+struct HealthMessage {
+  std::string name;  ///< "selfcal: encoders"
+  Health level = Health::ok;
+  std::string message;
+  std::vector<std::pair<std::string, std::string>> values;  ///< the unit stands in the key
+};
+
+struct CommandMessage {
+  std::string id;    ///< chosen by the sender, repeated in the reply
+  std::string verb;  ///< "start", "check", "abort", "accept", "reject", "rollback"
+  std::string from;  ///< who asks, for the log
+};
+
+struct CommandReplyMessage {
+  std::string id, verb;
+  bool accepted = false;
+  std::string why;
+};
+
+/// The service's voice and ear.
+class Messenger {
+ public:
+  virtual ~Messenger() = default;
+  virtual void publish(const StatusMessage& status) = 0;
+  virtual void publish(const ProgressMessage& progress) = 0;
+  virtual void publish(const ResultMessage& result) = 0;
+  /// All lines of one moment; `hardware_id` is the robot's serial number or name.
+  virtual void publish(const std::vector<HealthMessage>& health,
+                       const std::string& hardware_id) = 0;
+  virtual void reply(const CommandReplyMessage& reply) = 0;
+  /// Appends the commands since the last call, oldest first; at most 16, others are refused.
+  virtual void take(std::vector<CommandMessage>& out) = 0;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,130 @@
+// What the service asks of a machine: thin seams without any vendor's types.
+//
+// The real robot (io/dds, SocketCAN, GPIO) and the pretend one (sim/machine.h) stand behind the
+// same ports. Every call returns at once; only Clock::wait may block, and never longer than asked.
+// What a port could not take in time it drops oldest first and counts.
+//
+// One time base: every stamp is CLOCK_MONOTONIC, or what the pretend machine has in its place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/result.h"
+
+namespace selfcal {
+
+/// A moment on the time base, or a length of time (ns).
+using Nanoseconds = std::int64_t;
+inline constexpr Nanoseconds kMillisecond = 1'000'000;
+inline constexpr Nanoseconds kSecond = 1'000'000'000;
+constexpr Nanoseconds nanoseconds(double seconds) {
+  return static_cast<Nanoseconds>(seconds * 1e9);
+}
+constexpr double seconds(Nanoseconds t) { return static_cast<double>(t) * 1e-9; }
+
+inline constexpr int kMostJoints = 16;
+
+/// Raw counts of all joints at one moment; complete or not there at all.
+struct EncoderSample {
+  Nanoseconds time = 0;
+  int joints = 0;
+  std::array<std::int64_t, kMostJoints> counts{};
+};
+
+/// What a count of one joint means: reading = (counts - zero) * step (rad or m); step < 0 turns it.
+struct EncoderScale {
+  double step = 1e-9;
+  std::int64_t zero = 0;
+};
+
+class EncoderSource {
+ public:
+  virtual ~EncoderSource() = default;
+  virtual const std::vector<EncoderScale>& scales() const = 0;  ///< by joint
+  /// Appends the samples since the last call, oldest first, at most `kMostSamples`. Fails when the
+  /// source is broken for good; silence is no failure, the service notices it.
+  virtual Result<void> take(std::vector<EncoderSample>& out) = 0;
+  virtual std::uint64_t dropped() const = 0;  ///< samples lost since the start
+  static constexpr std::size_t kMostSamples = 1024;
+};
+
+/// The trigger's level changed.
+struct Edge {
+  Nanoseconds time = 0;
+  bool closed = false;
+};
+
+class TouchTrigger {
+ public:
+  virtual ~TouchTrigger() = default;
+  /// Level as last seen; nothing as long as it is not known.
+  virtual std::optional<bool> closed() = 0;
+  /// Appends the edges since the last call, oldest first, not debounced, at most `kMostEdges`.
+  virtual Result<void> take(std::vector<Edge>& out) = 0;
+  virtual std::uint64_t dropped() const = 0;
+  static constexpr std::size_t kMostEdges = 256;
+};
+
+enum class MoveKind : std::uint8_t {
+  travel,   ///< through free space
+  touch,    ///< towards a surface, until the service says stop
+  seat,     ///< the tool gives way until it sits in the socket or nest
+  retract,  ///< back out of a contact
+};
+std::string_view to_string(MoveKind kind);
+
+/// A straight move in joint space to readings `q` (rad or m).
+struct MotionRequest {
+  std::uint64_t id = 0;  ///< grows with every request
+  MoveKind kind = MoveKind::travel;
+  std::string label;      ///< of the touch it serves ("table 17"), for a person
+  std::vector<double> q;  ///< target, by joint
+  double speed = 1;       ///< largest joint speed (rad/s or m/s)
+};
+
+struct MotionReply {
+  enum class Outcome : std::uint8_t { accepted, done, stopped, refused };
+  std::uint64_t id = 0;
+  Outcome outcome = Outcome::done;
+  std::string why;  ///< of a refusal or a stop that nobody asked for
+};
+std::string_view to_string(MotionReply::Outcome outcome);
+
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  virtual Result<void> request(const MotionRequest& request) = 0;
+  /// Stops whatever moves, now. Never refused, and may be said again.
+  virtual Result<void> stop(const std::string& why) = 0;
+  virtual Result<void> take(std::vector<MotionReply>& out) = 0;
+};
+
+class Thermometer {
+ public:
+  virtual ~Thermometer() = default;
+  virtual std::optional<double> celsius() = 0;  ///< nothing when not known
+};
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual Nanoseconds now() = 0;
+  virtual std::int64_t unix_ms() = 0;  ///< wall clock (ms since 1970, UTC); may step
+  /// Returns after `longest`, or as soon as a port may have news.
+  virtual void wait(Nanoseconds longest) = 0;
+};
+
+/// The ports of one machine. `thermometer` may be null; the others are not.
+struct Ports {
+  Clock* clock = nullptr;
+  EncoderSource* encoders = nullptr;
+  TouchTrigger* trigger = nullptr;
+  Motion* motion = nullptr;
+  Thermometer* thermometer = nullptr;
+};
+
+}  // namespace selfcal
