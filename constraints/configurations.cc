@@ -113,11 +113,14 @@ class Sampler {
     last_of_group = -1;
     if (method.group_freedom() == 0) return;
     Eigen::MatrixXd& groups = sampled_.truth.groups[request.set];
-    Eigen::VectorXd values = method.start_group({anywhere(method, request.patch)});
+    const auto place = static_cast<std::size_t>(groups.cols());
+    const bool given = place < request.places.size();
+    Eigen::VectorXd values =
+        method.start_group({given ? request.places[place] : anywhere(method, request.patch)});
     for (const GroupLink& link : method.links()) {  // a known distance from a group opened before
       const auto self = static_cast<int>(groups.cols());
       const int other = link.a == self ? link.b : link.b == self ? link.a : self;
-      if (other >= self) continue;
+      if (given || other >= self) continue;
       values.head<3>() = groups.col(other).head<3>() + link.distance * random_direction(random_);
     }
     groups.conservativeResize(values.size(), groups.cols() + 1);

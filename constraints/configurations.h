@@ -30,6 +30,7 @@ struct SampleRequest {
   int rows_per_group = 4;              ///< of methods with group unknowns
   std::optional<Eigen::VectorXd> own;  ///< true own values; random when missing
   Patch patch;
+  std::vector<Location> places;  ///< true locations of the first groups; random when missing
   /// Residual that row `i` of the request shall have (noise of a touch); zeros when empty.
   std::function<Eigen::VectorXd(int i)> residual;
 };

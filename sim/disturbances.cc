@@ -8,9 +8,9 @@
 #include <random>
 #include <set>
 
+#include "constraints/contact.h"
 #include "kinematics/rotation.h"
 #include "sim/streams.h"
-#include "sim/touch.h"
 #include "sim/true_sets.h"
 
 namespace selfcal {

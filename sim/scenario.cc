@@ -59,14 +59,6 @@ void read_sets(Fields& fields, Scenario& scenario, Problems& problems) {
 
 }  // namespace
 
-double number_within(Fields& fields, std::string_view key, double fallback, double least,
-                     double most) {
-  const double value = fields.number(key, fallback);
-  if (value < least || value > most)
-    fields.fail(key, "a number from " + format_number(least) + " to " + format_number(most));
-  return value;
-}
-
 std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems) {
   std::vector<NamedNumber> list;
   const Node* node = fields.node(key);
@@ -94,6 +86,8 @@ Scenario read_scenario(const Node& node, Problems& problems) {
   if (const Node* triggers = fields.node("false_triggers"))
     scenario.false_triggers = read_false_triggers(*triggers, problems);
   scenario.compliance = named_numbers(fields, "compliance", problems);
+  if (const Node* machine = fields.node("machine"))
+    scenario.machine = read_machine_scenario(*machine, problems);
   read_sets(fields, scenario, problems);
   fields.refuse_unknown();
   return scenario;

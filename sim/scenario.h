@@ -23,6 +23,7 @@
 //     size          [1e-3, 8e-3]  to 0.1 m     how far, uniform; early where a touch has a side
 //   compliance      {}        0 to 1e-2        FRAME: COMPLIANCE of a joint (rad/(N m), m/N) under
 //                                              gravity, which the model lacks
+//   machine         {}                         how it moves and feels: sim/machine_scenario.h
 //   sets            required                   NAME: {an entry of dataset.yaml's sets, and:
 //     rows          100       1 to 1e6         rows, repeats among them
 //     rows_per_group  4       2 to 1e4         of methods whose rows share a point or location
@@ -34,6 +35,8 @@
 //     truth         random                     own unknowns by their names in result.json
 //                                              ({cx: 0.6, frame.x: 2}); what is left out is drawn
 //     within        everywhere                 {center: [x, y, z], radius: R}, m: where rows lie
+//     places        random                     where the sockets or nests really are, one a group:
+//                                              [x, y, z] or [x, y, z, qw, qx, qy, qz]
 //   }
 // A plane is touched from the side of the world's origin unless `surface` or `outward` says
 // otherwise, a plane-normal from the side that its normal points at, a sphere from outside.
@@ -44,8 +47,9 @@
 #include <string>
 #include <vector>
 
-#include "constraints/configurations.h"
+#include "constraints/place_fields.h"
 #include "kinematics/description.h"
+#include "sim/machine_scenario.h"
 
 namespace selfcal {
 
@@ -74,10 +78,6 @@ struct FalseTriggers {
   double least = 1e-3, most = 8e-3;  // m
 };
 
-struct Surface {
-  Eigen::Vector3d point, normal;  ///< m; unit, outwards
-};
-
 struct SetScenario {
   std::string name;
   Node entry;  ///< as dataset.yaml has it, without the scenario's own keys
@@ -87,6 +87,7 @@ struct SetScenario {
   std::optional<Eigen::Vector3d> outward;  ///< unit
   std::vector<NamedNumber> truth;
   Patch within;
+  std::vector<Location> places;
 };
 
 struct Scenario {
@@ -99,6 +100,7 @@ struct Scenario {
   Repeats repeats;
   FalseTriggers false_triggers;
   std::vector<NamedNumber> compliance;
+  MachineScenario machine;
   std::vector<SetScenario> sets;
 };
 

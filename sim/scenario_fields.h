@@ -4,13 +4,10 @@
 #include <string_view>
 #include <vector>
 
+#include "constraints/place_fields.h"
 #include "sim/scenario.h"
 
 namespace selfcal {
-
-/// A number from `least` to `most`.
-double number_within(Fields& fields, std::string_view key, double fallback, double least,
-                     double most);
 
 /// The entries of a mapping of numbers; empty when missing.
 std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems);

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include "constraints/place_fields.h"
 #include "sim/scenario_fields.h"
 
 namespace selfcal {
 namespace {
 
-constexpr std::array<std::string_view, 8> kOwnKeys = {
-    "rows",    "rows_per_group", "noise_true", "noise_angle_true",
-    "surface", "outward",        "truth",      "within"};
+constexpr std::array<std::string_view, 9> kOwnKeys = {
+    "rows",  "rows_per_group", "noise_true", "noise_angle_true", "surface", "outward",
+    "truth", "within",         "places"};
 constexpr double kMostNoise = 0.1;  // m or rad
 
 Node without_own_keys(const Node& node) {
@@ -20,33 +21,6 @@ Node without_own_keys(const Node& node) {
     if (std::ranges::find(kOwnKeys, node.keys[i]) == kOwnKeys.end())
       rest.set(node.keys[i], node.items[i]);
   return rest;
-}
-
-Eigen::Vector3d read_point(Fields& fields, std::string_view key) {
-  const auto point = fields.numbers(key, 3);
-  if (!fields.has(key)) fields.fail(key, "[x, y, z] (m)");
-  return point ? Eigen::Vector3d(*point) : Eigen::Vector3d::Zero();
-}
-
-Eigen::Vector3d read_unit(Fields& fields, std::string_view key) {
-  const Eigen::Vector3d direction = read_point(fields, key);
-  if (fields.has(key) && direction.norm() < 1e-9) fields.fail(key, "a direction that is not zero");
-  return direction.normalized();
-}
-
-Surface read_surface(const Node& node, const std::string& what, Problems& problems) {
-  Fields fields(node, what, problems);
-  const Surface surface{read_point(fields, "point"), read_unit(fields, "normal")};
-  fields.refuse_unknown();
-  return surface;
-}
-
-Patch read_patch(const Node& node, const std::string& what, Problems& problems) {
-  Fields fields(node, what, problems);
-  Patch patch{read_point(fields, "center"), fields.number("radius")};
-  if (fields.has("radius") && !(patch.radius > 0)) fields.fail("radius", "a positive radius (m)");
-  fields.refuse_unknown();
-  return patch;
 }
 
 }  // namespace
@@ -70,6 +44,8 @@ SetScenario read_set_scenario(const std::string& name, const Node& node, Problem
   if (set.surface && !set.truth.empty()) fields.fail("truth", "either `surface` or `truth`");
   if (const Node* within = fields.node("within"))
     set.within = read_patch(*within, "set " + name + " within", problems);
+  if (const Node* places = fields.node("places"))
+    set.places = read_places(*places, "set " + name + " places", problems);
   return set;
 }
 

@@ -1,5 +1,5 @@
 // Newton steps of least length, dq = (G J)^+ (wanted - r), J the joint Jacobian of the body.
-#include "sim/touch.h"
+#include "constraints/contact.h"
 
 #include <vector>
 

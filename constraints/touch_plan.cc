@@ -1,0 +1,245 @@
+#include "constraints/touch_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "constraints/contact.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
+constexpr int kPathBlocks = 3;      // of kLanes places along a path
+constexpr int kRounds = 6;          // of sampling, until enough candidates are usable
+
+Location location_at(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q) {
+  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
+  Locations X;
+  robot.locate(block, xi, Body::endpoint, X, nullptr);
+  return {X.R(0), X.p(0)};
+}
+
+bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Joint& joint = robot.joints()[j];
+    if (joint.limited() && (q[j] < joint.lower + margin || q[j] > joint.upper - margin))
+      return false;
+  }
+  return true;
+}
+
+/// Distance of two configurations, each joint counted against its range.
+double distance(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double sum = 0;
+  for (Eigen::Index j = 0; j < a.size(); ++j) {
+    const Joint& joint = robot.joints()[j];
+    const double range = joint.limited() ? joint.upper - joint.lower : M_PI;
+    sum += std::pow((a[j] - b[j]) / range, 2);
+  }
+  return std::sqrt(sum);
+}
+
+std::shared_ptr<const Method> plain_plane() {
+  Problems none;
+  Node entry = Node::map();
+  entry.set("method", Node::of(std::string("plane")));
+  return make_set("surface", entry, none).method;
+}
+
+/// Candidates of one target with their way in, as far as they are usable.
+class Candidates {
+ public:
+  Candidates(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+             const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options)
+      : robot_(robot), xi_(xi), sets_(sets), obstacles_(obstacles), options_(options) {}
+
+  std::vector<PlannedTouch> of(const TouchTarget& target, int obstacle, Random& random) const {
+    std::vector<PlannedTouch> usable;
+    const int wanted = kCandidatesEach * target.touches;
+    for (int round = 0; round < kRounds && static_cast<int>(usable.size()) < wanted; ++round)
+      sample(target, obstacle, wanted, random, usable);
+    return usable;
+  }
+
+ private:
+  void sample(const TouchTarget& target, int obstacle, int rows, Random& random,
+              std::vector<PlannedTouch>& usable) const {
+    DataSet data;
+    data.sets = {sets_[target.set]};
+    // The nominal surface is given whole, whatever the set knows or shares of it.
+    if (target.own) data.sets[0].method = plain_plane();
+    data.sets[0].reference = -1;
+    SampleRequest request;
+    request.rows = rows;
+    request.rows_per_group =
+        std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
+    request.own = target.own;
+    request.patch = target.within;
+    request.places = target.places;
+    const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
+    for (int row = 0; row < data.rows.rows(); ++row) {
+      const int group = data.rows.group[row];
+      if (group >= static_cast<int>(target.places.size()) && !target.places.empty()) continue;
+      PlannedTouch touch;
+      touch.set = target.set;
+      touch.group = group;
+      touch.touch = data.rows.q.row(row).transpose();
+      if (enter(target, obstacle, data, sampled.truth, row, touch)) usable.push_back(touch);
+    }
+  }
+
+  /// Fills in where the touch begins and where it is given up.
+  bool enter(const TouchTarget& target, int obstacle, const DataSet& data, const State& truth,
+             int row, PlannedTouch& touch) const {
+    const Location X = location_at(robot_, xi_, touch.touch);
+    if (X.R.col(2).dot(-target.outward) < std::cos(options_.tilt)) return false;
+    touch.start = touch.end = touch.touch;
+    if (!move_out(target, data, truth, row, X, options_.clearance, touch.start)) return false;
+    if (!target.places.empty())
+      touch.end = touch.touch;
+    else if (!move_out(target, data, truth, row, X, -options_.search, touch.end))
+      return false;
+    return within_limits(robot_, touch.start, options_.limit_margin) &&
+           within_limits(robot_, touch.end, options_.limit_margin) &&
+           path_is_free(robot_, xi_, touch.start, touch.end, obstacles_, options_.apart,
+                        obstacle) &&
+           path_is_free(robot_, xi_, touch.start, touch.start, obstacles_, options_.apart);
+  }
+
+  /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
+  bool move_out(const TouchTarget& target, const DataSet& data, const State& truth, int row,
+                const Location& X, double distance, Eigen::VectorXd& q) const {
+    const std::size_t equations = data.sets[0].method->equations().size();
+    Eigen::VectorXd wanted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(equations));
+    if (equations == 1)
+      wanted[0] = distance * truth.own[0].head<3>().dot(target.outward);
+    else
+      wanted.head<3>() = distance * (X.R.transpose() * target.outward);
+    return move_to_residual(robot_, data, truth, row, wanted, q);
+  }
+
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  const std::vector<Set>& sets_;
+  const std::vector<Obstacle>& obstacles_;
+  const TouchPlanOptions& options_;
+};
+
+/// `count` of the candidates, each as far as possible from those taken before (and, where there
+/// are groups, the groups in turn).
+std::vector<PlannedTouch> spread(const Robot& robot, std::vector<PlannedTouch> from, int count) {
+  std::vector<PlannedTouch> taken;
+  if (from.empty()) return taken;
+  std::vector<double> nearest(from.size(), HUGE_VAL);
+  std::vector<char> used(from.size(), 0);
+  int groups = 1;
+  for (const PlannedTouch& each : from) groups = std::max(groups, each.group + 1);
+  std::size_t next = 0;
+  while (static_cast<int>(taken.size()) < count) {
+    taken.push_back(from[next]);
+    used[next] = 1;
+    const int turn = static_cast<int>(taken.size()) % groups;
+    double best = -1;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      nearest[i] = std::min(nearest[i], distance(robot, from[i].touch, taken.back().touch));
+      if (used[i] || (groups > 1 && from[i].group != turn) || nearest[i] <= best) continue;
+      best = nearest[i];
+      next = i;
+    }
+    if (best < 0) break;
+  }
+  return taken;
+}
+
+/// Every third or so, evenly over the order of choice.
+void mark_check(std::vector<PlannedTouch>& touches, double share) {
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    touches[i].check =
+        std::floor(share * static_cast<double>(i + 1)) > std::floor(share * static_cast<double>(i));
+}
+
+/// The touches of each target in an order of short ways, begun at home; a touch that can be
+/// reached neither directly nor through home is left out.
+std::vector<PlannedTouch> order(const Robot& robot, const Eigen::VectorXd& xi,
+                                std::vector<PlannedTouch> touches,
+                                const std::vector<Obstacle>& obstacles,
+                                const TouchPlanOptions& options) {
+  std::vector<PlannedTouch> path;
+  Eigen::VectorXd here = options.home;
+  while (!touches.empty()) {
+    const auto nearest = std::ranges::min_element(touches, {}, [&](const PlannedTouch& each) {
+      // A set is finished before the next is begun.
+      const bool other = !path.empty() && each.set != path.back().set;
+      return distance(robot, here, each.start) + (other ? 1e3 : 0);
+    });
+    PlannedTouch next = std::move(*nearest);
+    touches.erase(nearest);
+    next.via_home = !path_is_free(robot, xi, here, next.start, obstacles, options.apart);
+    if (next.via_home &&
+        (!path_is_free(robot, xi, here, options.home, obstacles, options.apart) ||
+         !path_is_free(robot, xi, options.home, next.start, obstacles, options.apart)))
+      continue;
+    here = next.start;
+    path.push_back(std::move(next));
+  }
+  return path;
+}
+
+}  // namespace
+
+bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
+                  const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
+                  int touched) {
+  const auto blocked = [&](const Eigen::Vector3d& p) {
+    for (std::size_t o = 0; o < obstacles.size(); ++o) {
+      const Obstacle& each = obstacles[o];
+      if (static_cast<int>(o) == touched) continue;
+      const bool near =
+          each.within.radius <= 0 || (p - each.within.centre).norm() <= each.within.radius + apart;
+      if (near && each.outward.dot(p - each.point) < apart) return true;
+    }
+    return false;
+  };
+  ConfigurationBlock block{Eigen::ArrayXXd(kLanes, from.size()), kLanes};
+  Locations X;
+  for (int part = 0; part < kPathBlocks; ++part) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double s = (part * kLanes + lane) / (kPathBlocks * kLanes - 1.0);
+      block.q.row(lane) = (from + s * (to - from)).transpose().array();
+    }
+    robot.locate(block, xi, Body::endpoint, X, nullptr);
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (blocked(X.p(lane))) return false;
+  }
+  return true;
+}
+
+TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+                       const std::vector<TouchTarget>& targets,
+                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options) {
+  TouchPlan plan;
+  const Candidates candidates(robot, xi, sets, obstacles, options);
+  Random random(options.seed);
+  std::vector<PlannedTouch> all;
+  int obstacle = 0;
+  for (const TouchTarget& target : targets) {
+    const int own_obstacle = target.places.empty() ? obstacle++ : -1;
+    std::vector<PlannedTouch> usable = candidates.of(target, own_obstacle, random);
+    const auto free = [&](const PlannedTouch& each) {
+      return path_is_free(robot, xi, options.home, each.start, obstacles, options.apart);
+    };
+    std::erase_if(usable, [&](const PlannedTouch& each) { return !free(each); });
+    std::vector<PlannedTouch> taken = spread(robot, std::move(usable), target.touches);
+    if (static_cast<int>(taken.size()) < target.touches && plan.unreached.empty())
+      plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(taken.size()) +
+                       " of " + std::to_string(target.touches) +
+                       " touches are within the joint limits, the tilt and reach of home";
+    mark_check(taken, options.check);
+    std::ranges::move(taken, std::back_inserter(all));
+  }
+  plan.touches = order(robot, xi, std::move(all), obstacles, options);
+  return plan;
+}
+
+}  // namespace selfcal

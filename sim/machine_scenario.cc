@@ -1,0 +1,57 @@
+#include "sim/machine_scenario.h"
+
+#include <array>
+#include <utility>
+
+#include "sim/scenario_fields.h"
+
+namespace selfcal {
+namespace {
+
+using What = MachineFault::What;
+constexpr std::array<std::pair<std::string_view, What>, 4> kFaults = {{{"encoders", What::encoders},
+                                                                       {"stuck", What::stuck},
+                                                                       {"refuse", What::refuse},
+                                                                       {"silent", What::silent}}};
+
+MachineFault read_fault(const Node& node, Problems& problems) {
+  Fields fields(node, "machine fault", problems);
+  MachineFault fault;
+  const std::string what = fields.text("what");
+  bool known = false;
+  for (const auto& [name, value] : kFaults)
+    if (name == what) {
+      fault.what = value;
+      known = true;
+    }
+  if (!known) fields.fail("what", "encoders, stuck, refuse or silent");
+  fault.at = number_within(fields, "at", 0, 0, 1e9);
+  fault.duration = number_within(fields, "for", 1e9, 0, 1e9);
+  fields.refuse_unknown();
+  return fault;
+}
+
+}  // namespace
+
+MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
+  Fields fields(node, "machine", problems);
+  MachineScenario machine;
+  const auto within = [&](const char* key, double& value, double least, double most) {
+    value = number_within(fields, key, value, least, most);
+  };
+  within("encoder_period", machine.encoder_period, 1e-4, 0.1);
+  within("speed", machine.speed, 1e-3, 100);
+  within("acceleration", machine.acceleration, 0.1, 1e4);
+  within("trigger_delay", machine.trigger_delay, 0, 0.1);
+  machine.bounce = fields.integer("bounce", machine.bounce, 0, 20);
+  within("missed", machine.missed, 0, 0.5);
+  within("stray", machine.stray, 0, 0.5);
+  within("temperature", machine.temperature, -40, 80);
+  within("warming", machine.warming, -20, 20);
+  if (const Node* faults = fields.node("faults"))
+    for (const Node& each : faults->items) machine.faults.push_back(read_fault(each, problems));
+  fields.refuse_unknown();
+  return machine;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,47 @@
+// How the pretend machine moves, feels and fails: `machine` in SCENARIO.yaml.
+//
+//   key             default   range          meaning
+//   encoder_period  0.002     1e-4 to 0.1 s  between two samples of all joints
+//   speed           2         1e-3 to 100    largest joint speed (rad/s or m/s)
+//   acceleration    20        0.1 to 1e4     of the fastest joint (rad/s^2), in moving and stopping
+//   trigger_delay   0         0 to 0.1 s     from the contact to the edge
+//   bounce          0         0 to 20        times that the trigger opens again within a
+//   millisecond missed          0         0 to 0.5       share of the touches that trigger nothing
+//   stray           0         0 to 0.5       share of the free moves on which the trigger fires
+//   temperature     20        -40 to 80      °C at the start
+//   warming         0         -20 to 20      °C per hour
+//   faults          []                       [{what: WHAT, at: S, for: S}]: what breaks, when (s
+//   from
+//                                            the start) and for how long; WHAT is one of
+//     encoders        no sample comes
+//     stuck           the trigger stays closed
+//     refuse          every move is refused
+//     silent          moves are neither answered nor carried out
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinematics/description.h"
+
+namespace selfcal {
+
+struct MachineFault {
+  enum class What { encoders, stuck, refuse, silent };
+  What what = What::encoders;
+  double at = 0, duration = 0;  ///< s
+};
+
+struct MachineScenario {
+  double encoder_period = 0.002;
+  double speed = 2, acceleration = 20;
+  double trigger_delay = 0;
+  int bounce = 0;
+  double missed = 0, stray = 0;
+  double temperature = 20, warming = 0;
+  std::vector<MachineFault> faults;
+};
+
+MachineScenario read_machine_scenario(const Node& node, Problems& problems);
+
+}  // namespace selfcal
