@@ -1,0 +1,85 @@
+// Encoders from a topic of joint states.
+//
+// counts = round(position / step), step = 1e-9 rad or m: a nanoradian, 2 nm at 2 m, far below what
+// any encoder tells apart.
+
+#include "io/dds/encoders.h"
+
+#include <cmath>
+
+#include "io/dds/convert.h"
+#include "io/dds/names.h"
+
+namespace selfcal {
+namespace {
+
+// Beyond this many rad or m no robot goes, and no count overflows.
+constexpr double kFarthest = 1e6;
+
+}  // namespace
+
+Result<std::unique_ptr<DdsEncoders>> DdsEncoders::open(const DdsParticipant& participant,
+                                                       DdsEncodersConfig config,
+                                                       std::shared_ptr<TimeMapping> mapping) {
+  if (config.joints.empty() || config.joints.size() > kMostJoints)
+    return bad_input("there must be 1 to " + std::to_string(kMostJoints) + " joints in topic " +
+                     config.topic);
+  auto reader =
+      DdsReader<dds::JointState>::open(participant, ros_topic(config.topic), kSensorReader);
+  if (!reader) return tl::make_unexpected(reader.error());
+  return std::unique_ptr<DdsEncoders>(
+      new DdsEncoders(std::move(config.joints), std::move(mapping), *std::move(reader)));
+}
+
+DdsEncoders::DdsEncoders(std::vector<std::string> joints, std::shared_ptr<TimeMapping> mapping,
+                         DdsReader<dds::JointState> reader)
+    : joints_(std::move(joints)),
+      places_(joints_.size(), 0),
+      scales_(joints_.size(), {.step = kStep, .zero = 0}),
+      mapping_(std::move(mapping)),
+      reader_(std::move(reader)) {}
+
+Result<void> DdsEncoders::take(std::vector<EncoderSample>& out) {
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
+  auto taken = reader_.take(kMostSamples, [&](const dds::JointState& state) {
+    EncoderSample sample;
+    if (read(state, sample))
+      out.push_back(sample);
+    else
+      ++incomplete_;
+  });
+  if (!taken) return taken;
+  if (out.begin() + first == out.end()) return {};
+  if (mapping_->observe(out.back().time, reader_.newest_arrival())) {
+    stepped_ += out.size() - static_cast<std::size_t>(first) - 1;
+    out.erase(out.begin() + first, out.end() - 1);
+  }
+  for (auto sample = out.begin() + first; sample != out.end(); ++sample)
+    sample->time = *mapping_->ours(sample->time);
+  return {};
+}
+
+// The sample with the sender's stamp; false when the message is not complete.
+bool DdsEncoders::read(const dds::JointState& state, EncoderSample& sample) {
+  sample.time = nanoseconds(state.header_.stamp_);
+  sample.joints = static_cast<int>(joints_.size());
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    if (!find(joint, state)) return false;
+    const double position = state.position_._buffer[places_[joint]];
+    if (!(std::abs(position) < kFarthest)) return false;
+    sample.counts[joint] = std::llround(position / kStep);
+  }
+  return true;
+}
+
+// Where the joint stands in the message: nearly always where it stood in the last one.
+bool DdsEncoders::find(std::size_t joint, const dds::JointState& state) {
+  const std::uint32_t size = std::min(state.name_._length, state.position_._length);
+  std::uint32_t& place = places_[joint];
+  if (place < size && joints_[joint] == state.name_._buffer[place]) return true;
+  for (place = 0; place < size; ++place)
+    if (joints_[joint] == state.name_._buffer[place]) return true;
+  return false;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,55 @@
+// Encoders from a topic of joint states, for a robot without a bus of its own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/dds/endpoint.h"
+#include "io/dds/time_mapping.h"
+#include "io/ports.h"
+
+namespace selfcal {
+
+struct DdsEncodersConfig {
+  std::string topic = "joint_states";  ///< name in ROS
+  std::vector<std::string> joints;     ///< names in the messages, by joint; 1 to kMostJoints
+};
+
+class DdsEncoders : public EncoderSource {
+ public:
+  /// One count (rad or m) of what is a floating-point number in the messages.
+  static constexpr double kStep = 1e-9;
+
+  /// Takes joint states of reliable and of best-effort publishers. `mapping` is shared with the
+  /// trigger of the same machine, whose stamps must be of the same clock.
+  static Result<std::unique_ptr<DdsEncoders>> open(const DdsParticipant& participant,
+                                                   DdsEncodersConfig config,
+                                                   std::shared_ptr<TimeMapping> mapping);
+
+  const std::vector<EncoderScale>& scales() const override { return scales_; }
+  /// A message that lacks a joint, or has one that is not finite, is no sample.
+  Result<void> take(std::vector<EncoderSample>& out) override;
+  /// Lost on the way, pushed out before they were taken, or before a step of the sender's clock.
+  std::uint64_t dropped() const override { return reader_.lost() + stepped_; }
+  /// Messages that were no sample.
+  std::uint64_t incomplete() const { return incomplete_; }
+  /// Publishers heard at the moment.
+  int publishers() const { return reader_.matched(); }
+
+ private:
+  DdsEncoders(std::vector<std::string> joints, std::shared_ptr<TimeMapping> mapping,
+              DdsReader<dds::JointState> reader);
+  bool read(const dds::JointState& state, EncoderSample& sample);
+  bool find(std::size_t joint, const dds::JointState& state);
+
+  std::vector<std::string> joints_;
+  std::vector<std::uint32_t> places_;  ///< where each joint stood in the last message
+  std::vector<EncoderScale> scales_;
+  std::shared_ptr<TimeMapping> mapping_;
+  DdsReader<dds::JointState> reader_;
+  std::uint64_t incomplete_ = 0;
+  std::uint64_t stepped_ = 0;  ///< samples dropped because the sender's clock stepped
+};
+
+}  // namespace selfcal

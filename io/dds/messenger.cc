@@ -1,0 +1,109 @@
+// The service's voice and ear over DDS.
+//
+// Reader and writer of a topic do not find each other at the same moment, so the first reply to a
+// sender may find nobody. The sender says its command again then, with the same id; it is known
+// here for kRemembered and answered from memory.
+
+#include "io/dds/messenger.h"
+
+#include <algorithm>
+
+#include "io/dds/convert.h"
+#include "io/dds/names.h"
+#include "io/dds/opened.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kRemembered = 60 * kSecond;
+constexpr std::size_t kMostKnown = 64;
+
+}  // namespace
+
+Result<std::unique_ptr<DdsMessenger>> DdsMessenger::open(const DdsParticipant& participant,
+                                                         const std::string& robot, Wakeup& wakeup) {
+  Endpoints endpoints;
+  DdsOpening opening(participant);
+  opening.open(endpoints.status, robot_topic(robot, "status"), kLatched);
+  opening.open(endpoints.progress, robot_topic(robot, "progress"), kProgress);
+  opening.open(endpoints.result, robot_topic(robot, "result"), kLatched);
+  opening.open(endpoints.diagnostics, ros_topic("diagnostics"), kDiagnostics);
+  opening.open(endpoints.reply, robot_topic(robot, "command_reply"), kExchange);
+  opening.open(endpoints.command, robot_topic(robot, "command"), kExchange, &wakeup);
+  return opening.finish(
+      [&] { return std::unique_ptr<DdsMessenger>(new DdsMessenger(robot, std::move(endpoints))); });
+}
+
+void DdsMessenger::publish(const StatusMessage& status) {
+  count(dds_.status.write(borrow(status)));
+}
+
+void DdsMessenger::publish(const ProgressMessage& progress) {
+  count(dds_.progress.write(borrow(progress)));
+}
+
+void DdsMessenger::publish(const ResultMessage& result) {
+  count(dds_.result.write(borrow(result)));
+}
+
+void DdsMessenger::publish(const std::vector<HealthMessage>& health,
+                           const std::string& hardware_id) {
+  const DiagnosticsToSend diagnostics(health, robot_, hardware_id, realtime_now() / kMillisecond);
+  count(dds_.diagnostics.write(diagnostics.message()));
+}
+
+void DdsMessenger::reply(const CommandReplyMessage& reply) {
+  const auto of = std::find_if(known_.begin(), known_.end(),
+                               [&](const Known& known) { return known.reply.id == reply.id; });
+  if (of != known_.end()) {
+    of->reply = reply;
+    of->replied = true;
+  }
+  send(reply);
+}
+
+void DdsMessenger::take(std::vector<CommandMessage>& out) {
+  std::size_t taken = 0;
+  // A failure to read is a bug of ours or of the library's; the next call tries again.
+  (void)dds_.command.take([&](const dds::Command& received) {
+    CommandMessage command = to_plain(received);
+    if (known(command)) return;
+    CommandReplyMessage reply{.id = command.id, .verb = command.verb, .accepted = false, .why = ""};
+    if (taken == kMostCommands) {
+      reply.why = std::to_string(kMostCommands) + " other commands are waiting";
+      remember(reply, true);
+      send(reply);
+      return;
+    }
+    ++taken;
+    remember(std::move(reply), false);
+    out.push_back(std::move(command));
+  });
+}
+
+// Whether the command has been taken before; its reply is repeated then.
+bool DdsMessenger::known(const CommandMessage& command) {
+  const Nanoseconds now = monotonic_now();
+  std::erase_if(known_, [&](const Known& known) { return now - known.taken > kRemembered; });
+  for (const auto& known : known_) {
+    if (command.id.empty() || known.reply.id != command.id) continue;
+    if (known.replied) send(known.reply);
+    return true;
+  }
+  return false;
+}
+
+void DdsMessenger::remember(CommandReplyMessage reply, bool replied) {
+  if (known_.size() == kMostKnown) known_.pop_front();
+  known_.push_back({std::move(reply), replied, monotonic_now()});
+}
+
+void DdsMessenger::send(const CommandReplyMessage& reply) {
+  count(dds_.reply.write(borrow(reply)));
+}
+
+void DdsMessenger::count(const Result<void>& written) {
+  if (!written) ++unsent_;
+}
+
+}  // namespace selfcal

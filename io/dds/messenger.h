@@ -1,0 +1,63 @@
+// The service's voice and ear over DDS: its status, progress, results and health, and commands.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "io/dds/endpoint.h"
+#include "io/messages.h"
+#include "io/ports.h"
+
+namespace selfcal {
+
+class DdsMessenger : public Messenger {
+ public:
+  static constexpr std::size_t kMostCommands = 16;
+
+  /// `robot` is the robot's id. `wakeup` hears of commands. Both others must outlive the messenger.
+  static Result<std::unique_ptr<DdsMessenger>> open(const DdsParticipant& participant,
+                                                    const std::string& robot, Wakeup& wakeup);
+
+  void publish(const StatusMessage& status) override;
+  void publish(const ProgressMessage& progress) override;
+  void publish(const ResultMessage& result) override;
+  /// The names are sent as "ROBOT/NAME", since all robots of a domain share the topic.
+  void publish(const std::vector<HealthMessage>& health, const std::string& hardware_id) override;
+  void reply(const CommandReplyMessage& reply) override;
+  /// A command that was sent again is not taken again: its reply is repeated.
+  void take(std::vector<CommandMessage>& out) override;
+
+  /// Messages that could not be sent in time since the start.
+  std::uint64_t unsent() const { return unsent_; }
+
+ private:
+  struct Endpoints {
+    DdsWriter<dds::Status> status;
+    DdsWriter<dds::Progress> progress;
+    DdsWriter<dds::Result> result;
+    DdsWriter<dds::DiagnosticArray> diagnostics;
+    DdsWriter<dds::CommandReply> reply;
+    DdsReader<dds::Command> command;
+  };
+  /// A command that was taken, and its reply once there is one.
+  struct Known {
+    CommandReplyMessage reply;
+    bool replied = false;
+    Nanoseconds taken = 0;
+  };
+
+  DdsMessenger(std::string robot, Endpoints endpoints)
+      : robot_(std::move(robot)), dds_(std::move(endpoints)) {}
+  bool known(const CommandMessage& command);
+  void remember(CommandReplyMessage reply, bool replied);
+  void send(const CommandReplyMessage& reply);
+  void count(const Result<void>& written);
+
+  std::string robot_;
+  Endpoints dds_;
+  std::deque<Known> known_;  ///< the last commands, so that none is obeyed twice
+  std::uint64_t unsent_ = 0;
+};
+
+}  // namespace selfcal

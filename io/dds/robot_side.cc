@@ -1,0 +1,78 @@
+// A robot's side of the topics.
+
+#include "io/dds/robot_side.h"
+
+#include "io/dds/convert.h"
+#include "io/dds/names.h"
+#include "io/dds/opened.h"
+
+namespace selfcal {
+namespace {
+
+const std::string kNoFrame;
+
+dds::Header header(Nanoseconds stamp) {
+  return {.stamp_ = time_of(stamp), .frame_id_ = borrowed::text(kNoFrame)};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DdsRobotSide>> DdsRobotSide::open(const DdsParticipant& participant,
+                                                         DdsRobotConfig config, Wakeup& wakeup) {
+  Endpoints endpoints;
+  DdsOpening opening(participant);
+  opening.open(endpoints.replies, robot_topic(config.robot, "motion_reply"), kExchange, &wakeup);
+  opening.open(endpoints.requests, robot_topic(config.robot, "motion_request"), kExchange, &wakeup);
+  opening.open(endpoints.joints, ros_topic(config.joint_states), kSensorWriter, &wakeup);
+  opening.open(endpoints.trigger, ros_topic(config.trigger), kSensorWriter, &wakeup);
+  opening.open(endpoints.temperature, ros_topic(config.temperature), kSensorWriter, &wakeup);
+  return opening.finish([&] {
+    return std::unique_ptr<DdsRobotSide>(
+        new DdsRobotSide(std::move(config.joints), std::move(endpoints)));
+  });
+}
+
+DdsRobotSide::DdsRobotSide(std::vector<std::string> joints, Endpoints endpoints)
+    : joints_(std::move(joints)), dds_(std::move(endpoints)) {
+  for (const auto& joint : joints_) names_.push_back(borrowed::text(joint));
+}
+
+Result<void> DdsRobotSide::take(std::vector<RobotRequest>& out) {
+  return dds_.requests.take([&](const dds::MotionRequest& received) {
+    auto request = to_plain(received);
+    if (request) {
+      out.push_back(*std::move(request));
+      return;
+    }
+    // Not to be able to refuse it is the same as not to hear it.
+    (void)reply({.id = received.id_,
+                 .outcome = MotionReply::Outcome::refused,
+                 .why = request.error().what});
+  });
+}
+
+Result<void> DdsRobotSide::reply(const MotionReply& reply) {
+  return dds_.replies.write(borrow(reply));
+}
+
+Result<void> DdsRobotSide::publish_joints(Nanoseconds stamp, const std::vector<double>& q) {
+  const auto names = static_cast<std::uint32_t>(names_.size());
+  const auto positions = static_cast<std::uint32_t>(q.size());
+  return dds_.joints.write(
+      {.header_ = header(stamp),
+       .name_ = {names, names, names_.data(), false},
+       .position_ = {positions, positions, const_cast<double*>(q.data()), false},
+       .velocity_ = {},
+       .effort_ = {}});
+}
+
+Result<void> DdsRobotSide::publish_trigger(Nanoseconds stamp, bool closed) {
+  return dds_.trigger.write({.header_ = header(stamp), .data_ = closed});
+}
+
+Result<void> DdsRobotSide::publish_temperature(Nanoseconds stamp, double celsius) {
+  return dds_.temperature.write(
+      {.header_ = header(stamp), .temperature_ = celsius, .variance_ = 0});
+}
+
+}  // namespace selfcal

@@ -1,0 +1,325 @@
+// The service and those who watch and command it, in one process.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "io/dds/commander.h"
+#include "io/dds/messenger.h"
+#include "io/dds/monitor.h"
+#include "io/dds/names.h"
+#include "tests/dds/domain.h"
+
+namespace selfcal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Messages of which only these matter.
+template <class Message>
+Message of(const std::string& robot, std::int64_t session) {
+  Message message;
+  message.robot = robot;
+  message.session = session;
+  return message;
+}
+
+class DdsService : public DdsTest {
+ protected:
+  std::unique_ptr<DdsMessenger> service(const std::string& robot) {
+    return must(DdsMessenger::open(participant, robot, wakeup));
+  }
+  std::unique_ptr<DdsMonitor> monitor(const std::string& robot) {
+    return must(DdsMonitor::open(participant, robot, wakeup));
+  }
+  // Takes until there are `count` messages in all.
+  template <class Message>
+  std::vector<Message> take(DdsMonitor& from, std::size_t count) {
+    std::vector<Message> taken;
+    EXPECT_TRUE(eventually([&] {
+      from.take(taken);
+      return taken.size() >= count;
+    }));
+    return taken;
+  }
+};
+
+TEST_F(DdsService, TellsItsStatus) {
+  const StatusMessage sent{.unix_ms = 1'790'000'000'123,
+                           .robot = "RX-90",
+                           .model_hash = "abc",
+                           .version = "1.2",
+                           .state = "collecting",
+                           .phase = "touch",
+                           .hardware = "moves slowly",
+                           .why = "a person asked; \"täglich\"",
+                           .session = 12,
+                           .kind = "full",
+                           .active = "session 11",
+                           .active_since_ms = 1'780'000'000'999,
+                           .candidate = true,
+                           .next_due_ms = 0,
+                           .temperature = 21.5};
+  const auto told = service("RX-90");
+  const auto watch = monitor("RX-90");
+
+  told->publish(sent);
+  const auto got = take<StatusMessage>(*watch, 1);
+
+  ASSERT_EQ(got.size(), 1);
+  EXPECT_EQ(got[0].unix_ms, sent.unix_ms);
+  EXPECT_EQ(got[0].robot, sent.robot);
+  EXPECT_EQ(got[0].model_hash, sent.model_hash);
+  EXPECT_EQ(got[0].version, sent.version);
+  EXPECT_EQ(got[0].state, sent.state);
+  EXPECT_EQ(got[0].phase, sent.phase);
+  EXPECT_EQ(got[0].hardware, sent.hardware);
+  EXPECT_EQ(got[0].why, sent.why);
+  EXPECT_EQ(got[0].session, sent.session);
+  EXPECT_EQ(got[0].kind, sent.kind);
+  EXPECT_EQ(got[0].active, sent.active);
+  EXPECT_EQ(got[0].active_since_ms, sent.active_since_ms);
+  EXPECT_EQ(got[0].candidate, sent.candidate);
+  EXPECT_EQ(got[0].next_due_ms, sent.next_due_ms);
+  EXPECT_EQ(got[0].temperature, sent.temperature);
+  EXPECT_EQ(told->unsent(), 0);
+}
+
+TEST_F(DdsService, TellsItsProgress) {
+  const ProgressMessage sent{.unix_ms = 5,
+                             .robot = "r",
+                             .session = 3,
+                             .kind = "check",
+                             .done = 4,
+                             .planned = 240,
+                             .put_aside = 1,
+                             .seconds_left = kNan,
+                             .set = "table",
+                             .index = 17,
+                             .residual = -3e-5,
+                             .accepted = true,
+                             .note = "n"};
+  const auto told = service("r");
+  const auto watch = monitor("r");
+
+  told->publish(sent);
+  const auto got = take<ProgressMessage>(*watch, 1);
+
+  ASSERT_EQ(got.size(), 1);
+  EXPECT_EQ(got[0].unix_ms, sent.unix_ms);
+  EXPECT_EQ(got[0].robot, sent.robot);
+  EXPECT_EQ(got[0].session, sent.session);
+  EXPECT_EQ(got[0].kind, sent.kind);
+  EXPECT_EQ(got[0].done, sent.done);
+  EXPECT_EQ(got[0].planned, sent.planned);
+  EXPECT_EQ(got[0].put_aside, sent.put_aside);
+  EXPECT_TRUE(std::isnan(got[0].seconds_left));
+  EXPECT_EQ(got[0].set, sent.set);
+  EXPECT_EQ(got[0].index, sent.index);
+  EXPECT_EQ(got[0].residual, sent.residual);
+  EXPECT_EQ(got[0].accepted, sent.accepted);
+  EXPECT_EQ(got[0].note, sent.note);
+}
+
+TEST_F(DdsService, TellsItsResultHoweverLong) {
+  const ResultMessage sent{.unix_ms = 6,
+                           .robot = "r",
+                           .model_hash = "h",
+                           .session = 4,
+                           .kind = "full",
+                           .answer = "improved",
+                           .decision = "applied",
+                           .why = "w",
+                           .p_value = 1e-9,
+                           .check_before = 1e-3,
+                           .check_after = 2e-5,
+                           .endpoint_sigma = 1e-5,
+                           .touches = 240,
+                           .rejected = 3,
+                           .identified = 25,
+                           .json = std::string(300'000, 'x')};
+  const auto told = service("r");
+  const auto watch = monitor("r");
+
+  told->publish(sent);
+  const auto got = take<ResultMessage>(*watch, 1);
+
+  ASSERT_EQ(got.size(), 1);
+  EXPECT_EQ(got[0].unix_ms, sent.unix_ms);
+  EXPECT_EQ(got[0].robot, sent.robot);
+  EXPECT_EQ(got[0].model_hash, sent.model_hash);
+  EXPECT_EQ(got[0].session, sent.session);
+  EXPECT_EQ(got[0].kind, sent.kind);
+  EXPECT_EQ(got[0].answer, sent.answer);
+  EXPECT_EQ(got[0].decision, sent.decision);
+  EXPECT_EQ(got[0].why, sent.why);
+  EXPECT_EQ(got[0].p_value, sent.p_value);
+  EXPECT_EQ(got[0].check_before, sent.check_before);
+  EXPECT_EQ(got[0].check_after, sent.check_after);
+  EXPECT_EQ(got[0].endpoint_sigma, sent.endpoint_sigma);
+  EXPECT_EQ(got[0].touches, sent.touches);
+  EXPECT_EQ(got[0].rejected, sent.rejected);
+  EXPECT_EQ(got[0].identified, sent.identified);
+  EXPECT_EQ(got[0].json, sent.json);
+}
+
+TEST_F(DdsService, TellsItsHealth) {
+  const auto told = service("RX-90");
+  const auto watch = monitor("RX-90");
+
+  told->publish({{"selfcal: encoders", Health::ok, "1000 a second", {{"age_ms", "1"}, {"n", "6"}}},
+                 {"selfcal: trigger", Health::stale, "", {}}},
+                "serial 7");
+  const auto got = take<HealthReport>(*watch, 1);
+
+  ASSERT_EQ(got.size(), 1);
+  EXPECT_EQ(got[0].hardware_id, "serial 7");
+  ASSERT_EQ(got[0].lines.size(), 2);
+  EXPECT_EQ(got[0].lines[0].name, "selfcal: encoders");
+  EXPECT_EQ(got[0].lines[0].level, Health::ok);
+  EXPECT_EQ(got[0].lines[0].message, "1000 a second");
+  EXPECT_THAT(got[0].lines[0].values, ElementsAre(Pair("age_ms", "1"), Pair("n", "6")));
+  EXPECT_EQ(got[0].lines[1].level, Health::stale);
+  EXPECT_TRUE(got[0].lines[1].values.empty());
+}
+
+TEST_F(DdsService, IsHeardByWhoComesLate) {
+  const auto told = service("r");
+  for (int session = 1; session <= 3; ++session) {
+    told->publish(of<StatusMessage>("r", session));
+    told->publish(of<ResultMessage>("r", session));
+    told->publish(of<ProgressMessage>("r", session));
+  }
+
+  const auto watch = monitor("r");
+  const auto status = take<StatusMessage>(*watch, 1);
+  const auto result = take<ResultMessage>(*watch, 1);
+  std::vector<ProgressMessage> progress;
+  watch->take(progress);
+
+  ASSERT_EQ(status.size(), 1);
+  EXPECT_EQ(status[0].session, 3);
+  ASSERT_EQ(result.size(), 1);
+  EXPECT_EQ(result[0].session, 3);
+  EXPECT_TRUE(progress.empty());
+}
+
+TEST_F(DdsService, DoesNotMixWithAnotherRobots) {
+  const auto first = service("a"), second = service("b");
+  const auto watch_first = monitor("a"), watch_second = monitor("b");
+
+  first->publish(of<StatusMessage>("a", 1));
+  second->publish(of<StatusMessage>("b", 1));
+  first->publish({{"selfcal: disk", Health::ok, "of a", {}}}, "1");
+  second->publish({{"selfcal: disk", Health::warn, "of b", {}}}, "2");
+
+  EXPECT_EQ(take<StatusMessage>(*watch_first, 1).at(0).robot, "a");
+  EXPECT_EQ(take<StatusMessage>(*watch_second, 1).at(0).robot, "b");
+  const auto health = take<HealthReport>(*watch_second, 1);
+  ASSERT_EQ(health.size(), 1);
+  EXPECT_EQ(health[0].lines.at(0).message, "of b");
+}
+
+TEST_F(DdsService, RepliesToACommand) {
+  const auto told = service("r");
+  const auto commander = must(DdsCommander::open(participant, "r"));
+  Result<CommandReplyMessage> reply;
+  std::thread asking(
+      [&] { reply = commander->send({.id = "7", .verb = "start", .from = "a test"}, kLimit); });
+
+  std::vector<CommandMessage> commands;
+  EXPECT_TRUE(eventually([&] { return told->take(commands), !commands.empty(); }));
+  told->reply({.id = "7", .verb = "start", .accepted = false, .why = "a session runs"});
+  asking.join();
+
+  ASSERT_TRUE(reply) << reply.error().what;
+  EXPECT_EQ(commands.at(0).verb, "start");
+  EXPECT_EQ(commands.at(0).from, "a test");
+  EXPECT_FALSE(reply->accepted);
+  EXPECT_EQ(reply->verb, "start");
+  EXPECT_EQ(reply->why, "a session runs");
+}
+
+TEST_F(DdsService, IsMissedWhenThereIsNone) {
+  const auto commander = must(DdsCommander::open(participant, "r"));
+
+  const auto reply = commander->send({.id = "1", .verb = "start", .from = ""}, 20 * kMillisecond);
+
+  ASSERT_FALSE(reply);
+  EXPECT_EQ(reply.error().exit_status, kDeviceFailed);
+  EXPECT_THAT(reply.error().what, HasSubstr("no service of robot r"));
+}
+
+TEST_F(DdsService, IsReportedWhenItDoesNotReply) {
+  const auto told = service("r");
+  const auto commander = must(DdsCommander::open(participant, "r"));
+
+  const auto reply = commander->send({.id = "1", .verb = "start", .from = ""}, kSecond / 2);
+
+  ASSERT_FALSE(reply);
+  EXPECT_THAT(reply.error().what, HasSubstr("does not reply"));
+}
+
+TEST_F(DdsService, ObeysARepeatedCommandOnceAndRepeatsItsReply) {
+  const auto told = service("r");
+  auto commands =
+      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
+  auto replies = must(DdsReader<dds::CommandReply>::open(
+      participant, robot_topic("r", "command_reply"), kExchange, &wakeup));
+  char id[] = "5", verb[] = "start", from[] = "";
+  const dds::Command command{.id_ = id, .verb_ = verb, .from_ = from};
+  ASSERT_TRUE(eventually([&] { return commands.matched() > 0 && replies.matched() > 0; }));
+  std::vector<CommandMessage> taken;
+
+  must(commands.write(command));
+  ASSERT_TRUE(eventually([&] { return told->take(taken), !taken.empty(); }));
+  must(commands.write(command));  // no reply yet
+  told->take(taken);
+  told->reply({.id = "5", .verb = "start", .accepted = true, .why = ""});
+  must(commands.write(command));
+  told->take(taken);
+
+  EXPECT_EQ(taken.size(), 1);
+  int replied = 0;
+  must(replies.take([&](const dds::CommandReply& reply) { replied += reply.accepted_; }));
+  EXPECT_EQ(replied, 2);
+}
+
+TEST_F(DdsService, RefusesTheSeventeenthCommandThatWaits) {
+  const auto told = service("r");
+  auto commands =
+      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
+  auto replies = must(DdsReader<dds::CommandReply>::open(
+      participant, robot_topic("r", "command_reply"), kExchange, &wakeup));
+  ASSERT_TRUE(eventually([&] { return commands.matched() > 0 && replies.matched() > 0; }));
+  char verb[] = "check", from[] = "";
+  for (int i = 0; i < 20; ++i) {
+    std::string id = std::to_string(i);
+    must(commands.write({.id_ = id.data(), .verb_ = verb, .from_ = from}));
+  }
+  std::vector<CommandMessage> taken;
+
+  told->take(taken);
+
+  EXPECT_EQ(taken.size(), 16);
+  std::vector<std::string> refused;
+  must(replies.take([&](const dds::CommandReply& reply) {
+    EXPECT_FALSE(reply.accepted_);
+    EXPECT_THAT(reply.why_, HasSubstr("16 other commands are waiting"));
+    refused.emplace_back(reply.id_);
+  }));
+  EXPECT_THAT(refused, ElementsAre("16", "17", "18", "19"));
+}
+
+TEST_F(DdsService, FailsWhenTheDomainIsNone) {
+  EXPECT_FALSE(DdsParticipant::open(kMostDdsDomain + 1, "test"));
+}
+
+}  // namespace
+}  // namespace selfcal
