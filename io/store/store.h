@@ -32,7 +32,11 @@ struct StepRecord {
   std::vector<double> start, touch, end;  ///< readings: free, nominal contact, farthest (rad or m)
 };
 
-enum class TouchOutcome : std::uint8_t { taken = 0, put_aside = 1 };
+enum class TouchOutcome : std::uint8_t {
+  taken = 0,
+  put_aside = 1,
+  differs = 2,  ///< from the good ones of its step before it: none of them counts
+};
 
 struct TouchRecord {
   int step = 0, attempt = 0;  ///< both from 0
@@ -76,8 +80,8 @@ enum class Slot : std::uint8_t { active = 0, previous = 1, candidate = 2 };
 std::string_view to_string(Slot slot);
 
 struct SlotRecord {
-  std::int64_t session = 0;  ///< that it came from; 0 for the factory's parameters
-  std::int64_t since_ms = 0;
+  std::int64_t session = 0;   ///< that it came from; 0 for the factory's parameters
+  std::int64_t since_ms = 0;  ///< when it came into this slot
   std::string model_hash, robot_text;
 };
 
@@ -95,7 +99,7 @@ class Store {
   /// (SQLite's quick_check) is set aside as selfcal.db.damaged-N with its -wal file and a new one
   /// is begun; `set_aside` says so. A store written by a newer program is a failure and left alone.
   static Result<Opened> open(const std::filesystem::path& folder);
-  /// Opens an existing store to read while a service may be writing.
+  /// Opens an existing store to read while a service may be writing; functions that write fail.
   static Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& folder);
   ~Store();
   Store(const Store&) = delete;
@@ -103,18 +107,23 @@ class Store {
 
   /// Begins a session with its whole plan; `session.id` and `.steps` are ignored. Returns the id.
   Result<std::int64_t> begin(const SessionRecord& session, const std::vector<StepRecord>& plan);
+  /// Finished and aborted set `ended_ms`, the others clear it.
   Result<void> set_state(std::int64_t session, SessionState state, std::int64_t unix_ms);
   /// The newest session that is `collecting` or `collected`.
   Result<std::optional<SessionRecord>> unfinished();
   Result<std::vector<SessionRecord>> sessions(int newest);  ///< newest first
   Result<SessionRecord> session(std::int64_t id);
+  /// As begun; once pruned the steps have no readings, and then there are no steps.
   Result<std::vector<StepRecord>> plan(std::int64_t session);
 
+  /// Fails when the session has ended or its plan has no such step. Counts beyond a sample's
+  /// joints are not kept.
   Result<void> add(std::int64_t session, const TouchRecord& touch);
   Result<std::vector<TouchRecord>> touches(std::int64_t session);  ///< in the order they came
 
-  /// Puts the result and ends the session in one transaction. With `slot`, the robot becomes the
-  /// candidate in the same.
+  /// Puts the result and ends the session in one transaction. With `candidate`, the robot becomes
+  /// the candidate in the same; the decision of one that it takes the place of becomes "replaced".
+  /// A session has one result: a second is a failure.
   Result<void> finish(const ResultRecord& result, const SlotRecord* candidate);
   Result<std::optional<ResultRecord>> result(std::int64_t session);
   Result<std::vector<ResultRecord>> results(int newest);  ///< without json and robot_text
@@ -136,10 +145,11 @@ class Store {
   Result<std::string> remembered(const std::string& name);
 
   /// Deletes the oldest until the content fits `most_bytes`: events first, then the json of results
-  /// (the figures stay), then plans and touches put aside, the raw rows of taken touches last;
-  /// never those of the newest session or the ones behind a slot.
+  /// (the figures stay), then the readings of plans and touches put aside, last the raw rows of
+  /// taken touches with the names of their steps; never those of the newest session, of the one
+  /// that may be resumed, or of those behind a slot. What cannot go may be more than `most_bytes`.
   Result<void> prune(std::int64_t most_bytes);
-  Result<std::int64_t> bytes();
+  Result<std::int64_t> bytes();  ///< of the content, without free pages and the log
 
  private:
   explicit Store(sqlite3* database) : database_(database) {}

@@ -1,0 +1,114 @@
+// Results of sessions, and the candidate that a result may come with.
+#include "io/store/sqlite.h"
+#include "io/store/store.h"
+#include "io/store/tables.h"
+
+namespace selfcal {
+namespace {
+
+#define SELFCAL_FIGURES                                                                  \
+  "SELECT session, unix_ms, answer, decision, why, p_value, check_before, check_after, " \
+  "endpoint_sigma, touches, rejected, identified"
+
+ResultRecord figures_of(const sqlite::Statement& row) {
+  ResultRecord result;
+  result.session = row.integer(0);
+  result.unix_ms = row.integer(1);
+  result.answer = row.text(2);
+  result.decision = row.text(3);
+  result.why = row.text(4);
+  result.p_value = row.real(5);
+  result.check_before = row.real(6);
+  result.check_after = row.real(7);
+  result.endpoint_sigma = row.real(8);
+  result.touches = static_cast<int>(row.integer(9));
+  result.rejected = static_cast<int>(row.integer(10));
+  result.identified = static_cast<int>(row.integer(11));
+  return result;
+}
+
+Result<void> add_result(sqlite3* database, const ResultRecord& result) {
+  if (auto there = require_session(database, result.session); !there) return there;
+  const Result<std::int64_t> robot = keep_text(database, result.robot_text);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto added = sqlite::run(
+      database, "INSERT INTO result VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+      {result.session, result.unix_ms, result.answer, result.decision, result.why, result.p_value,
+       result.check_before, result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
+       std::int64_t{result.rejected}, std::int64_t{result.identified}, *robot});
+  if (!added) return tl::unexpected(added.error());
+  if (!result.json.empty()) {
+    const auto kept =
+        sqlite::run(database, "INSERT INTO json VALUES(?1, ?2)", {result.session, result.json});
+    if (!kept) return tl::unexpected(kept.error());
+  }
+  const auto ended =
+      sqlite::run(database, "UPDATE session SET state = 2, ended_ms = ?2 WHERE id = ?1",
+                  {result.session, result.unix_ms});
+  if (!ended) return tl::unexpected(ended.error());
+  return {};
+}
+
+/// Puts the candidate; the one that it takes the place of was neither accepted nor rejected.
+Result<void> put_candidate(sqlite3* database, const SlotRecord& candidate) {
+  const auto replaced = sqlite::run(database,
+                                    "UPDATE result SET decision = 'replaced' WHERE session ="
+                                    " (SELECT session FROM slot WHERE slot = 2 AND session <> ?1)",
+                                    {candidate.session});
+  if (!replaced) return tl::unexpected(replaced.error());
+  const Result<std::int64_t> robot = keep_text(database, candidate.robot_text);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto put =
+      sqlite::run(database, "INSERT OR REPLACE INTO slot VALUES(2, nullif(?1, 0), ?2, ?3, ?4)",
+                  {candidate.session, candidate.since_ms, candidate.model_hash, *robot});
+  if (!put) return tl::unexpected(put.error());
+  return {};
+}
+
+}  // namespace
+
+Result<void> Store::finish(const ResultRecord& result, const SlotRecord* candidate) {
+  Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  if (auto added = add_result(database_, result); !added) return added;
+  if (candidate != nullptr) {
+    if (auto put = put_candidate(database_, *candidate); !put) return put;
+  }
+  return transaction->commit();
+}
+
+Result<std::optional<ResultRecord>> Store::result(std::int64_t session) {
+  if (auto there = require_session(database_, session); !there) {
+    return tl::unexpected(there.error());
+  }
+  auto row =
+      sqlite::Statement::prepare(database_,
+                                 SELFCAL_FIGURES
+                                 ", json.body, text.body FROM result JOIN text ON text.id = robot"
+                                 " LEFT JOIN json USING(session) WHERE session = ?1",
+                                 {session});
+  if (!row) return tl::unexpected(row.error());
+  const Result<bool> there = row->step();
+  if (!there) return tl::unexpected(there.error());
+  if (!*there) return std::nullopt;
+  ResultRecord result = figures_of(*row);
+  result.json = row->text(12);
+  result.robot_text = row->text(13);
+  return result;
+}
+
+Result<std::vector<ResultRecord>> Store::results(int newest) {
+  auto rows = sqlite::Statement::prepare(
+      database_, SELFCAL_FIGURES " FROM result ORDER BY session DESC LIMIT ?1",
+      {std::int64_t{newest < 0 ? 0 : newest}});
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<ResultRecord> results;
+  for (;;) {
+    const Result<bool> row = rows->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return results;
+    results.push_back(figures_of(*rows));
+  }
+}
+
+}  // namespace selfcal
