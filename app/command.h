@@ -23,6 +23,7 @@ void add_identify(CLI::App& app, int& status);
 void add_identifiable(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);
+void add_serve(CLI::App& app, int& status);
 
 /// Says `failure` on standard error and returns its exit status.
 int tell(const Failure& failure);

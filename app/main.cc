@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_simulate(app, status);
   add_identifiable(app, status);
   add_robot(app, status);
+  add_serve(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/pretend.h"
 #include "io/data_set_writer.h"
 #include "io/file.h"
 #include "io/robot_file.h"
-#include "io/yaml.h"
 #include "sim/data_set_maker.h"
 #include "sim/truth_json.h"
 
@@ -15,19 +15,10 @@ namespace selfcal {
 namespace {
 
 struct Arguments {
-  std::string scenario, out, truth;
+  std::string scenario, out, truth, live;
 };
 
 constexpr std::size_t kMostRobotBytes = 4 << 20;
-
-Result<Scenario> load_scenario(const std::string& path) {
-  const Result<Node> node = read_yaml(path);
-  if (!node) return tl::unexpected(node.error());
-  Problems problems;
-  Scenario scenario = read_scenario(*node, problems);
-  if (problems.any()) return bad_input(problems);
-  return scenario;
-}
 
 Result<void> write(const Arguments& arguments, const Scenario& scenario,
                    const std::filesystem::path& robot_path, const Robot& robot,
@@ -43,7 +34,23 @@ Result<void> write(const Arguments& arguments, const Scenario& scenario,
   return write_file_atomically(arguments.truth, truth_json(scenario, robot, made).dump(1) + "\n");
 }
 
+/// Plays the machine over DDS until it is told to stop; then says what it was.
+int play_command(const Arguments& arguments) {
+  const auto config = load_config(arguments.live);
+  if (!config) return tell(config.error());
+  const auto machine = load_machine(arguments.scenario, *config);
+  if (!machine) return tell(machine.error());
+  listen_to_signals();
+  if (const auto played = play(**machine, *config); !played) return tell(played.error());
+  if (arguments.truth.empty()) return kDone;
+  const auto written = write_file_atomically(arguments.truth, machine_truth(**machine));
+  return written ? kDone : tell(written.error());
+}
+
 int simulate_command(const Arguments& arguments) {
+  if (arguments.live.empty() == arguments.out.empty())
+    return wrong_usage("give --out FOLDER for a data set, or --live CONFIG to play the robot");
+  if (!arguments.live.empty()) return play_command(arguments);
   const Result<Scenario> scenario = load_scenario(arguments.scenario);
   if (!scenario) return tell(scenario.error());
   const std::filesystem::path robot_path =
@@ -78,10 +85,10 @@ void add_simulate(CLI::App& app, int& status) {
       ->add_option("SCENARIO", arguments->scenario,
                    "SCENARIO.yaml: the robot, its errors, the sets")
       ->required();
-  command
-      ->add_option("--out", arguments->out,
-                   "Folder of the data set; new, empty or a simulated data set to be replaced")
-      ->required();
+  command->add_option("--out", arguments->out,
+                      "Folder of the data set; new, empty or a simulated data set to be replaced");
+  command->add_option("--live", arguments->live,
+                      "CONFIG.yaml of a service: play its robot over DDS until interrupted");
   command->add_option("--truth", arguments->truth, "File for the truth (JSON); not kept otherwise");
   command->callback([arguments, &status] { status = simulate_command(*arguments); });
 }

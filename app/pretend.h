@@ -1,0 +1,30 @@
+// The pretend machine of a configuration's scenario: loaded, and played over DDS in a process of
+// its own.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/service/config.h"
+#include "sim/machine.h"
+
+namespace selfcal {
+
+/// Ends the loop that asks for it: SIGINT or SIGTERM has come.
+bool told_to_stop();
+/// From now on these signals end loops and not the process.
+void listen_to_signals();
+
+/// The scenario of a file.
+Result<Scenario> load_scenario(const std::string& path);
+
+/// The machine of a scenario, standing at the configuration's home.
+Result<std::unique_ptr<Machine>> load_machine(const std::string& scenario, const Config& config);
+
+/// What the machine really is, and what it did: false touches and how often each label was visited.
+std::string machine_truth(const Machine& machine);
+
+/// Plays the machine over DDS at the pace of the clock until told to stop.
+Result<void> play(Machine& machine, const Config& config);
+
+}  // namespace selfcal

@@ -1,0 +1,210 @@
+// selfcal serve CONFIG.yaml: the service, over DDS, with a real robot or a pretend one.
+#include <fcntl.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/pretend.h"
+#include "app/service/service.h"
+#include "io/dds/clock.h"
+#include "io/dds/encoders.h"
+#include "io/dds/messenger.h"
+#include "io/dds/motion.h"
+#include "io/dds/participant.h"
+#include "io/dds/thermometer.h"
+#include "io/dds/trigger.h"
+#include "io/file.h"
+#include "sim/ports.h"
+
+namespace selfcal {
+namespace {
+
+struct Arguments {
+  std::string config, truth, log = "info";
+  bool simulate = false, check = false;
+  int sessions = 0;
+};
+
+/// The state folder belongs to one service at a time.
+class Lock {
+ public:
+  static Result<Lock> take(const std::filesystem::path& folder) {
+    const std::string path = folder / "lock";
+    const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+    if (file < 0) return device_failed(path + ": cannot be made");
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+      ::close(file);
+      return device_failed(folder.string() + ": another service is using it");
+    }
+    return Lock(file);
+  }
+  Lock(Lock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Lock& operator=(Lock&&) = delete;
+  ~Lock() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+ private:
+  explicit Lock(int file) : file_(file) {}
+  int file_;
+};
+
+/// The ports of a robot on DDS, as far as they stand.
+struct DdsPorts {
+  std::shared_ptr<TimeMapping> mapping = std::make_shared<TimeMapping>();
+  std::unique_ptr<DdsEncoders> encoders;
+  std::unique_ptr<DdsTrigger> trigger;
+  std::unique_ptr<DdsMotion> motion;
+  std::unique_ptr<DdsThermometer> thermometer;
+
+  static Result<DdsPorts> open(const DdsParticipant& participant, const Config& config,
+                               Wakeup& wakeup) {
+    DdsPorts ports;
+    auto encoders = DdsEncoders::open(
+        participant, {.topic = config.joint_topic, .joints = config.joint_names}, ports.mapping);
+    if (!encoders) return tl::unexpected(encoders.error());
+    auto trigger =
+        DdsTrigger::open(participant, {.topic = config.trigger_topic}, ports.mapping, wakeup);
+    if (!trigger) return tl::unexpected(trigger.error());
+    auto motion = DdsMotion::open(participant, config.id, wakeup);
+    if (!motion) return tl::unexpected(motion.error());
+    ports.encoders = std::move(*encoders);
+    ports.trigger = std::move(*trigger);
+    ports.motion = std::move(*motion);
+    if (config.temperature_topic.empty()) return ports;
+    auto thermometer = DdsThermometer::open(participant, {.topic = config.temperature_topic});
+    if (!thermometer) return tl::unexpected(thermometer.error());
+    ports.thermometer = std::move(*thermometer);
+    return ports;
+  }
+};
+
+void set_up_log(const std::string& level) {
+  auto log = spdlog::stderr_logger_st("selfcal");
+  // The journal adds the time by itself and reads the level from <N>.
+  log->set_pattern(std::getenv("JOURNAL_STREAM") ? "%v" : "%Y-%m-%d %H:%M:%S %l: %v");
+  log->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(std::move(log));
+}
+
+Result<void> run(Service& service, int sessions) {
+  while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions))
+    if (auto turned = service.turn(); !turned) return turned;
+  service.shut_down();
+  return {};
+}
+
+Result<void> serve(const Arguments& arguments, Config config) {
+  std::error_code error;
+  std::filesystem::create_directories(config.state, error);
+  if (error) return device_failed(config.state.string() + ": " + error.message());
+  const auto lock = Lock::take(config.state);
+  if (!lock) return tl::unexpected(lock.error());
+  auto opened = Store::open(config.state);
+  if (!opened) return tl::unexpected(opened.error());
+  auto models = Models::load(config.robot, *opened->store);
+  if (!models) return tl::unexpected(models.error());
+  if (auto written = models->write_active(config.state); !written) return written;
+
+  Wakeup wakeup;
+  SystemClock clock(wakeup);
+  auto participant =
+      DdsParticipant::open(static_cast<std::uint32_t>(config.domain), "selfcal " + config.id);
+  if (!participant) return tl::unexpected(participant.error());
+  auto messenger = DdsMessenger::open(*participant, config.id, wakeup);
+  if (!messenger) return tl::unexpected(messenger.error());
+
+  const auto serve_with = [&](const Ports& ports) {
+    Service service(config, ports, **messenger, *opened->store, std::move(*models),
+                    opened->set_aside);
+    return run(service, arguments.sessions);
+  };
+  if (!arguments.simulate) {
+    auto dds = DdsPorts::open(*participant, config, wakeup);
+    if (!dds) return tl::unexpected(dds.error());
+    return serve_with({&clock, dds->encoders.get(), dds->trigger.get(), dds->motion.get(),
+                       dds->thermometer.get()});
+  }
+  auto machine = load_machine(config.simulation, config);
+  if (!machine) return tl::unexpected(machine.error());
+  SimulatedPorts simulated(**machine, clock.unix_ms(), [&](Nanoseconds longest) {
+    const Nanoseconds began = clock.now();
+    clock.wait(longest);
+    return clock.now() - began;
+  });
+  auto served = serve_with(simulated.ports());
+  if (!arguments.truth.empty())
+    if (auto written = write_file_atomically(arguments.truth, machine_truth(**machine)); !written)
+      return written;
+  return served;
+}
+
+/// What a session would do, for a person.
+int show_plan(const Config& config) {
+  const TouchPlan plan = plan_touches(*config.robot, values(*config.robot), config.sets,
+                                      config.targets, config.obstacles, config.plan);
+  std::printf("%s: robot %s, %zu joints, state in %s, DDS domain %d\n", config.id.c_str(),
+              config.robot->name().c_str(), config.robot->joints().size(), config.state.c_str(),
+              config.domain);
+  for (std::size_t s = 0; s < config.sets.size(); ++s) {
+    int touches = 0, check = 0, home = 0;
+    for (const PlannedTouch& touch : plan.touches)
+      if (touch.set == static_cast<int>(s)) {
+        ++touches;
+        check += touch.check;
+        home += touch.via_home;
+      }
+    std::printf("  %-16s %-20s %4d touches, %d to check, %d reached through home\n",
+                config.sets[s].name.c_str(), std::string(config.sets[s].method->name()).c_str(),
+                touches, check, home);
+  }
+  if (plan.unreached.empty()) return kDone;
+  std::fprintf(stderr, "selfcal: %s\n", plan.unreached.c_str());
+  return kAnswerIsNo;
+}
+
+int serve_command(const Arguments& arguments) {
+  auto config = load_config(arguments.config);
+  if (!config) return tell(config.error());
+  if (arguments.simulate && config->simulation.empty())
+    return wrong_usage("--simulate needs `simulation: SCENARIO.yaml` in " + arguments.config);
+  if (!arguments.truth.empty() && !arguments.simulate)
+    return wrong_usage("--truth needs --simulate: a real robot has no file of it");
+  if (arguments.simulate)
+    if (const auto machine = load_machine(config->simulation, *config); !machine)
+      return tell(machine.error());
+  if (arguments.check) return show_plan(*config);
+  set_up_log(arguments.log);
+  listen_to_signals();
+  if (const auto served = serve(arguments, std::move(*config)); !served)
+    return tell(served.error());
+  return kDone;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("serve", "Run the calibration service of one robot");
+  command->add_option("CONFIG", arguments->config, "CONFIG.yaml (see app/service/config.h)")
+      ->required();
+  command->add_flag("--simulate", arguments->simulate,
+                    "With the pretend machine of the configuration's `simulation`");
+  command->add_flag("--check", arguments->check, "Validate, print the plan, and end");
+  command->add_option("--sessions", arguments->sessions,
+                      "End after so many sessions (default: never)");
+  command->add_option("--truth", arguments->truth,
+                      "With --simulate: file for what the pretend machine really is");
+  command->add_option("--log", arguments->log, "Least level logged")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
+      ->capture_default_str();
+  command->callback([arguments, &status] { status = serve_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,50 @@
+#include "app/service/computation.h"
+
+#include <exception>
+
+namespace selfcal {
+
+Computation::~Computation() {
+  if (thread_.joinable()) thread_.join();
+}
+
+void Computation::start(Job job) {
+  if (thread_.joinable()) thread_.join();
+  progress_ = {};
+  failure_.clear();
+  running_ = true;
+  wanted_ = true;
+  thread_ = std::thread([this, job = std::move(job)] {
+    const Tell tell = [this](std::string_view stage, double share) {
+      const std::lock_guard lock(mutex_);
+      progress_.stage = stage;
+      progress_.share = share;
+      ++progress_.beats;
+    };
+    std::string failure;
+    try {
+      failure = job(tell);
+    } catch (
+        const std::exception& error) {  // out of memory, or a bug that must not end the service
+      failure = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(failure);
+    running_ = false;
+  });
+}
+
+bool Computation::take(std::string& failure) {
+  if (!wanted_ || running_) return false;
+  thread_.join();
+  wanted_ = false;
+  failure = failure_;
+  return true;
+}
+
+Computation::Progress Computation::progress() const {
+  const std::lock_guard lock(mutex_);
+  return progress_;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,283 @@
+#include "app/service/config.h"
+
+#include <cstdlib>
+
+#include "io/file.h"
+#include "io/robot_file.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+namespace {
+
+constexpr std::size_t kMostRobotBytes = 1 << 20;
+constexpr std::array<std::string_view, 5> kOwnKeys = {"touches", "surface", "within", "places",
+                                                      "way_out"};
+
+/// Reads the parts of a configuration, each into its place.
+class Reader {
+ public:
+  Reader(std::filesystem::path folder, Problems& problems)
+      : folder_(std::move(folder)), problems_(problems) {}
+
+  Config read(const Node& node) {
+    Fields fields(node, "configuration", problems_);
+    read_robot(fields);
+    if (problems_.any()) return std::move(c_);
+    read_identity(fields);
+    part(fields, "encoders", [&](Fields& f) { read_encoders(f); });
+    part(fields, "trigger", [&](Fields& f) { read_trigger(f); });
+    c_.temperature_topic = fields.text("temperature", "");
+    if (!fields.node("motion")) fields.fail("motion", "{home: [...], ...}");
+    part(fields, "motion", [&](Fields& f) { read_motion(f); });
+    part(fields, "touch", [&](Fields& f) { read_touch(f); });
+    part(fields, "limits", [&](Fields& f) { read_limits(f); });
+    part(fields, "accept", [&](Fields& f) { read_accept(f); });
+    part(fields, "schedule", [&](Fields& f) { read_schedule(f); });
+    c_.resume = fields.flag("resume", c_.resume);
+    c_.store_bytes =
+        static_cast<std::int64_t>(number_within(fields, "store_mb", 100, 1, 1e6) * 1e6);
+    if (const std::string file = fields.text("simulation", ""); !file.empty())
+      c_.simulation = folder_ / file;
+    read_sets(fields);
+    fields.refuse_unknown();
+    return std::move(c_);
+  }
+
+ private:
+  template <class Read>
+  void part(Fields& fields, std::string_view key, const Read& read) {
+    static const Node kEmpty = Node::map();
+    const Node* node = fields.node(key);
+    Fields inner(node ? *node : kEmpty, std::string(key), problems_);
+    read(inner);
+    inner.refuse_unknown();
+  }
+
+  void read_robot(Fields& fields) {
+    const std::string name = fields.text("robot");
+    if (problems_.any()) return;
+    auto robot = load_robot(folder_ / name);
+    auto text = read_file(folder_ / name, kMostRobotBytes);
+    if (!robot || !text)
+      return problems_.list.push_back((!robot ? robot.error() : text.error()).what);
+    c_.robot = std::move(*robot);
+    c_.robot_text = std::move(*text);
+    if (c_.robot->joints().size() > static_cast<std::size_t>(kMostJoints))
+      fields.fail("robot", "a robot of at most " + std::to_string(kMostJoints) + " joints");
+  }
+
+  void read_identity(Fields& fields) {
+    c_.id = fields.text("id", c_.robot->name());
+    c_.serial = fields.text("serial", c_.id);
+    const char* folder = std::getenv("STATE_DIRECTORY");
+    const std::string state = fields.text("state", "");
+    c_.state = !state.empty() ? folder_ / state
+               : folder       ? std::filesystem::path(folder)
+                              : folder_ / "state";
+    c_.target = number_within(fields, "target", c_.target, 1e-6, 1);
+    c_.domain = fields.integer("domain", c_.domain, 0, 230);
+  }
+
+  void read_encoders(Fields& f) {
+    c_.joint_topic = f.text("topic", c_.joint_topic);
+    c_.joint_names = f.texts("joints");
+    if (c_.joint_names.empty())
+      for (const Joint& joint : c_.robot->joints()) c_.joint_names.push_back(joint.name);
+    if (c_.joint_names.size() != c_.robot->joints().size())
+      f.fail("joints", std::to_string(c_.robot->joints().size()) + " names");
+    c_.silence = number_within(f, "silence", c_.silence, 0.01, 60);
+  }
+
+  void read_trigger(Fields& f) {
+    c_.trigger_topic = f.text("topic", "selfcal/" + c_.id + "/trigger");
+    c_.touch.debounce = number_within(f, "debounce", c_.touch.debounce, 0, 0.1);
+    c_.touch.delay = number_within(f, "delay", c_.touch.delay, 0, 0.1);
+  }
+
+  void read_motion(Fields& f) {
+    const auto home = f.numbers("home", static_cast<int>(c_.robot->joints().size()));
+    if (home)
+      c_.plan.home = *home;
+    else
+      f.fail("home", "a reading for each joint (rad, m)");
+    c_.speeds.travel = number_within(f, "speed", c_.speeds.travel, 1e-3, 100);
+    c_.speeds.touch = number_within(f, "touch_speed", c_.speeds.touch, 1e-4, 1);
+    c_.plan.clearance = number_within(f, "clearance", c_.plan.clearance, 1e-3, 0.5);
+    c_.plan.search = number_within(f, "search", c_.plan.search, 1e-4, 0.1);
+    c_.plan.apart = number_within(f, "apart", c_.plan.apart, 0, 0.5);
+    c_.plan.tilt = number_within(f, "tilt", c_.plan.tilt, 0.01, 3.2);
+    c_.plan.limit_margin = number_within(f, "limit_margin", c_.plan.limit_margin, 0, 1);
+    c_.touch.rest = number_within(f, "rest", c_.touch.rest, 1e-7, 0.1);
+    if (c_.plan.apart >= c_.plan.clearance) f.fail("apart", "less than clearance");
+    if (c_.plan.search >= c_.plan.clearance) f.fail("search", "less than clearance");
+  }
+
+  void read_touch(Fields& f) {
+    c_.touch.repeats = f.integer("repeats", c_.touch.repeats, 1, 20);
+    c_.touch.tolerance = number_within(f, "tolerance", c_.touch.tolerance, 1e-6, 0.01);
+    c_.limits.attempts = f.integer("attempts", c_.limits.attempts, 1, 20);
+    c_.limits.most_failures = f.integer("most_lost", c_.limits.most_failures, 1, 1000);
+  }
+
+  void read_limits(Fields& f) {
+    const auto limit = [&](const char* key, Nanoseconds& value) {
+      value = nanoseconds(number_within(f, key, seconds(value), 1, 3600));
+    };
+    limit("self_test", c_.limits.self_test);
+    limit("planning", c_.limits.planning);
+    limit("approach", c_.limits.approach);
+    limit("touch", c_.limits.touch);
+    limit("settle", c_.limits.settle);
+    limit("retract", c_.limits.retract);
+    limit("computing", c_.limits.computing);
+  }
+
+  void read_accept(Fields& f) {
+    c_.accept.automatic = f.flag("auto", false);
+    c_.accept.check = number_within(f, "check", c_.accept.check, 0.1, 0.9);
+    c_.plan.check = c_.accept.check;
+    c_.accept.margin = number_within(f, "margin", c_.accept.margin, 0, 0.9);
+    part(f, "largest_change", [&](Fields& g) {
+      LargestChange& most = c_.accept.largest_change;
+      const auto change = [&](const char* key, double& value) {
+        value = number_within(g, key, value, 0, 10);
+      };
+      change("length", most.length);
+      change("angle", most.angle);
+      change("base_length", most.base_length);
+      change("base_angle", most.base_angle);
+      change("tool_length", most.tool_length);
+      change("tool_angle", most.tool_angle);
+    });
+  }
+
+  std::optional<double> optional_within(Fields& f, std::string_view key, double least,
+                                        double most) {
+    if (!f.has(key)) return std::nullopt;
+    return number_within(f, key, least, least, most);
+  }
+
+  void read_schedule(Fields& f) {
+    Schedule& s = c_.schedule;
+    s.every_hours = optional_within(f, "every_hours", 1e-4, 1e5);
+    s.after_motion_hours = optional_within(f, "after_motion_hours", 1e-4, 1e5);
+    s.temperature_change = optional_within(f, "temperature_change", 0.1, 100);
+    if (f.has("at")) {
+      const std::string at = f.text("at");
+      int hour = -1, minute = -1;
+      char end = 0;
+      if (std::sscanf(at.c_str(), "%2d:%2d%c", &hour, &minute, &end) == 2 && hour >= 0 &&
+          hour < 24 && minute >= 0 && minute < 60)
+        s.at_minute = 60 * hour + minute;
+      else
+        f.fail("at", "\"HH:MM\"");
+    }
+    s.check_first = f.flag("check_first", s.check_first);
+    s.check_touches = f.integer("check_touches", s.check_touches, 8, 200);
+    s.check_p = number_within(f, "check_p", s.check_p, 1e-6, 0.5);
+    s.full_after_checks = f.integer("full_after_checks", s.full_after_checks, 1, 10000);
+  }
+
+  void read_sets(Fields& fields) {
+    const Node* sets = fields.node("sets");
+    if (!sets || sets->kind != Node::Kind::map || sets->items.empty())
+      return fields.fail("sets", "one set or more, each as `name: {method: ...}`");
+    Node entries = Node::map();
+    for (std::size_t i = 0; i < sets->keys.size(); ++i)
+      entries.set(sets->keys[i], read_set(sets->keys[i], sets->items[i]));
+    if (!problems_.any()) link_sets(c_.sets, entries, problems_);
+    c_.description = Node::map();
+    c_.description.set("target", Node::of(c_.target));
+    c_.description.set("sets", std::move(entries));
+    c_.hash = sha256_hex(write_yaml(c_.description) + c_.robot->identity());
+  }
+
+  /// Reads the configuration's own keys and returns the rest, an entry of dataset.yaml.
+  Node read_set(const std::string& name, const Node& node) {
+    const std::string what = "set " + name;
+    Node entry = Node::map();
+    entry.place = node.place;
+    for (std::size_t i = 0; i < node.keys.size(); ++i)
+      if (std::ranges::find(kOwnKeys, node.keys[i]) == kOwnKeys.end())
+        entry.set(node.keys[i], node.items[i]);
+    c_.sets.push_back(make_set(name, entry, problems_));
+    const std::shared_ptr<const Method> method = c_.sets.back().method;
+    Fields f(node, what, problems_);
+    if (!method) return entry;
+    TouchTarget target;
+    target.set = static_cast<int>(c_.sets.size()) - 1;
+    target.touches = f.integer("touches", 40, 4, 10000);
+    const Node *surface = f.node("surface"), *within = f.node("within"), *places = f.node("places");
+    if (method->name() == "plane")
+      read_plane(f, surface, within, target);
+    else if (method->group_freedom() > 0 && method->columns() == std::vector<std::string>{"group"})
+      read_sockets(f, places, target);
+    else
+      f.fail("method", "plane, position-constraint or location-constraint: what a touch can do");
+    c_.targets.push_back(std::move(target));
+    return entry;
+  }
+
+  void read_plane(Fields& f, const Node* surface, const Node* within, TouchTarget& target) {
+    if (!surface) return f.fail("surface", "{point: [x, y, z], normal: [x, y, z]}");
+    if (!within) return f.fail("within", "{center: [x, y, z], radius: R}");
+    const Surface s = read_surface(*surface, f.what() + " surface", problems_);
+    target.within = read_patch(*within, f.what() + " within", problems_);
+    target.outward = s.normal;
+    target.own = (Eigen::VectorXd(4) << s.normal, s.normal.dot(s.point)).finished();
+    c_.obstacles.push_back({s.point, s.normal, target.within});
+  }
+
+  void read_sockets(Fields& f, const Node* places, TouchTarget& target) {
+    if (!places) return f.fail("places", "[[x, y, z], ...]");
+    target.places = read_places(*places, f.what() + " places", problems_);
+    target.outward = read_unit(f, "way_out");
+    target.within = {};
+  }
+
+  std::filesystem::path folder_;
+  Problems& problems_;
+  Config c_;
+};
+
+}  // namespace
+
+double LargestChange::of(const Parameter& parameter) const {
+  const bool is_length = parameter.quantity == Quantity::length;
+  switch (parameter.part) {
+    case Part::base:
+      return is_length ? base_length : base_angle;
+    case Part::tool:
+      return is_length ? tool_length : tool_angle;
+    case Part::link:
+      return is_length ? length : angle;
+    case Part::gear:
+      return angle;
+  }
+  return 0;
+}
+
+Result<Config> load_config(const std::filesystem::path& path) {
+  const Result<Node> node = read_yaml(path);
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  Config config = Reader(path.parent_path(), problems).read(*node);
+  if (problems.any()) return bad_input(problems);
+  return config;
+}
+
+Result<std::vector<Set>> sets_of(const std::string& description) {
+  const Result<Node> node = parse_yaml(description, "session");
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  std::vector<Set> sets;
+  const Node* entries = node->find("sets");
+  if (!entries) return bad_input("session: no sets");
+  for (std::size_t i = 0; i < entries->keys.size(); ++i)
+    sets.push_back(make_set(entries->keys[i], entries->items[i], problems));
+  if (!problems.any()) link_sets(sets, *entries, problems);
+  if (problems.any()) return bad_input(problems);
+  return sets;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,136 @@
+// CONFIG.yaml: one robot, its cell, and when and how it calibrates itself. Paths in it are relative
+// to it.
+//
+//   key              default    range           meaning
+//   robot            required                   file of the robot as its maker gives it
+//   id               the robot's name           in topic names; one for each robot in a domain
+//   serial           id                         hardware_id in the diagnostics
+//   state            $STATE_DIRECTORY or state  folder of what must not be lost
+//   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted (1 sigma)
+//   domain           0          0 to 230        of DDS
+//   encoders         {}                         where joint readings come from:
+//     topic          joint_states               sensor_msgs/JointState
+//     joints         frames' names              names in the message, in the robot's order
+//     silence        0.5        0.01 to 60 s    without a sample they count as lost
+//   trigger          {}                         where the touch comes from:
+//     topic          selfcal/ID/trigger         selfcal_msgs/StampedBool
+//     debounce       0.002      0 to 0.1 s      a level counts once it has lasted so long
+//     delay          0          0 to 0.1 s      known time from the contact to the edge
+//   temperature      none                       topic of a sensor_msgs/Temperature
+//   motion           required                   how the robot is asked to move:
+//     home           required   rad, m          readings from which every touch can be begun
+//     speed          0.5        1e-3 to 100     largest joint speed on free ways (rad/s, m/s)
+//     touch_speed    0.01       1e-4 to 1 m/s   of the endpoint towards a surface
+//     clearance      0.03       1e-3 to 0.5 m   how far before the surface a touch begins
+//     search         0.01       1e-4 to 0.1 m   how far off the surface may be, either way
+//     apart          0.02       0 to 0.5 m      kept from every other surface; below clearance
+//     tilt           1.2        0.01 to 3.2 rad most between stylus and the way in
+//     limit_margin   0.02       0 to 1          kept from the joint limits (rad, m)
+//     rest           1.0e-4     1e-7 to 0.1     joint speed below which the robot stands (rad/s)
+//   touch            {}                         when a touch counts:
+//     repeats        1          1 to 20         good touches of each configuration
+//     tolerance      1.0e-4     1e-6 to 0.01 m  most between them
+//     attempts       3          1 to 20         failures before a configuration is put aside
+//     most_lost      5          1 to 1000       configurations put aside in a row before it stops
+//   limits           {}         1 to 3600 s     time for self_test 10, planning 120, approach 60,
+//                                               touch 60, settle 2, retract 30, computing 600
+//   sets             required                   NAME: {an entry of dataset.yaml's sets, and:
+//     touches        40         4 to 10000      configurations
+//     surface        planes                     {point: [x, y, z], normal: [x, y, z]}, roughly; the
+//                                               normal points at the robot
+//     within         planes                     {center: [x, y, z], radius: R}: where touches may
+//     lie places         the others                 sockets or nests, roughly: [[x, y, z (,
+//     qw..qz)], ...] way_out        the others                 [x, y, z]: direction out of the
+//     socket
+//   }
+//   accept           {}                         when a result is applied:
+//     auto           false                      without asking a person
+//     check          0.33       0.1 to 0.9      share of the touches kept aside to judge
+//     margin         0.05       0 to 0.9        how much better the check rows must be
+//     largest_change {}                         most from the active parameters: length 0.005,
+//                                               angle 0.005, base_length 0.05, base_angle 0.05,
+//                                               tool_length 0.05, tool_angle 0.05 (m, rad)
+//   schedule         {}                         when it begins by itself; nothing by default:
+//     every_hours    none       0.0001 to 1e5   after the last session or check
+//     at             none       "HH:MM"         once a day, local time
+//     after_motion_hours none   0.0001 to 1e5   of motion
+//     temperature_change none   0.1 to 100      K since the last session
+//     check_first    true                       a quick check, and a full session only if it fails
+//     check_touches  12         8 to 200
+//     check_p        0.01       1e-6 to 0.5     below it the active model does not explain them
+//     full_after_checks 30      1 to 10000      then a full session all the same
+//   resume           true                       after a power cut the session goes on by itself
+//   store_mb         100        1 to 1e6        the store is pruned beyond it
+//   simulation       none                       SCENARIO.yaml of `serve --simulate`
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/service/schedule.h"
+#include "app/service/transition.h"
+#include "constraints/place_fields.h"
+#include "constraints/touch_plan.h"
+#include "io/result.h"
+
+namespace selfcal {
+
+struct LargestChange {
+  double length = 5e-3, angle = 5e-3;
+  double base_length = 0.05, base_angle = 0.05;
+  double tool_length = 0.05, tool_angle = 0.05;
+  double of(const Parameter& parameter) const;
+};
+
+struct Acceptance {
+  bool automatic = false;
+  double check = 0.33, margin = 0.05;
+  LargestChange largest_change;
+};
+
+struct TouchRules {
+  int repeats = 1, attempts = 3, most_lost = 5;
+  double tolerance = 1e-4;             ///< m
+  double debounce = 0.002, delay = 0;  ///< s
+  double rest = 1e-4;                  ///< rad/s
+};
+
+struct Speeds {
+  double travel = 0.5;  ///< rad/s
+  double touch = 0.01;  ///< m/s
+};
+
+struct Config {
+  std::string robot_text;  ///< the robot file's content, as the maker gives it
+  std::shared_ptr<const Robot> robot;
+  std::string id, serial, hash;  ///< hash: of what the rows of a session mean
+  std::filesystem::path state;
+  double target = 1e-3;
+  int domain = 0;
+  std::string joint_topic = "joint_states", trigger_topic, temperature_topic;
+  std::vector<std::string> joint_names;
+  double silence = 0.5;  ///< s
+  Speeds speeds;
+  TouchPlanOptions plan;
+  TouchRules touch;
+  Limits limits;
+  std::vector<Set> sets;
+  std::vector<TouchTarget> targets;
+  std::vector<Obstacle> obstacles;
+  Node description;  ///< of the data set that a session's touches make
+  Acceptance accept;
+  Schedule schedule;
+  bool resume = true;
+  std::int64_t store_bytes = 100'000'000;
+  std::filesystem::path simulation;  ///< empty when none is given
+};
+
+/// Reads CONFIG.yaml and the robot it names; the first mistake with file and line otherwise.
+Result<Config> load_config(const std::filesystem::path& path);
+
+/// The sets of a stored description, with their methods.
+Result<std::vector<Set>> sets_of(const std::string& description);
+
+}  // namespace selfcal

@@ -1,0 +1,34 @@
+// From a chattering contact to a level and the moment at which it was first met.
+//
+// A new level counts once nothing has changed for `quiet`; its moment is that of the first edge of
+// the burst. A burst that ends at the old level is a glitch.
+#pragma once
+
+#include <optional>
+
+#include "io/ports.h"
+
+namespace selfcal {
+
+class Debouncer {
+ public:
+  explicit Debouncer(Nanoseconds quiet) : quiet_(quiet) {}
+
+  /// The level from which edges are counted.
+  void begin(bool closed);
+  /// One edge, in the order of time. An edge to the level that already is says that others were
+  /// lost; it counts as a change of its own.
+  void add(const Edge& edge);
+  /// The level that has held since, if it is a new one.
+  std::optional<Edge> settled(Nanoseconds now);
+  std::uint64_t glitches() const { return glitches_; }
+
+ private:
+  Nanoseconds quiet_;
+  bool level_ = false, raw_ = false;
+  std::optional<Nanoseconds> burst_;  ///< its first edge
+  Nanoseconds last_ = 0;
+  std::uint64_t glitches_ = 0;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,56 @@
+#include "app/service/reading.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selfcal {
+
+Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<EncoderScale>& scales) {
+  Eigen::VectorXd q(sample.joints);
+  for (int j = 0; j < sample.joints; ++j)
+    q[j] = static_cast<double>(sample.counts[j] - scales[j].zero) * scales[j].step;
+  return q;
+}
+
+Reading reading_between(const EncoderSample& before, const EncoderSample& after, Nanoseconds at,
+                        const std::vector<EncoderScale>& scales) {
+  const Eigen::VectorXd first = reading_of(before, scales), second = reading_of(after, scales);
+  if (after.time <= before.time) return {first, Eigen::VectorXd::Zero(first.size())};
+  const double share =
+      static_cast<double>(at - before.time) / static_cast<double>(after.time - before.time);
+  return {first + share * (second - first), (second - first) / seconds(after.time - before.time)};
+}
+
+void SampleHistory::add(const EncoderSample& sample) {
+  if (!samples_.empty() && sample.time <= samples_.back().time) {
+    ++out_of_order_;
+    return;
+  }
+  samples_.push_back(sample);
+  if (samples_.size() > kMost) samples_.pop_front();
+}
+
+std::optional<std::pair<EncoderSample, EncoderSample>> SampleHistory::around(Nanoseconds t) const {
+  const auto after = std::ranges::lower_bound(samples_, t, {}, &EncoderSample::time);
+  if (after == samples_.end()) return std::nullopt;
+  if (after->time == t) return std::pair{*after, *after};
+  if (after == samples_.begin()) return std::nullopt;
+  return std::pair{*std::prev(after), *after};
+}
+
+std::optional<bool> SampleHistory::at_rest(const std::vector<EncoderScale>& scales, double speed,
+                                           Nanoseconds span) const {
+  if (samples_.empty()) return std::nullopt;
+  const auto first =
+      std::ranges::lower_bound(samples_, samples_.back().time - span, {}, &EncoderSample::time);
+  if (samples_.end() - first < 3) return std::nullopt;
+  const double allowed = speed * seconds(samples_.back().time - first->time);
+  for (int j = 0; j < first->joints; ++j) {
+    const auto counts = std::abs(samples_.back().counts[j] - first->counts[j]);
+    if (counts > 1 && static_cast<double>(counts) * std::abs(scales[j].step) > allowed)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,49 @@
+// What the joints read at the very moment of an edge.
+#pragma once
+
+#include <Eigen/Dense>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "io/ports.h"
+
+namespace selfcal {
+
+/// Joint readings (rad or m) and their speed at one moment.
+struct Reading {
+  Eigen::VectorXd q, dq;
+};
+
+Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<EncoderScale>& scales);
+
+/// Between two samples, by linear interpolation: exact at a steady speed, off by a t^2 / 8 under an
+/// acceleration a over the time t between them.
+Reading reading_between(const EncoderSample& before, const EncoderSample& after, Nanoseconds at,
+                        const std::vector<EncoderScale>& scales);
+
+/// The last samples, as many as a touch needs; bounded.
+class SampleHistory {
+ public:
+  /// Samples that do not follow the last one in time are dropped and counted.
+  void add(const EncoderSample& sample);
+  void clear() { samples_.clear(); }
+  bool empty() const { return samples_.empty(); }
+  const EncoderSample& last() const { return samples_.back(); }
+  std::uint64_t out_of_order() const { return out_of_order_; }
+
+  /// The two samples around a moment; nothing while the later one has not come or when the earlier
+  /// one is gone.
+  std::optional<std::pair<EncoderSample, EncoderSample>> around(Nanoseconds t) const;
+  /// True when no joint moved faster than `speed` over the last `span` (by more than one count);
+  /// nothing as long as there are fewer than three samples in it.
+  std::optional<bool> at_rest(const std::vector<EncoderScale>& scales, double speed,
+                              Nanoseconds span) const;
+
+ private:
+  static constexpr std::size_t kMost = 4096;
+  std::deque<EncoderSample> samples_;
+  std::uint64_t out_of_order_ = 0;
+};
+
+}  // namespace selfcal

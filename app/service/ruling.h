@@ -1,0 +1,41 @@
+// What becomes of a result: a candidate is applied, shown to a person, or rejected with its reason.
+#pragma once
+
+#include <string>
+
+#include "app/service/config.h"
+#include "constraints/identification.h"
+
+namespace selfcal {
+
+struct Ruling {
+  bool acceptable = false;
+  std::string answer;  ///< the verdict's: "improved", "not-improved", "not-determined"
+  std::string why;
+  double check_before = 0;  ///< m, rms of the check rows with the active parameters
+  double check_after = 0;   ///< m, with the candidate's
+};
+
+/// Judges a candidate, identified from rows starting at `active`, against the active parameters;
+/// `unchanged` is what the same rows say with every parameter of the robot held at them. It is
+/// acceptable when its verdict is improved, its check residual (rows beyond the noise left out) is
+/// better by the margin, and no parameter changes by more than its limit.
+Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solution& candidate,
+                      const Solution& unchanged);
+
+/// Whether the active model explains the touches of a quick check.
+struct CheckRuling {
+  bool explained = false;
+  double p_value = 0;
+  double rms = 0;       ///< m, of the new touches
+  double expected = 0;  ///< m, of the rows that judged the session behind the active parameters
+  std::string why;
+};
+
+/// `then` is the session behind the active parameters, `now` the same fit rows with the new touches
+/// as check rows; both with every parameter of the robot held. The mean squares of the new touches
+/// and of the session's check rows have the same expectation as long as nothing has changed: their
+/// ratio is compared with F.
+CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p);
+
+}  // namespace selfcal

@@ -1,0 +1,64 @@
+#include "app/service/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+constexpr std::int64_t kMinute = 60'000, kHour = 60 * kMinute, kDay = 24 * kHour;
+
+/// First moment after `from` at which the local clock shows the minute of the day.
+std::int64_t next_at(int minute, std::int64_t from, int utc_offset_s) {
+  const std::int64_t offset = std::int64_t{utc_offset_s} * 1000;
+  const std::int64_t midnight = (from + offset) / kDay * kDay - offset;
+  const std::int64_t today = midnight + minute * kMinute;
+  return today > from ? today : today + kDay;
+}
+
+std::string hours(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
+                      int utc_offset_s) {
+  std::int64_t next = 0;
+  const auto earlier = [&](std::int64_t t) { next = next == 0 ? t : std::min(next, t); };
+  if (schedule.every_hours)
+    earlier(since.unix_ms == 0 ? unix_ms
+                               : since.unix_ms + std::llround(*schedule.every_hours * kHour));
+  if (schedule.at_minute)
+    earlier(
+        next_at(*schedule.at_minute, since.unix_ms == 0 ? unix_ms : since.unix_ms, utc_offset_s));
+  return next;
+}
+
+std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
+                       std::optional<double> temperature, int utc_offset_s) {
+  std::string why;
+  // A wall clock that was set back must not put the next session off for years.
+  const bool ahead = since.unix_ms > unix_ms + kHour;
+  if (schedule.every_hours &&
+      (ahead || since.unix_ms == 0 ||
+       static_cast<double>(unix_ms - since.unix_ms) >= *schedule.every_hours * kHour))
+    why = "every " + hours(*schedule.every_hours) + " h";
+  if (schedule.at_minute && since.unix_ms != 0 &&
+      next_at(*schedule.at_minute, since.unix_ms, utc_offset_s) <= unix_ms)
+    why = "at the time of day";
+  if (schedule.after_motion_hours && since.motion_hours >= *schedule.after_motion_hours)
+    why = "after " + hours(since.motion_hours) + " h of motion";
+  if (schedule.temperature_change && temperature && since.temperature &&
+      std::abs(*temperature - *since.temperature) >= *schedule.temperature_change)
+    why = "the temperature moved by " + hours(*temperature - *since.temperature) + " K";
+  if (why.empty()) return std::nullopt;
+  const bool check =
+      schedule.check_first && since.calibrated && since.checks < schedule.full_after_checks;
+  return Due{check ? SessionKind::check : SessionKind::full, why};
+}
+
+}  // namespace selfcal

@@ -1,0 +1,79 @@
+#include "app/service/senses.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kRestSpan = 20 * kMillisecond;
+
+Event event_of(Event::What what, Nanoseconds now, std::string why = {}) {
+  Event event;
+  event.what = what;
+  event.now = now;
+  event.why = std::move(why);
+  return event;
+}
+
+}  // namespace
+
+void Senses::listen(Nanoseconds now, std::deque<Event>& events) {
+  listen_to_encoders(now, events);
+  listen_to_trigger(now, events);
+  listen_to_motion(now, events);
+}
+
+void Senses::listen_to_encoders(Nanoseconds now, std::deque<Event>& events) {
+  new_samples_.clear();
+  if (const auto taken = ports_.encoders->take(new_samples_); !taken)
+    events.push_back(event_of(Event::What::broken, now, taken.error().what));
+  for (const EncoderSample& sample : new_samples_) samples_.add(sample);
+  if (!new_samples_.empty()) heard_ = now;
+  counted_ += new_samples_.size();
+  if (now - counted_from_ >= kSecond) {
+    rate_ = static_cast<double>(counted_) / seconds(now - counted_from_);
+    counted_from_ = now;
+    counted_ = 0;
+  }
+}
+
+void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
+  new_edges_.clear();
+  if (const auto taken = ports_.trigger->take(new_edges_); !taken)
+    events.push_back(event_of(Event::What::broken, now, taken.error().what));
+  if (!level_) {
+    level_ = ports_.trigger->closed();
+    if (!level_) return;
+    debouncer_.begin(*level_);
+    events.push_back(event_of(*level_ ? Event::What::closed : Event::What::opened, now));
+    return;
+  }
+  for (const Edge& edge : new_edges_) debouncer_.add(edge);
+  const std::optional<Edge> edge = debouncer_.settled(now);
+  if (!edge) return;
+  level_ = edge->closed;
+  if (edge->closed) closing_ = edge;
+  events.push_back(event_of(edge->closed ? Event::What::closed : Event::What::opened, now));
+}
+
+void Senses::listen_to_motion(Nanoseconds now, std::deque<Event>& events) {
+  new_replies_.clear();
+  if (const auto taken = ports_.motion->take(new_replies_); !taken)
+    events.push_back(event_of(Event::What::broken, now, taken.error().what));
+  for (const MotionReply& reply : new_replies_) {
+    if (reply.id != expected_ || expected_ == 0) continue;
+    if (reply.outcome == MotionReply::Outcome::accepted) continue;
+    expected_ = 0;
+    const bool done = reply.outcome == MotionReply::Outcome::done;
+    events.push_back(event_of(done ? Event::What::moved : Event::What::refused, now, reply.why));
+  }
+}
+
+std::optional<bool> Senses::at_rest() const {
+  return samples_.at_rest(ports_.encoders->scales(), rest_, kRestSpan);
+}
+
+std::optional<Eigen::VectorXd> Senses::q() const {
+  if (samples_.empty()) return std::nullopt;
+  return reading_of(samples_.last(), ports_.encoders->scales());
+}
+
+}  // namespace selfcal

@@ -1,0 +1,126 @@
+// The loop: listens to the ports, asks the transition what to do, does it, and tells the world.
+//
+// The transition (transition.h) decides and knows nothing of ports; this class does what it is told
+// and decides nothing. No call blocks but Clock::wait and the store's own synchronisation.
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "app/service/computation.h"
+#include "app/service/config.h"
+#include "app/service/models.h"
+#include "app/service/ruling.h"
+#include "app/service/senses.h"
+#include "app/service/session.h"
+#include "io/messages.h"
+#include "io/supervisor.h"
+
+namespace selfcal {
+
+class Service {
+ public:
+  /// `damaged` is what the store had to set aside, or empty. All references outlive the service.
+  Service(Config config, const Ports& ports, Messenger& messenger, Store& store, Models models,
+          std::string damaged);
+
+  /// One turn: listen, step, act, tell, wait. Fails when the store can no longer be written.
+  Result<void> turn();
+  /// Stops motion and tells so; the session goes on after the next start.
+  void shut_down();
+
+  const Situation& situation() const { return situation_; }
+
+ private:
+  // service.cc
+  void listen();
+  void check_self();
+  void check_rest();
+  void check_schedule();
+  void handle_events();
+  void handle_command(const CommandMessage& command);
+  void act(const Action& action);
+  void put(Event event);
+  void put(Event::What what, bool ok = true, std::string why = {});
+  /// False, with a fault on its way, when the store has failed.
+  template <class T>
+  bool stored(const Result<T>& result);
+  Nanoseconds longest_wait() const;
+
+  // service_session.cc: from the plan to the last touch
+  bool can_check() const;
+  void begin_plan(const std::string& why);
+  void keep_plan(SessionRecord record, const TouchPlan& plan);
+  void resume();
+  bool open(Session session);
+  void announce_plan();
+  bool next_via_home(int step) const;
+  void move(MoveKind kind, const std::vector<double>& q, double speed);
+  double touch_speed(const StepRecord& step) const;
+  std::string label() const;
+  void stop(const std::string& why);
+  void read_touch();
+  void put_aside(const std::string& why);
+  void keep(TouchRecord touch);
+  void abort(const std::string& why);
+
+  // service_result.cc: from the rows to the decision
+  void analyse();
+  void identify();
+  void judge();
+  void keep_result(ResultRecord result, bool candidate);
+  void apply(const std::string& why);
+  void reject();
+  void roll_back();
+  void publish();
+  void publish(const ResultRecord& result);
+  bool reload_models();
+  /// A power cut came between the ruling and the change of the slots.
+  void finish_interrupted_apply();
+
+  // service_report.cc: what is told
+  void report();
+  void tell(const std::string& level, const std::string& text);
+  void tell_progress(const TouchRecord* touch, const std::string& note);
+  StatusMessage status() const;
+  std::vector<HealthMessage> health() const;
+  void remember_use();
+  void recall_use();
+
+  Config config_;
+  Ports ports_;
+  Messenger& messenger_;
+  Store& store_;
+  Models models_;
+  std::string damaged_;
+  Supervisor supervisor_;
+  Senses senses_;
+  Situation situation_;
+  std::deque<Event> events_;
+  Nanoseconds now_ = 0;
+
+  std::uint64_t motion_id_ = 0;
+  std::vector<double> asked_,
+      reached_;  ///< readings: target of the last move, of the last that ended
+  Nanoseconds test_began_ = 0;
+  bool testing_ = false;
+
+  Session session_;
+  Meaning meaning_;
+  std::int64_t collecting_since_ms_ = 0;
+  int touches_this_run_ = 0;
+
+  Computation computation_;
+  std::function<void(const std::string& failure)> when_computed_;
+  std::shared_ptr<DataSet> data_, base_;
+  std::shared_ptr<Solution> solution_, unchanged_;
+  CheckRuling last_check_;
+
+  std::optional<CommandMessage> command_;
+  Since since_;
+  double motion_hours_ = 0;
+  Nanoseconds last_turn_ = 0, last_report_ = 0, last_remembered_ = 0, last_due_ = 0;
+  std::string last_status_, last_levels_, last_stage_;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,219 @@
+// From the rows to the decision, and what becomes of it.
+#include <spdlog/spdlog.h>
+
+#include "app/service/service.h"
+#include "io/robot_file.h"
+#include "io/solution_json.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kFewestRows = 4;  // of a set, to say anything of it
+
+/// The first set that has too few rows; empty when none has.
+std::string too_few(const DataSet& data) {
+  for (std::size_t s = 0; s < data.sets.size(); ++s) {
+    const auto rows = std::ranges::count(data.rows.set, static_cast<int>(s));
+    if (rows < kFewestRows)
+      return "set " + data.sets[s].name + " has only " + std::to_string(rows) + " good touches";
+  }
+  return {};
+}
+
+/// Nothing of the robot may move: what do the rows say of it as it is?
+Options held() {
+  Options options;
+  options.fix = {"*"};
+  return options;
+}
+
+int identified(const Solution& solution) {
+  return static_cast<int>(
+      std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
+}
+
+}  // namespace
+
+void Service::analyse() {
+  if (!stored(
+          store_.set_state(session_.record.id, SessionState::collected, ports_.clock->unix_ms())))
+    return;
+  const bool check = session_.kind() == SessionKind::check;
+  data_ = std::make_shared<DataSet>(
+      rows_of(session_, meaning_, check ? Parts::all_check : Parts::as_planned));
+  if (!check) {
+    const std::string few = too_few(*data_);
+    return put(Event::What::computed, few.empty(), few);
+  }
+  Session base;
+  const auto record = store_.session(models_.session());
+  auto plan = store_.plan(models_.session());
+  auto touches = store_.touches(models_.session());
+  if (!record || !plan || !touches)
+    return put(Event::What::computed, false, "the session behind the active parameters is gone");
+  base = {*record, std::move(*plan), std::move(*touches)};
+  const auto meaning = read_meaning(base.record.config);
+  if (!meaning) return put(Event::What::computed, false, meaning.error().what);
+  base_ = std::make_shared<DataSet>(rows_of(base, *meaning));
+  *data_ = joined(*base_, *data_);
+  put(Event::What::computed);
+}
+
+void Service::identify() {
+  solution_ = std::make_shared<Solution>();
+  computation_.start(
+      [out = solution_, robot = models_.active(), data = data_](const Computation::Tell& tell) {
+        *out = selfcal::identify(*robot, *data, {}, tell);
+        return std::string();
+      });
+  when_computed_ = [this](const std::string& failure) {
+    put(Event::What::computed, failure.empty(), failure);
+  };
+}
+
+void Service::judge() {
+  const bool check = session_.kind() == SessionKind::check;
+  unchanged_ = std::make_shared<Solution>();
+  if (check) solution_ = std::make_shared<Solution>();
+  computation_.start([unchanged = unchanged_, then = check ? solution_ : nullptr,
+                      robot = models_.active(), data = data_,
+                      base = base_](const Computation::Tell& tell) {
+    *unchanged = selfcal::identify(*robot, *data, held(), tell);
+    if (then) *then = selfcal::identify(*robot, *base, held(), tell);
+    return std::string();
+  });
+  when_computed_ = [this, check](const std::string& failure) {
+    ResultRecord result;
+    result.session = session_.record.id;
+    result.unix_ms = ports_.clock->unix_ms();
+    result.touches = data_->rows.rows();
+    if (!failure.empty()) {
+      result.answer = "failed";
+      result.decision = "rejected";
+      result.why = failure;
+      return keep_result(std::move(result), false);
+    }
+    if (check) {
+      last_check_ = rule_on_check(*solution_, *unchanged_, config_.schedule.check_p);
+      result.touches -= static_cast<int>(std::ranges::count(data_->rows.check, 0));
+      result.answer = last_check_.explained ? "explained" : "not-explained";
+      result.decision = "none";
+      result.why = last_check_.why;
+      result.p_value = last_check_.p_value;
+      result.check_before = last_check_.expected;
+      result.check_after = last_check_.rms;
+      return keep_result(std::move(result), false);
+    }
+    const Ruling ruling =
+        rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
+    result.answer = ruling.answer;
+    result.decision = !ruling.acceptable         ? "rejected"
+                      : config_.accept.automatic ? "applying"
+                                                 : "candidate";
+    result.why = ruling.why;
+    result.p_value = solution_->verdict.p_value;
+    result.check_before = ruling.check_before;
+    result.check_after = ruling.check_after;
+    result.endpoint_sigma = solution_->endpoint.rms;
+    result.rejected = static_cast<int>(solution_->rejected.size());
+    result.identified = identified(*solution_);
+    result.json = to_json(*solution_, config_.robot->name(), models_.hash()).dump();
+    result.robot_text = robot_text(*models_.active(), solution_->values);
+    keep_result(std::move(result), ruling.acceptable);
+  };
+}
+
+void Service::keep_result(ResultRecord result, bool candidate) {
+  const SlotRecord slot{result.session, result.unix_ms, models_.hash(), result.robot_text};
+  if (!stored(store_.finish(result, candidate ? &slot : nullptr))) return;
+  tell(candidate || result.answer == "explained" ? "info" : "warning",
+       "session " + std::to_string(result.session) + ": " + result.answer + ", " + result.decision +
+           ": " + result.why);
+  since_.unix_ms = result.unix_ms;
+  since_.motion_hours = motion_hours_;
+  since_.temperature = senses_.celsius();
+  since_.checks = result.answer == "explained" ? since_.checks + 1 : 0;
+  remember_use();
+  stored(store_.prune(config_.store_bytes));
+  Event event;
+  event.what = Event::What::decided;
+  event.why = result.why;
+  event.decision = result.decision == "applying"      ? Event::Decision::apply
+                   : result.decision == "candidate"   ? Event::Decision::ask
+                   : result.answer == "not-explained" ? Event::Decision::full
+                                                      : Event::Decision::none;
+  put(std::move(event));
+}
+
+bool Service::reload_models() {
+  auto models = Models::load(models_.factory(), store_);
+  if (!models) {
+    put(Event::What::broken, false, "store: " + models.error().what);
+    return false;
+  }
+  models_ = std::move(*models);
+  if (const auto written = models_.write_active(config_.state); !written) {
+    put(Event::What::broken, false, written.error().what);
+    return false;
+  }
+  return true;
+}
+
+void Service::apply(const std::string& why) {
+  if (!stored(store_.accept(ports_.clock->unix_ms())) || !reload_models()) return;
+  tell("info", models_.name() + " is active: " + why);
+  put(Event::What::applied);
+}
+
+void Service::finish_interrupted_apply() {
+  const auto last = store_.results(1);
+  if (!last || last->empty() || last->front().decision != "applying") return;
+  if (stored(store_.accept(ports_.clock->unix_ms())) && reload_models())
+    tell("info", models_.name() + " is active: the power had failed while it was applied");
+}
+
+void Service::reject() {
+  if (stored(store_.reject(ports_.clock->unix_ms()))) reload_models();
+}
+
+void Service::roll_back() {
+  const auto done = store_.roll_back(ports_.clock->unix_ms());
+  if (command_)
+    messenger_.reply(
+        {command_->id, command_->verb, done.has_value(), done ? "rolled back" : done.error().what});
+  if (!done || !reload_models()) return;
+  tell("warning", "rolled back to " + models_.name());
+}
+
+void Service::publish() {
+  const auto results = store_.results(1);
+  if (results && !results->empty()) {
+    const auto result = store_.result(results->front().session);
+    if (stored(result) && *result) publish(**result);
+  }
+  put(Event::What::published);
+}
+
+void Service::publish(const ResultRecord& result) {
+  ResultMessage message;
+  message.unix_ms = result.unix_ms;
+  message.robot = config_.id;
+  message.model_hash = models_.hash();
+  message.session = result.session;
+  message.kind = result.json.empty() ? "check" : "full";
+  message.answer = result.answer;
+  message.decision = result.decision;
+  message.why = result.why;
+  message.p_value = result.p_value;
+  message.check_before = result.check_before;
+  message.check_after = result.check_after;
+  message.endpoint_sigma = result.endpoint_sigma;
+  message.touches = static_cast<std::uint32_t>(result.touches);
+  message.rejected = static_cast<std::uint32_t>(result.rejected);
+  message.identified = static_cast<std::uint32_t>(result.identified);
+  message.json = result.json;
+  messenger_.publish(message);
+}
+
+}  // namespace selfcal

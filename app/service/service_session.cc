@@ -1,0 +1,236 @@
+// From the plan to the last touch.
+#include <cmath>
+
+#include "app/service/service.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kLatestSample = kSecond / 5;  // after an edge, before it counts as lost
+constexpr double kNearPath = 0.05;                  // rad or m
+
+Eigen::VectorXd vector_of(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+/// Distance from a straight joint path, largest joint.
+double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
+  const Eigen::VectorXd from = vector_of(step.start), way = vector_of(step.end) - from;
+  const double length = way.squaredNorm();
+  const double s = length > 0 ? std::clamp((q - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (q - from - s * way).cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+bool Service::can_check() const {
+  if (models_.session() == 0) return false;
+  const auto base = store_.session(models_.session());
+  return base && base->config_hash == config_.hash && base->model_hash == models_.hash();
+}
+
+void Service::begin_plan(const std::string& why) {
+  const bool check = situation_.kind == SessionKind::check;
+  SessionRecord record;
+  record.kind = std::string(to_string(situation_.kind));
+  record.reason = why;
+  record.model_hash = models_.hash();
+  record.config_hash = config_.hash;
+  record.config = meaning_text(config_, ports_.encoders->scales());
+  record.started_ms = ports_.clock->unix_ms();
+  const auto sessions = store_.sessions(1);
+  record.seed = sessions && !sessions->empty() ? sessions->front().id + 1 : 1;
+  TouchPlanOptions options = config_.plan;
+  options.seed = record.seed;
+  std::vector<TouchTarget> targets = config_.targets;
+  if (check)
+    for (std::size_t i = 0; i < targets.size(); ++i)
+      targets[i].touches =
+          static_cast<int>((i + 1) * config_.schedule.check_touches / targets.size() -
+                           i * config_.schedule.check_touches / targets.size());
+  std::erase_if(targets, [](const TouchTarget& target) { return target.touches == 0; });
+  auto plan = std::make_shared<TouchPlan>();
+  computation_.start([plan, robot = models_.active(), sets = config_.sets, targets, options,
+                      obstacles = config_.obstacles](const Computation::Tell&) {
+    *plan = plan_touches(*robot, values(*robot), sets, targets, obstacles, options);
+    return std::string();
+  });
+  when_computed_ = [this, plan, record](const std::string& failure) {
+    if (!failure.empty()) return put(Event::What::planned, false, "planning: " + failure);
+    keep_plan(record, *plan);
+  };
+}
+
+void Service::keep_plan(SessionRecord record, const TouchPlan& plan) {
+  if (!plan.unreached.empty())
+    return put(Event::What::planned, false, "planning: " + plan.unreached);
+  const std::vector<StepRecord> steps = steps_of(plan, config_.sets);
+  const auto id = store_.begin(record, steps);
+  if (!stored(id)) return;
+  record.id = *id;
+  tell("info", "session " + std::to_string(*id) + " (" + record.kind + ", " + record.reason +
+                   "): " + std::to_string(steps.size()) + " touches planned");
+  if (open({record, steps, {}})) announce_plan();
+}
+
+bool Service::open(Session session) {
+  auto meaning = read_meaning(session.record.config);
+  if (!meaning) {
+    put(Event::What::planned, false, meaning.error().what);
+    return false;
+  }
+  meaning_ = std::move(*meaning);
+  session_ = std::move(session);
+  base_.reset();
+  collecting_since_ms_ = ports_.clock->unix_ms();
+  touches_this_run_ = 0;
+  return true;
+}
+
+void Service::resume() {
+  const auto record = store_.unfinished();
+  if (!stored(record)) return;
+  const auto give_up = [&](const std::string& why) {
+    if (*record)
+      stored(store_.set_state((*record)->id, SessionState::aborted, ports_.clock->unix_ms()));
+    put(Event::What::planned, false, why);
+  };
+  if (!*record) return give_up("there is no unfinished session");
+  if ((*record)->model_hash != models_.hash() || (*record)->config_hash != config_.hash)
+    return give_up("session " + std::to_string((*record)->id) +
+                   " was begun with another robot or configuration and is ended");
+  auto plan = store_.plan((*record)->id);
+  auto touches = store_.touches((*record)->id);
+  if (!plan || !touches)
+    return put(Event::What::broken, false, (!plan ? plan.error() : touches.error()).what);
+  if (open({**record, std::move(*plan), std::move(*touches)})) announce_plan();
+}
+
+void Service::announce_plan() {
+  const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
+                                                            : config_.touch.repeats;
+  Event event;
+  event.what = Event::What::planned;
+  event.kind = session_.kind();
+  event.session = session_.record.id;
+  event.steps = static_cast<int>(session_.plan.size());
+  event.step = next_step(session_, repeats, config_.limits.attempts);
+  event.via_home = true;
+  const auto here = senses_.q();
+  if (here) reached_.assign(here->begin(), here->end());
+  if (here && event.step < event.steps) {
+    const StepRecord& step = session_.plan[event.step];
+    // It was in the middle of this very touch: the way back is the way out.
+    const bool in_it = off_path(*here, step) < kNearPath;
+    if (in_it) event.via_home = false;
+    if (!in_it && !path_is_free(*models_.active(), values(*models_.active()), *here,
+                                config_.plan.home, config_.obstacles, 0)) {
+      event.ok = false;
+      event.why = "no free way home from where the robot stands: move it there by hand";
+    }
+  }
+  put(std::move(event));
+}
+
+bool Service::next_via_home(int step) const {
+  if (step >= static_cast<int>(session_.plan.size())) return false;
+  // The plan's ways lead from one step to the next; after steps that were left out the way leads
+  // through home.
+  return session_.plan[step].via_home || step > situation_.step + 1;
+}
+
+std::string Service::label() const {
+  int attempt = 0;
+  for (const TouchRecord& touch : session_.touches) attempt += touch.step == situation_.step;
+  return std::to_string(session_.record.id) + "/" + std::to_string(situation_.step) + "." +
+         std::to_string(attempt) + " " + session_.plan[situation_.step].set;
+}
+
+double Service::touch_speed(const StepRecord& step) const {
+  const Eigen::VectorXd from = vector_of(step.start), to = vector_of(step.end);
+  if (from.size() != to.size() || from.size() == 0) return config_.speeds.travel;
+  const double way = (endpoint(*models_.active(), to) - endpoint(*models_.active(), from)).norm();
+  if (way <= 0) return config_.speeds.travel;
+  return std::min(config_.speeds.travel,
+                  config_.speeds.touch / way * (to - from).cwiseAbs().maxCoeff());
+}
+
+void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
+  MotionRequest request;
+  request.id = ++motion_id_;
+  request.kind = kind;
+  request.label = label();
+  request.q = q;
+  request.speed = speed;
+  asked_ = q;
+  senses_.expect(request.id);
+  if (const auto sent = ports_.motion->request(request); !sent)
+    put(Event::What::broken, false, sent.error().what);
+}
+
+void Service::stop(const std::string& why) {
+  senses_.expect(0);
+  if (const auto sent = ports_.motion->stop(why); !sent) tell("error", sent.error().what);
+}
+
+void Service::read_touch() {
+  const Nanoseconds edge = senses_.closing()->time;
+  const auto around = senses_.samples().around(edge - nanoseconds(config_.touch.delay));
+  if (!around) return put_aside("no encoder reading just before the edge");
+  TouchRecord touch;
+  touch.step = situation_.step;
+  touch.edge = edge;
+  std::tie(touch.before, touch.after) = *around;
+  if (touch.after.time - touch.before.time > kLatestSample)
+    return put_aside("the encoder readings around the edge are too far apart");
+  const Reading reading = reading_of(touch, meaning_);
+  const TouchRuling ruling =
+      rule_on_touch(*models_.active(), session_, meaning_, session_.plan[touch.step], reading,
+                    config_.plan.search, config_.touch.tolerance);
+  touch.outcome = ruling.outcome;
+  touch.why = ruling.why;
+  keep(std::move(touch));
+}
+
+void Service::put_aside(const std::string& why) {
+  TouchRecord touch;
+  touch.step = situation_.step;
+  touch.outcome = TouchOutcome::put_aside;
+  touch.why = why;
+  if (!senses_.samples().empty()) touch.before = touch.after = senses_.samples().last();
+  keep(std::move(touch));
+}
+
+void Service::keep(TouchRecord touch) {
+  for (const TouchRecord& other : session_.touches) touch.attempt += other.step == touch.step;
+  touch.unix_ms = ports_.clock->unix_ms();
+  touch.temperature = senses_.celsius().value_or(std::nan(""));
+  // Before the robot moves on.
+  if (!stored(store_.add(session_.record.id, touch))) return;
+  session_.touches.push_back(touch);
+  ++touches_this_run_;
+  if (touch.outcome != TouchOutcome::taken) tell("warning", label() + ": " + touch.why);
+  const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
+                                                            : config_.touch.repeats;
+  Event event;
+  event.what = Event::What::read;
+  event.ok = touch.outcome == TouchOutcome::taken;
+  event.why = touch.why;
+  event.step = next_step(session_, repeats, config_.limits.attempts);
+  event.via_home = next_via_home(event.step);
+  put(std::move(event));
+  tell_progress(&session_.touches.back(), touch.why);
+}
+
+void Service::abort(const std::string& why) {
+  computation_.give_up();
+  when_computed_ = {};
+  std::int64_t id = session_.record.id;
+  if (const auto unfinished = store_.unfinished(); unfinished && *unfinished)
+    id = (*unfinished)->id;
+  if (id > 0) stored(store_.set_state(id, SessionState::aborted, ports_.clock->unix_ms()));
+  tell("warning", "session " + std::to_string(id) + " ended early: " + why);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,254 @@
+#include "app/service/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/equations.h"
+#include "io/yaml.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
+
+Eigen::VectorXd vector_of(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
+
+int set_index(const Meaning& meaning, const std::string& name) {
+  for (std::size_t s = 0; s < meaning.sets.size(); ++s)
+    if (meaning.sets[s].name == name) return static_cast<int>(s);
+  return 0;
+}
+
+int group_index(Set& set, const std::string& name) {
+  if (name.empty()) return -1;
+  const auto found = std::ranges::find(set.groups, name);
+  if (found != set.groups.end()) return static_cast<int>(found - set.groups.begin());
+  set.groups.push_back(name);
+  return static_cast<int>(set.groups.size()) - 1;
+}
+
+void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
+  rows.q.setZero(count, joints);
+  rows.position.setConstant(count, 3, std::nan(""));
+  rows.orientation.setConstant(count, 4, std::nan(""));
+  rows.distance.setConstant(count, std::nan(""));
+  rows.normal.setConstant(count, 3, std::nan(""));
+}
+
+}  // namespace
+
+std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales) {
+  Node node = config.description;
+  node.set("delay", Node::of(config.touch.delay));
+  Node list = Node::list();
+  for (const EncoderScale& scale : scales) {
+    Node each = Node::map();
+    each.set("step", Node::of(scale.step));
+    each.set("zero", Node::of(std::to_string(scale.zero)));
+    list.items.push_back(std::move(each));
+  }
+  node.set("encoders", std::move(list));
+  Node outward = Node::map();
+  for (const TouchTarget& target : config.targets)
+    outward.set(config.sets[target.set].name, Node::of(Eigen::VectorXd(target.outward)));
+  node.set("outward", std::move(outward));
+  return write_yaml(node);
+}
+
+Result<Meaning> read_meaning(const std::string& text) {
+  const Result<Node> node = parse_yaml(text, "session");
+  if (!node) return tl::unexpected(node.error());
+  Result<std::vector<Set>> sets = sets_of(text);
+  if (!sets) return tl::unexpected(sets.error());
+  Meaning meaning;
+  meaning.sets = std::move(*sets);
+  Problems problems;
+  Fields fields(*node, "session", problems);
+  meaning.target = fields.number("target");
+  meaning.delay = fields.number("delay");
+  if (const Node* list = fields.node("encoders"))
+    for (const Node& each : list->items) {
+      Fields scale(each, "encoder", problems);
+      meaning.scales.push_back({scale.number("step"), std::llround(scale.number("zero"))});
+    }
+  const Node* outward = fields.node("outward");
+  for (const Set& set : meaning.sets) {
+    std::optional<Eigen::VectorXd> way;
+    if (outward) way = Fields(*outward, "outward", problems).numbers(set.name, 3);
+    meaning.outward.push_back(way ? Eigen::Vector3d(*way) : Eigen::Vector3d::UnitZ());
+  }
+  if (problems.any()) return bad_input(problems);
+  return meaning;
+}
+
+std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets) {
+  std::vector<StepRecord> steps;
+  for (const PlannedTouch& touch : plan.touches) {
+    StepRecord step;
+    step.index = static_cast<int>(steps.size());
+    step.set = sets[touch.set].name;
+    if (touch.group >= 0) step.group = "g" + std::to_string(touch.group);
+    step.check = touch.check;
+    step.via_home = touch.via_home;
+    step.start = list_of(touch.start);
+    step.touch = list_of(touch.touch);
+    step.end = list_of(touch.end);
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+std::vector<const TouchRecord*> good_touches(const Session& session, int step) {
+  std::vector<const TouchRecord*> good;
+  for (const TouchRecord& touch : session.touches) {
+    if (touch.step != step) continue;
+    if (touch.outcome == TouchOutcome::taken) good.push_back(&touch);
+    if (touch.outcome == TouchOutcome::differs) good.clear();
+  }
+  return good;
+}
+
+namespace {
+
+enum class StepState { open, complete, lost };
+
+std::vector<StepState> step_states(const Session& session, int repeats, int attempts) {
+  std::vector<int> good(session.plan.size(), 0), failed(session.plan.size(), 0);
+  for (const TouchRecord& touch : session.touches) {
+    if (touch.outcome == TouchOutcome::taken) ++good[touch.step];
+    if (touch.outcome == TouchOutcome::differs) good[touch.step] = 0;
+    if (touch.outcome != TouchOutcome::taken) ++failed[touch.step];
+  }
+  std::vector<StepState> states;
+  for (std::size_t i = 0; i < good.size(); ++i)
+    states.push_back(good[i] >= repeats      ? StepState::complete
+                     : failed[i] >= attempts ? StepState::lost
+                                             : StepState::open);
+  return states;
+}
+
+}  // namespace
+
+int next_step(const Session& session, int repeats, int attempts) {
+  const auto states = step_states(session, repeats, attempts);
+  return static_cast<int>(std::ranges::find(states, StepState::open) - states.begin());
+}
+
+int steps_put_aside(const Session& session, int repeats, int attempts) {
+  const auto states = step_states(session, repeats, attempts);
+  return static_cast<int>(std::ranges::count(states, StepState::lost));
+}
+
+Reading reading_of(const TouchRecord& touch, const Meaning& meaning) {
+  return reading_between(touch.before, touch.after, touch.edge - nanoseconds(meaning.delay),
+                         meaning.scales);
+}
+
+DataSet rows_of(const Session& session, const Meaning& meaning, Parts parts) {
+  DataSet data;
+  data.sets = meaning.sets;
+  data.target = meaning.target;
+  std::vector<const TouchRecord*> rows;
+  std::vector<int> repeat;
+  for (const StepRecord& step : session.plan) {
+    const auto good = good_touches(session, step.index);
+    rows.insert(rows.end(), good.begin(), good.end());
+    repeat.insert(repeat.end(), good.size(), good.size() > 1 ? step.index : -1);
+  }
+  Observations& out = data.rows;
+  size_rows(out, static_cast<Eigen::Index>(rows.size()),
+            static_cast<Eigen::Index>(meaning.scales.size()));
+  out.repeat = std::move(repeat);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const StepRecord& step = session.plan[rows[i]->step];
+    const int set = set_index(meaning, step.set);
+    const auto row = static_cast<Eigen::Index>(i);
+    out.q.row(row) = reading_of(*rows[i], meaning).q.transpose();
+    out.normal.row(row) = meaning.outward[set].transpose();
+    out.set.push_back(set);
+    out.group.push_back(group_index(data.sets[set], step.group));
+    out.check.push_back(parts == Parts::as_planned ? step.check : parts == Parts::all_check);
+  }
+  return data;
+}
+
+DataSet joined(const DataSet& base, const DataSet& check) {
+  std::vector<int> fit;
+  for (int row = 0; row < base.rows.rows(); ++row)
+    if (!base.rows.check[row]) fit.push_back(row);
+  DataSet data;
+  data.sets = base.sets;
+  data.target = base.target;
+  Observations& out = data.rows;
+  const auto first = static_cast<Eigen::Index>(fit.size());
+  size_rows(out, first + check.rows.rows(), base.rows.q.cols());
+  out.q << base.rows.q(fit, Eigen::all), check.rows.q;
+  out.normal << base.rows.normal(fit, Eigen::all), check.rows.normal;
+  for (const int row : fit) {
+    out.set.push_back(base.rows.set[row]);
+    out.group.push_back(base.rows.group[row]);
+  }
+  for (int row = 0; row < check.rows.rows(); ++row) {
+    const int set = check.rows.set[row], group = check.rows.group[row];
+    out.set.push_back(set);
+    out.group.push_back(group < 0 ? -1
+                                  : group_index(data.sets[set], check.sets[set].groups[group]));
+  }
+  out.repeat.assign(out.set.size(), -1);
+  out.check.assign(fit.size(), 0);
+  out.check.resize(out.set.size(), 1);
+  return data;
+}
+
+Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q) {
+  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
+  Locations X;
+  robot.locate(block, values(robot), Body::endpoint, X, nullptr);
+  return X.p(0);
+}
+
+TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Meaning& meaning,
+                          const StepRecord& step, const Reading& reading, double search,
+                          double tolerance) {
+  const int set = set_index(meaning, step.set);
+  const auto out_by = [&](const Eigen::VectorXd& from) {
+    return meaning.outward[set].dot(endpoint(robot, reading.q) - endpoint(robot, from));
+  };
+  const double early = out_by(vector_of(step.touch));
+  if (early > search)
+    return {TouchOutcome::put_aside,
+            "touched " + format_number(std::round(early * 1e5) / 100) + " mm before the surface"};
+  const auto good = good_touches(session, step.index);
+  for (const TouchRecord* other : good) {
+    const double apart = std::abs(out_by(reading_of(*other, meaning).q));
+    if (apart > tolerance)
+      return {TouchOutcome::differs,
+              "differs by " + format_number(std::round(apart * 1e6)) + " um from the one before"};
+  }
+  return {};
+}
+
+std::optional<double> running_residual(const Robot& robot, const DataSet& data) {
+  const int last = data.rows.rows() - 1;
+  if (last < 0 || std::ranges::count(data.rows.set, data.rows.set[last]) < kRowsForResidual)
+    return std::nullopt;
+  for (const int set : data.rows.set)
+    if (const int shared = data.sets[set].reference;
+        shared >= 0 && std::ranges::count(data.rows.set, shared) < kRowsForResidual)
+      return std::nullopt;
+  const Equations equations(robot, data, Use::fit);
+  State state;
+  state.xi = values(robot);
+  state.own.resize(data.sets.size());
+  state.groups.resize(data.sets.size());
+  equations.start(state);
+  for (const RowResidual& row : equations.residuals(state))
+    if (row.row == last) return row.lengths == 1 ? row.scalars[0] : row.length;
+  return std::nullopt;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,74 @@
+// The session in progress as the store has it, and what its touches mean as rows of a data set.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/service/config.h"
+#include "app/service/reading.h"
+#include "constraints/data_set.h"
+#include "io/store/store.h"
+
+namespace selfcal {
+
+struct Session {
+  SessionRecord record;
+  std::vector<StepRecord> plan;
+  std::vector<TouchRecord> touches;
+  SessionKind kind() const {
+    return record.kind == "check" ? SessionKind::check : SessionKind::full;
+  }
+};
+
+/// What is stored with a session so that its raw counts can be understood in ten years.
+struct Meaning {
+  double target = 1e-3;  ///< m
+  double delay = 0;      ///< s, of the trigger
+  std::vector<EncoderScale> scales;
+  std::vector<Eigen::Vector3d> outward;  ///< by set, way out of the contact (world)
+  std::vector<Set> sets;
+};
+
+/// Text of the meaning of the touches that a session is going to make, and back.
+std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales);
+Result<Meaning> read_meaning(const std::string& text);
+
+/// The plan as the store keeps it.
+std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets);
+
+/// Good touches of a step so far; those before a touch that differed from them do not count.
+std::vector<const TouchRecord*> good_touches(const Session& session, int step);
+/// The first step that needs another touch.
+int next_step(const Session& session, int repeats, int attempts);
+/// Steps that are put aside: no attempt is left and too few touches are good.
+int steps_put_aside(const Session& session, int repeats, int attempts);
+
+/// Joint readings at the edge of a touch.
+Reading reading_of(const TouchRecord& touch, const Meaning& meaning);
+
+/// The rows that the good touches make, in the order of the plan. With `all_check` every row only
+/// judges, with `all_fit` every row identifies.
+enum class Parts { as_planned, all_check, all_fit };
+DataSet rows_of(const Session& session, const Meaning& meaning, Parts parts = Parts::as_planned);
+
+/// The fit rows of `base` and the rows of `check` as rows that judge; both have the same sets.
+DataSet joined(const DataSet& base, const DataSet& check);
+
+/// How a touch is judged before it is stored.
+struct TouchRuling {
+  TouchOutcome outcome = TouchOutcome::taken;
+  std::string why;
+};
+TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Meaning& meaning,
+                          const StepRecord& step, const Reading& reading, double search,
+                          double tolerance);
+
+/// Endpoint at readings `q` with the robot's own values (m, world).
+Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q);
+
+/// Distance of the last row from its surface (socket) as the rows so far have it, with the robot's
+/// own values; nothing while they are too few to tell (m).
+std::optional<double> running_residual(const Robot& robot, const DataSet& data);
+
+}  // namespace selfcal

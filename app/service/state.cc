@@ -1,0 +1,102 @@
+#include "app/service/state.h"
+
+namespace selfcal {
+
+std::string_view to_string(ServiceState state) {
+  switch (state) {
+    case ServiceState::self_test:
+      return "self-test";
+    case ServiceState::idle:
+      return "idle";
+    case ServiceState::planning:
+      return "planning";
+    case ServiceState::collecting:
+      return "collecting";
+    case ServiceState::analysing:
+      return "analysing";
+    case ServiceState::identifying:
+      return "identifying";
+    case ServiceState::judging:
+      return "judging";
+    case ServiceState::awaiting_acceptance:
+      return "awaiting-acceptance";
+    case ServiceState::applying:
+      return "applying";
+    case ServiceState::publishing:
+      return "publishing";
+    case ServiceState::fault:
+      return "fault";
+  }
+  return "";
+}
+
+std::string_view to_string(Phase phase) {
+  switch (phase) {
+    case Phase::none:
+      return "";
+    case Phase::approach:
+      return "approach";
+    case Phase::touch:
+      return "touch";
+    case Phase::settle:
+      return "settle";
+    case Phase::retract:
+      return "retract";
+  }
+  return "";
+}
+
+std::string_view to_string(SessionKind kind) {
+  return kind == SessionKind::full ? "full" : "check";
+}
+
+std::string_view to_string(Verb verb) {
+  switch (verb) {
+    case Verb::start:
+      return "start";
+    case Verb::check:
+      return "check";
+    case Verb::abort:
+      return "abort";
+    case Verb::accept:
+      return "accept";
+    case Verb::reject:
+      return "reject";
+    case Verb::rollback:
+      return "rollback";
+  }
+  return "";
+}
+
+std::string_view hardware_may(ServiceState state, Phase phase) {
+  switch (state) {
+    case ServiceState::self_test:
+      return "stand still; encoders and trigger are listened to";
+    case ServiceState::collecting:
+      break;
+    case ServiceState::fault:
+      return "stand still; told to stop; nothing moves until a person says start";
+    case ServiceState::idle:
+    case ServiceState::awaiting_acceptance:
+      return "do what its owner wants; the service asks for no motion";
+    default:
+      return "stand still; the service computes";
+  }
+  switch (phase) {
+    case Phase::approach:
+      return "travel through free space; a touch stops it";
+    case Phase::touch:
+      return "move slowly towards the surface until the trigger closes";
+    case Phase::settle:
+      return "stand still; told to stop";
+    case Phase::retract:
+      return "move slowly out of the contact";
+    case Phase::none:
+      return "stand still";
+  }
+  return "";
+}
+
+bool may_move(ServiceState state) { return state == ServiceState::collecting; }
+
+}  // namespace selfcal

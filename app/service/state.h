@@ -1,0 +1,40 @@
+// The service's states and what the hardware may do in each.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace selfcal {
+
+enum class ServiceState : std::uint8_t {
+  self_test,
+  idle,
+  planning,
+  collecting,
+  analysing,
+  identifying,
+  judging,
+  awaiting_acceptance,
+  applying,
+  publishing,
+  fault,
+};
+
+/// Where a touch is, while collecting.
+enum class Phase : std::uint8_t { none, approach, touch, settle, retract };
+
+enum class SessionKind : std::uint8_t { full, check };
+
+enum class Verb : std::uint8_t { start, check, abort, accept, reject, rollback };
+
+std::string_view to_string(ServiceState state);
+std::string_view to_string(Phase phase);  ///< empty for none
+std::string_view to_string(SessionKind kind);
+std::string_view to_string(Verb verb);
+
+/// What the hardware may do, in words; the service asks for nothing else in this state.
+std::string_view hardware_may(ServiceState state, Phase phase);
+/// True where the service may ask for motion. In every other state it has told the robot to stop.
+bool may_move(ServiceState state);
+
+}  // namespace selfcal

@@ -1,0 +1,124 @@
+// The service's behaviour as a pure function: situation and event to the next situation and what is
+// to be done. It reads no clock, no port and no file; every moment comes in with the event.
+//
+//   self-test → idle → planning → collecting ⟲ (approach → touch → settle → retract)
+//     → analysing → identifying → judging → awaiting acceptance → applying → publishing → idle
+//   and from everywhere: fault, which stops motion and keeps what was collected.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/service/state.h"
+#include "io/ports.h"
+
+namespace selfcal {
+
+/// How long each part may take and how much may go wrong.
+struct Limits {
+  Nanoseconds self_test = 10 * kSecond;
+  Nanoseconds planning = 120 * kSecond;
+  Nanoseconds approach = 60 * kSecond;
+  Nanoseconds touch = 60 * kSecond;
+  Nanoseconds settle = 2 * kSecond;
+  Nanoseconds retract = 30 * kSecond;
+  Nanoseconds computing = 600 * kSecond;  ///< analysing, identifying, judging
+  Nanoseconds retry_self_test = 10 * kSecond;
+  int attempts = 3;       ///< of one touch, before it is put aside
+  int most_failures = 5;  ///< touches put aside in a row, before the session stops
+};
+
+struct Situation {
+  ServiceState state = ServiceState::self_test;
+  Phase phase = Phase::none;
+  Nanoseconds since = 0;  ///< state or phase entered
+  std::string why;        ///< why it is in this state
+  std::int64_t session = 0;
+  SessionKind kind = SessionKind::full;
+  int step = 0, steps = 0;     ///< the touch in progress; planned ones
+  int attempt = 0;             ///< of this step, from 0
+  int failures = 0;            ///< stray closings on the way to this step
+  int lost_in_a_row = 0;       ///< steps put aside one after another
+  bool via_home = false;       ///< on the way to home, not yet to the start
+  bool stray = false;          ///< the trigger closed where nothing was to be touched
+  int next_step = 0;           ///< after the retract; `step` itself when it needs another touch
+  bool next_via_home = false;  ///< of the step after this one
+  bool out = false;            ///< the retract has ended; the trigger may still be closed
+  bool follow_up = false;      ///< a full session comes after what is being published
+  bool closed = false;         ///< the trigger's debounced level
+  bool candidate = false;      ///< a result waits for a person
+  bool unfinished = false;     ///< a session can be resumed by `start`
+  int published = 0;           ///< results since the start
+  bool tested = false;         ///< the self-test has been passed since the start
+};
+
+struct Event {
+  enum class What : std::uint8_t {
+    tick,         ///< time has passed
+    self_tested,  ///< ok or not, `why`; `resume` when a session shall go on by itself
+    asked,        ///< `verb`
+    due,          ///< `kind`, `why`
+    planned,      ///< `session`, `steps`, `step` to begin with
+    moved,        ///< the last motion has ended as asked
+    refused,      ///< the last motion was refused or stopped by others, `why`
+    closed,       ///< the trigger closed, debounced
+    opened,
+    at_rest,   ///< joints stand, and the samples around the edge are there
+    read,      ///< the touch was judged and is stored: `ok` or put aside; then comes `step`
+    computed,  ///< the stage in progress has ended; `ok`, `why`
+    decided,   ///< after judging: `decision`
+    applied,
+    published,
+    broken,  ///< a port or the store has failed: `why`
+  };
+  enum class Decision : std::uint8_t { none, ask, apply, full };
+  What what = What::tick;
+  Nanoseconds now = 0;
+  bool ok = true, resume = false;
+  std::string why;
+  Verb verb = Verb::start;
+  SessionKind kind = SessionKind::full;
+  std::int64_t session = 0;
+  int step = 0, steps = 0;
+  bool via_home = false;  ///< of the step that comes next
+  Decision decision = Decision::none;
+};
+
+struct Action {
+  enum class Do : std::uint8_t {
+    stop,    ///< motion, now; `why`
+    test,    ///< begin the self-test
+    plan,    ///< a session of the situation's kind
+    resume,  ///< the unfinished session
+    go_home,
+    go_to_start,
+    go_touch,
+    go_back,    ///< motion for the step in progress
+    back_off,   ///< to where the last move began, out of a contact that was not looked for
+    read,       ///< judge and store the touch whose edge was seen
+    put_aside,  ///< store the attempt as failed; `why`
+    analyse,
+    identify,
+    judge,
+    apply,
+    reject,
+    roll_back,
+    publish,
+    abort,  ///< the session ends early; what was collected is kept
+    grant,
+    refuse,  ///< answer to the command; `why`
+    tell,    ///< an event worth keeping; `why`
+  };
+  Do what;
+  std::string why;
+};
+
+struct Transition {
+  Situation next;
+  std::vector<Action> actions;
+};
+
+Transition step(const Situation& now, const Event& event, const Limits& limits);
+
+}  // namespace selfcal
