@@ -117,6 +117,15 @@ TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   EXPECT_GT(json["total"], 20);
 }
 
+TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
+  const std::string data = simulated();
+  for (const std::string option : {"--count 50", "--seed 2", "--unknown", "--method plane"}) {
+    const Ran ran = selfcal_run("identifiable " + data + " " + option);
+    EXPECT_EQ(ran.status, 2) << option << ": " << ran.out;
+    EXPECT_NE(ran.out.find(option.substr(0, option.find(' '))), std::string::npos) << ran.out;
+  }
+}
+
 TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
   const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
   const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
