@@ -88,7 +88,7 @@ struct Verdict {
 struct EndpointSigma {
   bool aligned = false;
   double rms = 0, median = 0, max = 0;  ///< m
-  int poses = 0;
+  int poses = 0;                        ///< 0 where nothing was identified: not known
 };
 
 struct Observability {

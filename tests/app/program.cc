@@ -109,6 +109,20 @@ TEST_F(Program, HoldsWhatTheUserFixes) {
     }
 }
 
+TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
+  const std::string data = simulated();
+  const Ran told = selfcal_run("identify " + data + " --fix '*'");
+  EXPECT_EQ(told.status, 1);
+  EXPECT_NE(told.out.find("not-determined: nothing was identified"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("end position"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("candidate"), std::string::npos) << told.out;
+  const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_TRUE(json["endpoint_sigma"]["rms"].is_null());
+  EXPECT_GT(json["residual"]["check"]["rows"], 0);  // the fixed robot is judged all the same
+  EXPECT_EQ(json["converged"], true) << json["stop_reason"];
+}
+
 TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
   EXPECT_EQ(ran.status, 0);
