@@ -81,8 +81,7 @@ Result<Answered> of_data_set(const Arguments& arguments) {
     solution = identify(*loaded->robot, loaded->data, options,
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
-  if (solution.parameters.empty())
-    return tl::unexpected(Failure{kAnswerIsNo, solution.stop_reason});
+  if (solution.sets.empty()) return tl::unexpected(Failure{kAnswerIsNo, solution.stop_reason});
   Answered answered{nullptr, "", 0, 0, {}, solution.unexcited};
   std::set<std::string> methods;
   for (const SetResult& set : solution.sets) {

@@ -155,9 +155,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
 }  // namespace
 
 std::string summary(const DataSet& data, const Solution& solution) {
-  std::string text = solution.parameters.empty() ? "" : first_line(data, solution);
+  const bool without_rows = solution.sets.empty();
+  std::string text = without_rows ? "" : first_line(data, solution);
   text += std::string(to_string(solution.verdict.answer)) + ": " + solution.verdict.why + "\n";
-  if (solution.parameters.empty()) return text;
+  if (without_rows) return text;
   text += parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
   list(text, "Held", solution.gauge,

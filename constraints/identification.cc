@@ -123,6 +123,8 @@ Solution without_rows(const Robot& robot) {
   solution.stop_reason = "no rows to identify from";
   solution.verdict.why = solution.stop_reason;
   solution.values = values(robot);
+  const std::vector<char> none(robot.parameters().size(), 0);
+  solution.parameters = parameter_results(robot, solution.values, {}, {}, none, none);
   return solution;
 }
 

@@ -108,7 +108,7 @@ struct Solution {
   std::vector<std::string> covariance_order;
   Eigen::MatrixXd covariance;
   std::vector<Note> gauge, unexcited;
-  std::vector<SetResult> sets;
+  std::vector<SetResult> sets;  ///< empty when no row identifies
   std::vector<Rejected> rejected;
   Residuals residual;
   EndpointSigma endpoint;

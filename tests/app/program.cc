@@ -123,6 +123,26 @@ TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
   EXPECT_EQ(json["converged"], true) << json["stop_reason"];
 }
 
+TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
+  const std::string data = simulated();
+  std::string rows = text_of(data + "/observations.csv");
+  for (size_t at = rows.find(",fit"); at != std::string::npos; at = rows.find(",fit", at))
+    rows.replace(at, 4, ",check");
+  std::ofstream(data + "/observations.csv") << rows;
+  const Ran ran = selfcal_run("identify " + data + " --json", true);
+  EXPECT_EQ(ran.status, 1);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json["verdict"]["answer"], "not-determined");
+  EXPECT_GT(json["parameters"].size(), 40u);
+  for (const auto& p : json["parameters"]) {
+    EXPECT_EQ(p["status"], "fixed") << p["name"];
+    EXPECT_TRUE(p["sigma"].is_null()) << p["name"];
+  }
+  EXPECT_EQ(selfcal_run("identify " + data, true).out,
+            "not-determined: no rows to identify from\n");
+  EXPECT_EQ(selfcal_run("identifiable " + data).status, 1);
+}
+
 TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
   EXPECT_EQ(ran.status, 0);
