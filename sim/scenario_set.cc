@@ -34,19 +34,15 @@ Eigen::Vector3d read_unit(Fields& fields, std::string_view key) {
   return direction.normalized();
 }
 
-Surface read_surface(const Node& node, const std::string& what, Problems& problems) {
-  Fields fields(node, what, problems);
-  const Surface surface{read_point(fields, "point"), read_unit(fields, "normal")};
-  fields.refuse_unknown();
-  return surface;
+void read_surface(Fields& fields, Surface& surface) {
+  surface.point = read_point(fields, "point");
+  surface.normal = read_unit(fields, "normal");
 }
 
-Patch read_patch(const Node& node, const std::string& what, Problems& problems) {
-  Fields fields(node, what, problems);
-  Patch patch{read_point(fields, "center"), fields.number("radius")};
+void read_patch(Fields& fields, Patch& patch) {
+  patch.centre = read_point(fields, "center");
+  patch.radius = fields.number("radius");
   if (fields.has("radius") && !(patch.radius > 0)) fields.fail("radius", "a positive radius (m)");
-  fields.refuse_unknown();
-  return patch;
 }
 
 }  // namespace
@@ -64,13 +60,13 @@ SetScenario read_set_scenario(const std::string& name, const Node& node, Problem
   set.noise_angle = number_within(fields, "noise_angle_true", noise_angle, 0, kMostNoise);
   if (const Node* given = fields.node("noise_angle_true")) set.noise_angle_true = given->place;
   if (const Node* surface = fields.node("surface"))
-    set.surface = read_surface(*surface, "set " + name + " surface", problems);
+    set.surface = read_whole<Surface>(*surface, "set " + name + " surface", problems, read_surface);
   if (fields.has("outward")) set.outward = read_unit(fields, "outward");
   if (set.surface && set.outward) fields.fail("outward", "either `surface` or `outward`");
   set.truth = named_numbers(fields, "truth", problems);
   if (set.surface && !set.truth.empty()) fields.fail("truth", "either `surface` or `truth`");
   if (const Node* within = fields.node("within"))
-    set.within = read_patch(*within, "set " + name + " within", problems);
+    set.within = read_whole<Patch>(*within, "set " + name + " within", problems, read_patch);
   return set;
 }
 
