@@ -22,6 +22,7 @@ struct Arguments {
   bool unknown = false, json = false;
   int count = 120;
   unsigned long long seed = 1;
+  std::string for_robots;  ///< an option given that says how configurations are drawn
 };
 
 struct Answered {
@@ -80,8 +81,7 @@ Result<Answered> of_data_set(const Arguments& arguments) {
     solution = identify(*loaded->robot, loaded->data, options,
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
-  if (solution.parameters.empty())
-    return tl::unexpected(Failure{kAnswerIsNo, solution.stop_reason});
+  if (solution.sets.empty()) return tl::unexpected(Failure{kAnswerIsNo, solution.stop_reason});
   Answered answered{nullptr, "", 0, 0, {}, solution.unexcited};
   std::set<std::string> methods;
   for (const SetResult& set : solution.sets) {
@@ -156,6 +156,9 @@ int identifiable_command(const Arguments& arguments) {
     return wrong_usage("identifiable needs --method METHOD for a robot, or a data set's folder");
   if (is_robot && is_folder)
     return wrong_usage("--method goes with a robot file; a data set says its methods itself");
+  if (is_folder && !arguments.for_robots.empty())
+    return wrong_usage(arguments.for_robots +
+                       " goes with a robot file and --method; a data set has its own rows");
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)
@@ -180,14 +183,19 @@ void add_identifiable(CLI::App& app, int& status) {
       ->required();
   command->add_option("--method", arguments->method, "Constraint method (with a robot file)")
       ->check(CLI::IsMember(method_list()));
-  command->add_flag("--unknown", arguments->unknown, "The plane is unknown");
-  command->add_option("--count", arguments->count, "Random configurations")
-      ->check(CLI::Range(10, 100000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Seed of the configurations")
-      ->capture_default_str();
+  const std::vector<CLI::Option*> for_robots = {
+      command->add_flag("--unknown", arguments->unknown, "The plane is unknown"),
+      command->add_option("--count", arguments->count, "Random configurations")
+          ->check(CLI::Range(10, 100000))
+          ->capture_default_str(),
+      command->add_option("--seed", arguments->seed, "Seed of the configurations")
+          ->capture_default_str()};
   command->add_flag("--json", arguments->json, "Print JSON alone on standard output");
-  command->callback([arguments, &status] { status = identifiable_command(*arguments); });
+  command->callback([arguments, for_robots, &status] {
+    for (const CLI::Option* option : for_robots)
+      if (option->count() > 0) arguments->for_robots = option->get_name();
+    status = identifiable_command(*arguments);
+  });
 }
 
 }  // namespace selfcal

@@ -131,7 +131,9 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
   if (!solution.converged)
     steps.push_back("Not converged: " + solution.stop_reason +
                     ". Check that the nominal model, units and joint signs belong to these rows.");
-  if (solution.residual.check.rows == 0)
+  if (solution.endpoint.poses == 0)
+    steps.push_back("Leave free (--fix holds) what these rows are to identify.");
+  else if (solution.residual.check.rows == 0)
     steps.push_back(
         "Mark about a third of the rows `check` (column part): a result is judged on rows "
         "it has not seen.");
@@ -153,9 +155,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
 }  // namespace
 
 std::string summary(const DataSet& data, const Solution& solution) {
-  std::string text = solution.parameters.empty() ? "" : first_line(data, solution);
+  const bool without_rows = solution.sets.empty();
+  std::string text = without_rows ? "" : first_line(data, solution);
   text += std::string(to_string(solution.verdict.answer)) + ": " + solution.verdict.why + "\n";
-  if (solution.parameters.empty()) return text;
+  if (without_rows) return text;
   text += parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
   list(text, "Held", solution.gauge,

@@ -24,11 +24,6 @@ constexpr Kind kKinds[] = {
 #undef X
 };
 
-bool has_angles(const Method& method) {
-  const std::vector<Quantity> all = method.equations();
-  return std::find(all.begin(), all.end(), Quantity::angle) != all.end();
-}
-
 double read_noise(Fields& fields, const char* key) {
   const double noise = fields.number(key, 0);
   if (fields.has(key) && !(noise > 0 && noise < 1))
@@ -75,7 +70,7 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
     return set;
   }
   set.noise = read_noise(fields, "noise");
-  if (has_angles(*set.method)) set.noise_angle = read_noise(fields, "noise_angle");
+  if (set.method->has_angles()) set.noise_angle = read_noise(fields, "noise_angle");
   fields.refuse_unknown();
   return set;
 }

@@ -143,7 +143,7 @@ class Iteration {
   void iterate() {
     triangle_ = triangle(fit_.at.R, true);
     ++fit_.iterations;
-    const double free = std::sqrt(static_cast<double>(columns_.size()));
+    const double free = std::sqrt(std::max<double>(1, static_cast<double>(columns_.size())));
     // How far the minimum is: the step without damping, which a short damped one does not tell.
     const Eigen::VectorXd whole = step(triangle_, 0);
     if (!whole.allFinite()) return stop(false, "the system of equations is singular");

@@ -43,13 +43,26 @@ class Basis {
   Eigen::Index count_ = 0;
 };
 
-/// tau of 11.28, with the largest column for max |R_ii|: no diagonal element is larger.
-double tolerance(const Eigen::MatrixXd& R, const std::vector<int>& order, const RankRule& rule) {
-  if (rule.rows == 0) return 1 / rule.least_sigma;
-  double largest = 0;
-  for (const int c : order) largest = std::max(largest, R.col(c).norm());
-  return rule.rows * std::numeric_limits<double>::epsilon() * largest;
-}
+/// Length beyond the columns before it that a column must exceed. Structural: tau of 11.28, with
+/// the largest column for max |R_ii|, as no diagonal element is larger.
+class Threshold {
+ public:
+  Threshold(const Eigen::MatrixXd& R, const std::vector<int>& order, const RankRule& rule)
+      : rule_(rule) {
+    double largest = 0;
+    for (const int c : order) largest = std::max(largest, R.col(c).norm());
+    tau_ = rule.rows * std::numeric_limits<double>::epsilon() * largest;
+  }
+  double of(int column) const {
+    if (rule_.rows > 0) return tau_;
+    const bool ratio = !rule_.ratio.empty() && rule_.ratio[column];
+    return 1 / (ratio ? rule_.least_ratio_sigma : rule_.least_sigma);
+  }
+
+ private:
+  const RankRule& rule_;
+  double tau_ = 0;
+};
 
 /// Coefficients smaller than this say nothing (structural: rounding; real data: noise).
 double least_coefficient(const RankRule& rule) { return rule.rows == 0 ? 1e-2 : 1e-7; }
@@ -58,13 +71,14 @@ double least_coefficient(const RankRule& rule) { return rule.rows == 0 ? 1e-2 : 
 
 std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
                                      int leading, const RankRule& rule) {
-  const double tau = tolerance(R, order, rule);
+  const Threshold threshold(R, order, rule);
   Basis basis(R.rows(), static_cast<Eigen::Index>(order.size()));
   std::vector<int> taken;  // positions in order
   std::vector<ColumnRank> ranks;
   for (int i = 0; i < static_cast<int>(order.size()); ++i) {
     const Eigen::VectorXd column = R.col(order[i]);
     const Basis::Projection p = basis.project(column);
+    const double tau = threshold.of(order[i]);
     const bool independent = p.rest.norm() > tau;
     if (i >= leading) ranks.emplace_back();
     if (independent) {
@@ -98,7 +112,11 @@ Identifiability identifiability(const Equations& equations, const Eigen::MatrixX
   const int leading = static_cast<int>(order.size());
   for (const int p : robot.preference())
     if (candidate[p]) order.push_back(p);
-  const std::vector<ColumnRank> ranks = rank_columns(R, order, leading, rule);
+  RankRule of_robot = rule;
+  of_robot.ratio.assign(equations.columns(), 0);
+  for (size_t i = 0; i < robot.parameters().size(); ++i)
+    of_robot.ratio[i] = robot.parameters()[i].quantity == Quantity::ratio;
+  const std::vector<ColumnRank> ranks = rank_columns(R, order, leading, of_robot);
 
   Identifiability result;
   result.status.assign(robot.parameters().size(), Status::fixed);

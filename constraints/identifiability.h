@@ -20,6 +20,9 @@ struct RankRule {
   double rows = 0;
   /// Real data (whitened W): a parameter that the rows determine no better than this, m or rad.
   double least_sigma = 2.0e-3;
+  /// The same for gear ratios, which act on the whole joint angle.
+  double least_ratio_sigma = 1.0e-4;
+  std::vector<char> ratio;  ///< by column of R: is a gear ratio; empty: none is
 };
 
 struct ColumnRank {
@@ -34,8 +37,9 @@ struct ColumnRank {
 std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
                                      int leading, const RankRule& rule);
 
-/// Status and carriers of every parameter of the robot from R of `equations`. Parameters that
-/// `candidate` leaves out are fixed (or held) and have no say.
+/// Status and carriers of every parameter of the robot from R of `equations`; `rule.ratio` is
+/// filled in from the robot. Parameters that `candidate` leaves out are fixed (or held) and have no
+/// say.
 struct Identifiability {
   std::vector<Status> status;
   std::vector<std::vector<Carrier>> grouped_with;

@@ -59,6 +59,11 @@ bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, con
   return F <= 0 || f_exceeds(F, extra, left) > 0.01;
 }
 
+bool nothing_free(const Adjusted& adjusted) {
+  const std::vector<char>& free = adjusted.prior.free;
+  return std::find(free.begin(), free.end(), char{1}) == free.end();
+}
+
 Solution assemble(const Equations& equations, const Adjusted& adjusted, const Options& options,
                   const Progress& progress) {
   const Robot& robot = equations.robot();
@@ -92,6 +97,12 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.rejected = rejected_rows(data, after, fitted.noise.put_aside);
   solution.sets = set_results(equations, fitted, C, after);
 
+  add_warnings(data, adjusted, solution);
+  if (progress) progress("done", 1);
+  if (nothing_free(adjusted)) {  // certain of what was given, not of what is true
+    solution.verdict.why = "nothing was identified: every parameter is fixed or held";
+    return solution;
+  }
   EndpointQuestion question;
   question.robot = &robot;
   question.xi = fitted.state.xi;
@@ -104,8 +115,6 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.verdict =
       verdict(before, after, solution.residual, solution.endpoint, data.target, fitted.converged,
               nominal_explains(adjusted, rank, solution.residual.fit));
-  add_warnings(data, adjusted, solution);
-  if (progress) progress("done", 1);
   return solution;
 }
 
@@ -114,6 +123,8 @@ Solution without_rows(const Robot& robot) {
   solution.stop_reason = "no rows to identify from";
   solution.verdict.why = solution.stop_reason;
   solution.values = values(robot);
+  const std::vector<char> none(robot.parameters().size(), 0);
+  solution.parameters = parameter_results(robot, solution.values, {}, {}, none, none);
   return solution;
 }
 

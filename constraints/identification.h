@@ -88,7 +88,7 @@ struct Verdict {
 struct EndpointSigma {
   bool aligned = false;
   double rms = 0, median = 0, max = 0;  ///< m
-  int poses = 0;
+  int poses = 0;                        ///< 0 where nothing was identified: not known
 };
 
 struct Observability {
@@ -108,7 +108,7 @@ struct Solution {
   std::vector<std::string> covariance_order;
   Eigen::MatrixXd covariance;
   std::vector<Note> gauge, unexcited;
-  std::vector<SetResult> sets;
+  std::vector<SetResult> sets;  ///< empty when no row identifies
   std::vector<Rejected> rejected;
   Residuals residual;
   EndpointSigma endpoint;

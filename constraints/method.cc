@@ -1,6 +1,8 @@
 // What a method does unless it says otherwise: it has no unknowns of its own.
 #include "constraints/method.h"
 
+#include <algorithm>
+
 namespace selfcal {
 
 void MethodOutput::resize(int equations, int own, int reference, int group) {
@@ -10,6 +12,11 @@ void MethodOutput::resize(int equations, int own, int reference, int group) {
   D_own.setZero(kLanes, equations * own);
   D_reference.setZero(kLanes, equations * reference);
   D_group.setZero(kLanes, equations * group);
+}
+
+bool Method::has_angles() const {
+  const std::vector<Quantity> all = equations();
+  return std::find(all.begin(), all.end(), Quantity::angle) != all.end();
 }
 
 Eigen::VectorXd Method::start(const std::vector<Location>&, const std::vector<int>&,

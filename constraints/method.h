@@ -97,6 +97,8 @@ class Method {
   /// True when a row holds only at certain configurations (a touch); false for an instrument's
   /// reading, which any configuration has.
   virtual bool constrains() const { return true; }
+  /// True when one of the equations is of an angle, and so has a noise of its own.
+  bool has_angles() const;
   Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
   /// Name of another set whose own unknowns this one shares, or empty.

@@ -126,9 +126,7 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
       for (const RowResidual& r : after.check) each.rows += r.set == s;
     if (identifies || each.aligned) {
       each.noise_sigma = noise.length;
-      const auto quantities = set.method->equations();
-      if (std::count(quantities.begin(), quantities.end(), Quantity::angle) > 0)
-        each.noise_angle_sigma = noise.angle;
+      if (set.method->has_angles()) each.noise_angle_sigma = noise.angle;
       each.repeat_sigma =
           repeat_sigma(data, s, identifies ? after.fit : after.check, fit.noise.put_aside);
     }

@@ -37,7 +37,7 @@ Result<void> check_replaceable(const fs::path& folder) {
 }
 
 Result<void> write_data_set(const fs::path& folder, const NewDataSet& data_set) {
-  if (const auto free = check_replaceable(folder); !free) return free;
+  if (auto free = check_replaceable(folder); !free) return free;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
@@ -49,7 +49,7 @@ Result<void> write_data_set(const fs::path& folder, const NewDataSet& data_set) 
       {"observations.csv", observations_text(*data_set.data)},
       {"dataset.yaml", mark + write_yaml(data_set.description)}};
   for (const auto& [name, text] : files)
-    if (const auto done = write_file_atomically(folder / name, text); !done) return done;
+    if (auto done = write_file_atomically(folder / name, text); !done) return done;
   return {};
 }
 

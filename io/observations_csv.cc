@@ -136,7 +136,7 @@ class RowReader {
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
                                std::vector<std::string>& notices) {
   RowReader reader(robot, data);
-  const Result<void> read = read_csv(
+  Result<void> read = read_csv(
       path, [&](Cells names) { return reader.take_header(names); },
       [&](Cells cells, int row) { return reader.take_row(cells, row); });
   if (!read) return read;

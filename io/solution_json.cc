@@ -69,6 +69,7 @@ Json of_set(const SetResult& set) {
 Json of_rejected(const Rejected& rejected) {
   return Json::object({{"row", rejected.row},
                        {"set", rejected.set},
+                       {"part", rejected.check ? "check" : "fit"},
                        {"residual", finite(rejected.residual)},
                        {"why", rejected.why}});
 }

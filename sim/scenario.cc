@@ -8,12 +8,10 @@ namespace {
 
 constexpr double kLargestError = 1;  // m or rad
 
-Errors read_errors(const Node& node, Problems& problems) {
-  Fields fields(node, "errors", problems);
+void read_errors(Fields& fields, Errors& errors, Problems& problems) {
   const auto sigma = [&](const char* key) {
     return number_within(fields, key, 0, 0, kLargestError);
   };
-  Errors errors;
   errors.length = sigma("length");
   errors.angle = sigma("angle");
   errors.base_length = sigma("base_length");
@@ -22,31 +20,21 @@ Errors read_errors(const Node& node, Problems& problems) {
   errors.tool_angle = sigma("tool_angle");
   errors.gear = sigma("gear");
   errors.parameters = named_numbers(fields, "parameters", problems);
-  fields.refuse_unknown();
-  return errors;
 }
 
-Repeats read_repeats(const Node& node, Problems& problems) {
-  Fields fields(node, "repeats", problems);
-  Repeats repeats;
+void read_repeats(Fields& fields, Repeats& repeats) {
   repeats.share = number_within(fields, "share", 0, 0, 1);
   repeats.times = fields.integer("times", repeats.times, 2, 100);
-  fields.refuse_unknown();
-  return repeats;
 }
 
-FalseTriggers read_false_triggers(const Node& node, Problems& problems) {
-  Fields fields(node, "false_triggers", problems);
-  FalseTriggers triggers;
+void read_false_triggers(Fields& fields, FalseTriggers& triggers) {
   triggers.share = number_within(fields, "share", 0, 0, 0.5);
-  if (const auto size = fields.numbers("size", 2)) {
-    triggers.least = (*size)[0];
-    triggers.most = (*size)[1];
-    if (!(triggers.least > 0 && triggers.least <= triggers.most && triggers.most <= 0.1))
-      fields.fail("size", "[LEAST, MOST] in metres, above 0 and at most 0.1");
-  }
-  fields.refuse_unknown();
-  return triggers;
+  const auto size = fields.numbers("size", 2);
+  if (!size) return;
+  triggers.least = (*size)[0];
+  triggers.most = (*size)[1];
+  if (!(triggers.least > 0 && triggers.least <= triggers.most && triggers.most <= 0.1))
+    fields.fail("size", "[LEAST, MOST] in metres, above 0 and at most 0.1");
 }
 
 void read_sets(Fields& fields, Scenario& scenario, Problems& problems) {
@@ -78,13 +66,17 @@ Scenario read_scenario(const Node& node, Problems& problems) {
   scenario.target = fields.optional_number("target");
   if (scenario.target && !(*scenario.target > 0 && *scenario.target < 1))
     fields.fail("target", "metres above 0 and below 1");
-  if (const Node* errors = fields.node("errors")) scenario.errors = read_errors(*errors, problems);
+  if (const Node* errors = fields.node("errors"))
+    scenario.errors = read_whole<Errors>(
+        *errors, "errors", problems,
+        [&](Fields& inner, Errors& result) { read_errors(inner, result, problems); });
   scenario.encoder_step = number_within(fields, "encoder_step", 0, 0, 0.1);
   scenario.check = number_within(fields, "check", scenario.check, 0, 0.9);
   if (const Node* repeats = fields.node("repeats"))
-    scenario.repeats = read_repeats(*repeats, problems);
+    scenario.repeats = read_whole<Repeats>(*repeats, "repeats", problems, read_repeats);
   if (const Node* triggers = fields.node("false_triggers"))
-    scenario.false_triggers = read_false_triggers(*triggers, problems);
+    scenario.false_triggers =
+        read_whole<FalseTriggers>(*triggers, "false_triggers", problems, read_false_triggers);
   scenario.compliance = named_numbers(fields, "compliance", problems);
   if (const Node* machine = fields.node("machine"))
     scenario.machine = read_machine_scenario(*machine, problems);

@@ -39,7 +39,8 @@
 //                                              [x, y, z] or [x, y, z, qw, qx, qy, qz]
 //   }
 // A plane is touched from the side of the world's origin unless `surface` or `outward` says
-// otherwise, a plane-normal from the side that its normal points at, a sphere from outside.
+// otherwise, a plane-normal from the side that its normal points at, a sphere from outside. A plane
+// with `parallel_to` lies beyond the other one, seen from the origin, unless `truth` gives its d.
 #pragma once
 
 #include <Eigen/Dense>
@@ -82,7 +83,8 @@ struct SetScenario {
   std::string name;
   Node entry;  ///< as dataset.yaml has it, without the scenario's own keys
   int rows = 100, rows_per_group = 4;
-  double noise = 0, noise_angle = 0;  ///< true 1 sigma (m, rad)
+  double noise = 0, noise_angle = 0;      ///< true 1 sigma (m, rad)
+  std::optional<Place> noise_angle_true;  ///< where it is given
   std::optional<Surface> surface;
   std::optional<Eigen::Vector3d> outward;  ///< unit
   std::vector<NamedNumber> truth;

@@ -101,6 +101,10 @@ std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
     if (each.surface && !free_plane)
       problems.add(each.entry.place,
                    "set " + each.name + ": `surface` is for planes whose place is unknown");
+    if (each.noise_angle_true && !set.method->has_angles())
+      problems.add(*each.noise_angle_true, "set " + each.name +
+                                               ": `noise_angle_true` is for methods with angles, " +
+                                               std::string(set.method->name()) + " has none");
     if (each.outward && !is_plane(*set.method))
       problems.add(each.entry.place, "set " + each.name + ": `outward` is for planes");
   }

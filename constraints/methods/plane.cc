@@ -73,7 +73,8 @@ class Touch : public Method {
 
 class OnePlane final : public Touch {
  public:
-  OnePlane(double probe_radius, std::optional<Plane> known) : Touch(probe_radius), known_(known) {}
+  OnePlane(double probe_radius, const std::optional<Plane>& known)
+      : Touch(probe_radius), known_(known) {}
 
   bool leaves_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 3; }

@@ -10,7 +10,7 @@ namespace {
 
 class PlaneNormal final : public Method {
  public:
-  explicit PlaneNormal(std::optional<Eigen::Vector3d> known) : known_(known) {}
+  explicit PlaneNormal(const std::optional<Eigen::Vector3d>& known) : known_(known) {}
 
   std::string_view name() const override { return "plane-normal"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }

@@ -12,7 +12,7 @@ namespace {
 
 class Sphere final : public Method {
  public:
-  Sphere(std::optional<Eigen::Vector3d> centre, std::optional<double> radius)
+  Sphere(const std::optional<Eigen::Vector3d>& centre, std::optional<double> radius)
       : centre_(centre), radius_(radius) {}
 
   std::string_view name() const override { return "sphere"; }

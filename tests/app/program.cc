@@ -109,12 +109,55 @@ TEST_F(Program, HoldsWhatTheUserFixes) {
     }
 }
 
+TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
+  const std::string data = simulated();
+  const Ran told = selfcal_run("identify " + data + " --fix '*'");
+  EXPECT_EQ(told.status, 1);
+  EXPECT_NE(told.out.find("not-determined: nothing was identified"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("end position"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("candidate"), std::string::npos) << told.out;
+  const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_TRUE(json["endpoint_sigma"]["rms"].is_null());
+  EXPECT_GT(json["residual"]["check"]["rows"], 0);  // the fixed robot is judged all the same
+  EXPECT_EQ(json["converged"], true) << json["stop_reason"];
+}
+
+TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
+  const std::string data = simulated();
+  std::string rows = text_of(data + "/observations.csv");
+  for (size_t at = rows.find(",fit"); at != std::string::npos; at = rows.find(",fit", at))
+    rows.replace(at, 4, ",check");
+  std::ofstream(data + "/observations.csv") << rows;
+  const Ran ran = selfcal_run("identify " + data + " --json", true);
+  EXPECT_EQ(ran.status, 1);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json["verdict"]["answer"], "not-determined");
+  EXPECT_GT(json["parameters"].size(), 40u);
+  for (const auto& p : json["parameters"]) {
+    EXPECT_EQ(p["status"], "fixed") << p["name"];
+    EXPECT_TRUE(p["sigma"].is_null()) << p["name"];
+  }
+  EXPECT_EQ(selfcal_run("identify " + data, true).out,
+            "not-determined: no rows to identify from\n");
+  EXPECT_EQ(selfcal_run("identifiable " + data).status, 1);
+}
+
 TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
   EXPECT_EQ(ran.status, 0);
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_EQ(json["own"], 16);  // five planes of three freedoms, one of the parallel plane
   EXPECT_GT(json["total"], 20);
+}
+
+TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
+  const std::string data = simulated();
+  for (const std::string option : {"--count 50", "--seed 2", "--unknown", "--method plane"}) {
+    const Ran ran = selfcal_run("identifiable " + data + " " + option);
+    EXPECT_EQ(ran.status, 2) << option << ": " << ran.out;
+    EXPECT_NE(ran.out.find(option.substr(0, option.find(' '))), std::string::npos) << ran.out;
+  }
 }
 
 TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {

@@ -82,5 +82,18 @@ TEST(RankColumns, OfRealRowsAsksWhatTheNoiseAllows) {
   EXPECT_THAT(ranks[2].carriers, ElementsAre(carrier(0, 1)));
 }
 
+TEST(RankColumns, OfRealRowsAsksMoreOfAGearRatioThanOfAnAngle) {
+  // Both known to 5e-4: of an angle enough, of a ratio (least_ratio_sigma 1e-4) hardly seen; the
+  // third, a ratio too, to 5e-5.
+  const Eigen::MatrixXd R = Eigen::Vector4d(2000, 2000, 20000, 1).asDiagonal();
+  RankRule rule;
+  rule.ratio = {0, 1, 1, 0};
+  EXPECT_THAT(statuses(rank_columns(R, {0, 1, 2}, 0, rule)),
+              ElementsAre(Status::identified, Status::no_effect, Status::identified));
+  rule.rows = kRows;  // the structural question knows no units
+  EXPECT_THAT(statuses(rank_columns(R, {0, 1, 2}, 0, rule)),
+              ElementsAre(Status::identified, Status::identified, Status::identified));
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -45,7 +45,8 @@ Solution example() {
   set.rows = 92;
   set.own = {{"table.nx", 0.01, 1e-6}};
   solution.sets = {set};
-  solution.rejected = {{17, "table", 4.1e-4, false, "outlier"}};
+  solution.rejected = {{17, "table", 4.1e-4, false, "outlier"},
+                       {18, "table", 3.9e-4, true, "outlier among the check rows"}};
   solution.residual.fit = {180, 1.2e-3, 2.1e-5, 1.7e-5, 6e-5, 0};
   solution.observability.condition = std::numeric_limits<double>::infinity();
   return solution;
@@ -60,7 +61,7 @@ TEST(SolutionJson, HasTheKeysOfTheFormatInItsOrder) {
   EXPECT_THAT(keys(json["parameters"][0]),
               ElementsAre("name", "frame", "unit", "nominal", "value", "sigma", "prior_sigma",
                           "status", "grouped_with"));
-  EXPECT_THAT(keys(json["rejected"][0]), ElementsAre("row", "set", "residual", "why"));
+  EXPECT_THAT(keys(json["rejected"][0]), ElementsAre("row", "set", "part", "residual", "why"));
   EXPECT_THAT(keys(json["residual"]["fit"]),
               ElementsAre("rows", "rms_before", "rms_after", "mean_after", "max_after"));
   EXPECT_THAT(keys(json["residual"]["check"]),
@@ -79,6 +80,8 @@ TEST(SolutionJson, SpellsAnswersAndStatesAsTheFormatDoes) {
   const auto json = to_json(solution, "arm", "sha256:0");
   EXPECT_EQ(json["verdict"]["answer"], "not-determined");
   EXPECT_EQ(json["parameters"][0]["status"], "no-effect");
+  EXPECT_EQ(json["rejected"][0]["part"], "fit");
+  EXPECT_EQ(json["rejected"][1]["part"], "check");
   EXPECT_EQ(json["parameters"][0]["unit"], "rad");
   EXPECT_EQ(json["parameters"][1]["grouped_with"].dump(),
             R"([{"name":"theta2","coefficient":-1.0}])");

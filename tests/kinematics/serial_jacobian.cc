@@ -35,67 +35,76 @@ Eigen::VectorXd difference(const Locations& plus, const Locations& minus) {
   return column;
 }
 
+/// A random robot at random readings, with Psi of the body.
+struct Drawn {
+  RandomRobot made;
+  ConfigurationBlock block;
+  Eigen::VectorXd xi;
+  Locations X;
+  PsiBlock psi;
+};
+
+Drawn drawn(std::mt19937_64& random, Body body) {
+  Drawn d{random_robot(random), {}, {}, {}, {}};
+  d.block = random_block(*d.made.robot, random);
+  d.xi = values(*d.made.robot);
+  d.made.robot->locate(d.block, d.xi, body, d.X, &d.psi);
+  return d;
+}
+
+/// Every column of `analytic` against differences; `moved(k, step)` gives the locations when what
+/// column k belongs to has moved, `name(k)` is for the message.
+template <class Moved, class Name>
+void expect_differences(const Eigen::MatrixXd& analytic, Moved moved, Name name) {
+  ASSERT_EQ(analytic.rows(), 6 * kLanes);
+  for (Eigen::Index k = 0; k < analytic.cols(); ++k) {
+    const Eigen::VectorXd column = difference(moved(k, kStep), moved(k, -kStep));
+    EXPECT_LT((analytic.col(k) - column).cwiseAbs().maxCoeff(), kTolerance) << name(k);
+  }
+}
+
 class SerialJacobian : public testing::TestWithParam<Body> {};
 
 TEST_P(SerialJacobian, HasForEveryParameterTheColumnThatDifferencesGive) {
   std::mt19937_64 random(11);
   for (int i = 0; i < kRobots; ++i) {
-    const RandomRobot made = random_robot(random);
-    const ConfigurationBlock block = random_block(*made.robot, random);
-    const Eigen::VectorXd xi = values(*made.robot);
-    Locations X;
-    PsiBlock psi;
-    made.robot->locate(block, xi, GetParam(), X, &psi);
-    ASSERT_EQ(psi.rows(), 6 * kLanes);
-    ASSERT_EQ(psi.cols(), xi.size());
-    for (Eigen::Index p = 0; p < xi.size(); ++p) {
-      Eigen::VectorXd plus = xi, minus = xi;
-      plus[p] += kStep;
-      minus[p] -= kStep;
-      const Eigen::VectorXd column = difference(located(*made.robot, block, plus, GetParam()),
-                                                located(*made.robot, block, minus, GetParam()));
-      EXPECT_LT((psi.col(p) - column).cwiseAbs().maxCoeff(), kTolerance)
-          << "robot " << i << ", " << made.robot->parameters()[p].name;
-    }
+    SCOPED_TRACE("robot " + std::to_string(i));
+    const Drawn d = drawn(random, GetParam());
+    const Robot& robot = *d.made.robot;
+    ASSERT_EQ(d.psi.cols(), d.xi.size());
+    const auto moved = [&](Eigen::Index p, double step) {
+      Eigen::VectorXd xi = d.xi;
+      xi[p] += step;
+      return located(robot, d.block, xi, GetParam());
+    };
+    expect_differences(d.psi, moved, [&](Eigen::Index p) { return robot.parameters()[p].name; });
   }
 }
 
 TEST_P(SerialJacobian, HasForEveryReadingTheColumnThatDifferencesGive) {
   std::mt19937_64 random(12);
   for (int i = 0; i < kRobots; ++i) {
-    const RandomRobot made = random_robot(random);
-    const ConfigurationBlock block = random_block(*made.robot, random);
-    const Eigen::VectorXd xi = values(*made.robot);
-    Locations X;
-    PsiBlock psi;
+    SCOPED_TRACE("robot " + std::to_string(i));
+    const Drawn d = drawn(random, GetParam());
+    const Robot& robot = *d.made.robot;
     Eigen::MatrixXd J;
-    made.robot->locate(block, xi, GetParam(), X, &psi);
-    made.robot->joint_jacobian(xi, psi, J);
-    ASSERT_EQ(J.rows(), 6 * kLanes);
-    ASSERT_EQ(J.cols(), made.joints());
-    for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      ConfigurationBlock plus = block, minus = block;
-      plus.q.col(j) += kStep;
-      minus.q.col(j) -= kStep;
-      const Eigen::VectorXd column = difference(located(*made.robot, plus, xi, GetParam()),
-                                                located(*made.robot, minus, xi, GetParam()));
-      EXPECT_LT((J.col(j) - column).cwiseAbs().maxCoeff(), kTolerance)
-          << "robot " << i << ", joint " << made.robot->joints()[j].name;
-    }
+    robot.joint_jacobian(d.xi, d.psi, J);
+    ASSERT_EQ(J.cols(), d.made.joints());
+    const auto moved = [&](Eigen::Index j, double step) {
+      ConfigurationBlock block = d.block;
+      block.q.col(j) += step;
+      return located(robot, block, d.xi, GetParam());
+    };
+    expect_differences(J, moved, [&](Eigen::Index j) { return robot.joints()[j].name; });
   }
 }
 
 TEST_P(SerialJacobian, ComesWithTheLocationsThatAreGivenWithoutIt) {
   std::mt19937_64 random(13);
-  const RandomRobot made = random_robot(random);
-  const ConfigurationBlock block = random_block(*made.robot, random);
-  const Eigen::VectorXd xi = values(*made.robot);
-  Locations X;
-  PsiBlock psi;
-  made.robot->locate(block, xi, GetParam(), X, &psi);
-  const Locations alone = located(*made.robot, block, xi, GetParam());
-  EXPECT_TRUE((X.rotation == alone.rotation).all());
-  EXPECT_TRUE((X.position == alone.position).all());
+  const Drawn d = drawn(random, GetParam());
+  const Locations alone = located(*d.made.robot, d.block, d.xi, GetParam());
+  EXPECT_TRUE((d.X.rotation == alone.rotation).all());
+  EXPECT_TRUE((d.X.position == alone.position).all());
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, SerialJacobian, testing::Values(Body::endpoint, Body::last_link),
@@ -106,14 +115,11 @@ INSTANTIATE_TEST_SUITE_P(Bodies, SerialJacobian, testing::Values(Body::endpoint,
 TEST(SerialJacobianOfTheLastLink, HasNothingInTheToolsColumns) {
   std::mt19937_64 random(14);
   for (int i = 0; i < kRobots; ++i) {
-    const RandomRobot made = random_robot(random);
-    const ConfigurationBlock block = random_block(*made.robot, random);
-    Locations X;
-    PsiBlock psi;
-    made.robot->locate(block, values(*made.robot), Body::last_link, X, &psi);
-    for (size_t p = 0; p < made.robot->parameters().size(); ++p) {
-      if (made.robot->parameters()[p].part != Part::tool) continue;
-      EXPECT_TRUE(psi.col(static_cast<Eigen::Index>(p)).isZero(0));
+    const Drawn d = drawn(random, Body::last_link);
+    const std::vector<Parameter>& parameters = d.made.robot->parameters();
+    for (size_t p = 0; p < parameters.size(); ++p) {
+      if (parameters[p].part != Part::tool) continue;
+      EXPECT_TRUE(d.psi.col(static_cast<Eigen::Index>(p)).isZero(0));
     }
   }
 }

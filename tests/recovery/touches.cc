@@ -116,6 +116,20 @@ TEST(Touches, BringTheEndPositionFromMillimetresToHundredthsOnceTheScaleIsGiven)
   EXPECT_LE(dishonest, 2);
 }
 
+TEST(Touches, OfExactPlanesAndAStepGiveEveryParameterToOneNanometreOrNanoradianWithoutPriors) {
+  const auto robot = robot_of(kRx90);
+  for (int seed = 1; seed <= 5; ++seed) {
+    Random random(seed);
+    std::vector<SetPart> parts = four_planes(75);
+    parts.push_back(step_of_a(60));
+    const Exact exact = without_priors(*robot, rx90_truth(*robot, random, false), parts, random);
+    ASSERT_EQ(exact.unreached, "");
+    EXPECT_TRUE(exact.solution.converged) << seed << " " << exact.solution.stop_reason;
+    EXPECT_LT(exact.solution.residual.check.max_after, 1e-9) << "seed " << seed;
+    EXPECT_LT(exact.largest_error, 1e-9) << "seed " << seed;
+  }
+}
+
 TEST(Touches, HoldOneLengthAndSaySoWhenNothingGivesTheScale) {
   const auto robot = robot_of(kRx90);
   Random random(3);

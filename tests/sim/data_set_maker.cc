@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "constraints/identification.h"
 #include "tests/sim/pretend.h"
 
 namespace selfcal {
@@ -28,6 +29,13 @@ double rms(const std::vector<RowResidual>& residuals, bool angles = false) {
     count += angles ? r.angles : r.lengths;
   }
   return std::sqrt(sum / count);
+}
+
+double own_of(const Solution& solution, const std::string& name) {
+  for (const SetResult& set : solution.sets)
+    for (const OwnResult& own : set.own)
+      if (own.name == name) return own.value;
+  return std::nan("");
 }
 
 /// Three sigmas of the rms of `count` normal numbers of 1 sigma.
@@ -183,6 +191,23 @@ TEST(DataSetMaker, ReadsWhatComplianceHidesFromTheEncoders) {
     // The axis is -y of the world: a mass at distance 2 pulls the joint down by -m g 2 cos q.
     const double q = stiff.data.rows.q(row, 0), torque = -3 * 9.81 * 2 * std::cos(q);
     EXPECT_NEAR(soft.data.rows.q(row, 0), q - 1e-5 * torque, 1e-15);
+  }
+}
+
+TEST(DataSetMaker, PutsAParallelPlaneBeyondTheOtherOneUnlessItsTruthSaysNearer) {
+  const std::string sets =
+      "sets:\n  table: {method: plane, noise_true: 0, rows: 12,\n"
+      "          surface: {point: [0.7, 0, 0.4], normal: [0, 0, -1]}}\n"
+      "  step: {method: plane, noise_true: 0, rows: 12,\n"
+      "         parallel_to: {set: table, distance: 0.2, noise: 2.0e-6}";
+  const std::vector<std::pair<std::string, double>> cases = {{"}\n", 0.6},
+                                                             {", truth: {d: 0.2}}\n", 0.2}};
+  for (const auto& [truth, d] : cases) {
+    const Simulated simulated = made(kErrors + sets + truth);
+    EXPECT_NEAR(simulated.truth.own[1][0], d, 1e-9);
+    EXPECT_LT(rms(residuals_at_truth(simulated)), 1e-9);
+    // What identifies starts from the rows: they say on which side they lie.
+    EXPECT_NEAR(own_of(identify(rx90(), simulated.data), "step.d"), d, 0.02) << truth;
   }
 }
 

@@ -61,6 +61,13 @@ TEST(Scenario, RefusesComplianceOfARobotWithoutMasses) {
               StartsWith("scenario.yaml:2: compliance: staubli-rx90 has no masses"));
 }
 
+TEST(Scenario, RefusesNoiseOfAnglesWhereTheMethodHasNone) {
+  EXPECT_THAT(
+      problem_of("robot: r\nsets:\n  a: {method: position,\n      noise_angle_true: 1.0e-4}\n"),
+      StartsWith("scenario.yaml:4: set a: `noise_angle_true` is for methods with angles"));
+  EXPECT_EQ(problem_of("robot: r\nsets:\n  a: {method: location, noise_angle_true: 1.0e-4}\n"), "");
+}
+
 TEST(Scenario, RefusesASurfaceWhereNoPlaneIsUnknown) {
   const std::string surface = "surface: {point: [0, 0, 0], normal: [0, 0, 1]}";
   EXPECT_THAT(problem_of("robot: r\nsets:\n  a: {method: sphere, " + surface + "}\n"),
