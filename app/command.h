@@ -24,6 +24,9 @@ void add_identifiable(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
+void add_monitor(CLI::App& app, int& status);
+void add_ask(CLI::App& app, int& status);
+void add_history(CLI::App& app, int& status);
 
 /// Says `failure` on standard error and returns its exit status.
 int tell(const Failure& failure);

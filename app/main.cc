@@ -21,6 +21,9 @@ int run(int argc, char** argv) {
   add_identifiable(app, status);
   add_robot(app, status);
   add_serve(app, status);
+  add_monitor(app, status);
+  add_ask(app, status);
+  add_history(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

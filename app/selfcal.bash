@@ -6,15 +6,24 @@ _selfcal() {
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
     return
   fi
+  if [[ $prev == --log ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "debug info warning error" -- "$cur")
+    return
+  fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable simulate robot --help --version" ;;
+    1:*) words="identify identifiable simulate robot serve monitor command history --help --version" ;;
     *:identify) words="--fix --free --out --json --help" ;;
     *:identifiable) words="--method --unknown --count --seed --json --help" ;;
-    *:simulate) words="--out --truth --help" ;;
+    *:simulate) words="--out --live --truth --help" ;;
     2:robot) words="check --help" ;;
+    *:serve) words="--check --simulate --sessions --truth --log --help" ;;
+    *:monitor) words="--robot --domain --once --wait --json --help" ;;
+    2:command) words="start check abort accept reject rollback --help" ;;
+    *:command) words="--robot --domain --wait --json --help" ;;
+    *:history) words="--newest --events --export --json --help" ;;
     *) words="--help" ;;
   esac
-  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:robot ]]; then
+  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|command) ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$cur")

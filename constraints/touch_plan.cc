@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
 constexpr int kPathBlocks = 3;      // of kLanes places along a path
-constexpr int kRounds = 6;          // of sampling, until enough candidates are usable
+constexpr int kRounds = 12;         // of sampling, until enough candidates are usable
 
 Location location_at(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q) {
   ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
@@ -58,13 +58,14 @@ class Candidates {
     std::vector<PlannedTouch> usable;
     const int wanted = kCandidatesEach * target.touches;
     for (int round = 0; round < kRounds && static_cast<int>(usable.size()) < wanted; ++round)
-      sample(target, obstacle, wanted, random, usable);
+      sample(target, obstacle, random, usable);
     return usable;
   }
 
  private:
-  void sample(const TouchTarget& target, int obstacle, int rows, Random& random,
+  void sample(const TouchTarget& target, int obstacle, Random& random,
               std::vector<PlannedTouch>& usable) const {
+    const int rows = kCandidatesEach * target.touches;
     DataSet data;
     data.sets = {sets_[target.set]};
     // The nominal surface is given whole, whatever the set knows or shares of it.
@@ -104,7 +105,7 @@ class Candidates {
            within_limits(robot_, touch.end, options_.limit_margin) &&
            path_is_free(robot_, xi_, touch.start, touch.end, obstacles_, options_.apart,
                         obstacle) &&
-           path_is_free(robot_, xi_, touch.start, touch.start, obstacles_, options_.apart);
+           path_is_free(robot_, xi_, options_.home, touch.start, obstacles_, options_.apart);
   }
 
   /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
@@ -226,10 +227,6 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   for (const TouchTarget& target : targets) {
     const int own_obstacle = target.places.empty() ? obstacle++ : -1;
     std::vector<PlannedTouch> usable = candidates.of(target, own_obstacle, random);
-    const auto free = [&](const PlannedTouch& each) {
-      return path_is_free(robot, xi, options.home, each.start, obstacles, options.apart);
-    };
-    std::erase_if(usable, [&](const PlannedTouch& each) { return !free(each); });
     std::vector<PlannedTouch> taken = spread(robot, std::move(usable), target.touches);
     if (static_cast<int>(taken.size()) < target.touches && plan.unreached.empty())
       plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(taken.size()) +

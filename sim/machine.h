@@ -56,6 +56,8 @@ class Machine {
   const std::vector<Set>& sets() const { return sets_; }
   /// Labels of the touches whose trigger fired early, in the order in which they were made.
   const std::vector<std::string>& false_touches() const { return false_touches_; }
+  /// Whether a touch of this label fires early, or would.
+  bool is_false(const std::string& label) const;
   /// How often each label was moved for.
   const std::map<std::string, int>& visits() const { return visits_; }
 
@@ -78,6 +80,12 @@ class Machine {
   // sim/machine_contact.cc
   std::vector<Crossing> crossings(const MotionRequest& request, const Trajectory& path);
   Eigen::VectorXd seat(const MotionRequest& request, const Eigen::VectorXd& from);
+  struct Chance {
+    double noise;  ///< in sigmas
+    bool missed;
+    double early;  ///< m, of a false trigger; 0 for a true one
+  };
+  Chance chance_of(const std::string& label) const;
   double offset(const MotionRequest& request, int set);
   Random stream_of(const std::string& label) const;
   Eigen::ArrayXXd true_joints(const Eigen::ArrayXXd& readings) const;

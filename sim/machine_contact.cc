@@ -37,20 +37,28 @@ Eigen::ArrayXXd Machine::true_joints(const Eigen::ArrayXXd& readings) const {
   return joints;
 }
 
-/// How far before the true surface the trigger closes (m), as chance has it for this touch;
-/// infinitely late when it is missed.
-double Machine::offset(const MotionRequest& request, int set) {
-  Random random = stream_of(request.label);
+Machine::Chance Machine::chance_of(const std::string& label) const {
+  Random random = stream_of(label);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
-  double off = scenario_.sets[set].noise * normal(random);
-  if (uniform(random) < settings_.missed) return -HUGE_VAL;
-  if (uniform(random) < scenario_.false_triggers.share) {
-    const FalseTriggers& triggers = scenario_.false_triggers;
-    off += triggers.least + (triggers.most - triggers.least) * uniform(random);
-    false_touches_.push_back(request.label);
-  }
-  return off;
+  Chance chance{normal(random), uniform(random) < settings_.missed, 0};
+  if (uniform(random) >= scenario_.false_triggers.share) return chance;
+  const FalseTriggers& triggers = scenario_.false_triggers;
+  chance.early = triggers.least + (triggers.most - triggers.least) * uniform(random);
+  return chance;
+}
+
+bool Machine::is_false(const std::string& label) const {
+  const Chance chance = chance_of(label);
+  return !chance.missed && chance.early > 0;
+}
+
+/// How far before the true surface the trigger closes (m); infinitely late when it is missed.
+double Machine::offset(const MotionRequest& request, int set) {
+  const Chance chance = chance_of(request.label);
+  if (chance.missed) return -HUGE_VAL;
+  if (chance.early > 0) false_touches_.push_back(request.label);
+  return scenario_.sets[set].noise * chance.noise + chance.early;
 }
 
 std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,

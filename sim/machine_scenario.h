@@ -5,14 +5,13 @@
 //   speed           2         1e-3 to 100    largest joint speed (rad/s or m/s)
 //   acceleration    20        0.1 to 1e4     of the fastest joint (rad/s^2), in moving and stopping
 //   trigger_delay   0         0 to 0.1 s     from the contact to the edge
-//   bounce          0         0 to 20        times that the trigger opens again within a
-//   millisecond missed          0         0 to 0.5       share of the touches that trigger nothing
+//   bounce          0         0 to 20        times that the trigger opens again at once
+//   missed          0         0 to 0.5       share of the touches that trigger nothing
 //   stray           0         0 to 0.5       share of the free moves on which the trigger fires
 //   temperature     20        -40 to 80      °C at the start
 //   warming         0         -20 to 20      °C per hour
-//   faults          []                       [{what: WHAT, at: S, for: S}]: what breaks, when (s
-//   from
-//                                            the start) and for how long; WHAT is one of
+//   faults          []                       [{what: WHAT, at: S, for: S}]: what breaks, when
+//                                            (s from the start), for how long; WHAT is one of
 //     encoders        no sample comes
 //     stuck           the trigger stays closed
 //     refuse          every move is refused

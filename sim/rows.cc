@@ -135,13 +135,13 @@ void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made) {
       touch_by_point(normals[s], *residual_normal(made.data.sets, s, made.truth.own), radius, set,
                      own);
     }
-    requests.push_back({static_cast<int>(s),
-                        count,
-                        wanted.rows_per_group,
-                        std::move(own),
-                        wanted.within,
-                        wanted.places,
-                        {}});
+    SampleRequest& request = requests.emplace_back();
+    request.set = static_cast<int>(s);
+    request.rows = count;
+    request.rows_per_group = wanted.rows_per_group;
+    request.own = std::move(own);
+    request.patch = wanted.within;
+    request.places = wanted.places;
   }
   Random random = stream(scenario.seed, Draw::configurations);
   Sampled taken = sample_rows(robot, made.truth.xi, requests, random, sampled);

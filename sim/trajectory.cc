@@ -6,6 +6,11 @@
 #include <cmath>
 
 namespace selfcal {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of s at the end of a move, a sum of segments that is about 1
+
+}  // namespace
 
 Trajectory::Trajectory(Eigen::VectorXd q) : from_(q), to_(std::move(q)) {}
 
@@ -31,11 +36,13 @@ double Trajectory::s(Nanoseconds t) const {
   return s;
 }
 
-Nanoseconds Trajectory::end() const { return start_ + nanoseconds(t3_); }
+Nanoseconds Trajectory::end() const {
+  return start_ + static_cast<Nanoseconds>(std::ceil(t3_ * 1e9));
+}
 
 Nanoseconds Trajectory::when(double s_wanted) const {
   Nanoseconds low = start_, high = end();
-  if (s(high) < s_wanted) return high + 1;
+  if (s(high) < s_wanted - kRounding) return high + 1;
   while (high - low > 1) {
     const Nanoseconds middle = low + (high - low) / 2;
     (s(middle) < s_wanted ? low : high) = middle;

@@ -38,10 +38,10 @@
 //     touches        40         4 to 10000      configurations
 //     surface        planes                     {point: [x, y, z], normal: [x, y, z]}, roughly; the
 //                                               normal points at the robot
-//     within         planes                     {center: [x, y, z], radius: R}: where touches may
-//     lie places         the others                 sockets or nests, roughly: [[x, y, z (,
-//     qw..qz)], ...] way_out        the others                 [x, y, z]: direction out of the
-//     socket
+//     within         planes                     {center: [x, y, z], radius: R}: where they may lie
+//     places         the others                 sockets or nests, roughly:
+//                                               [[x, y, z (, qw, qx, qy, qz)], ...]
+//     way_out        the others                 [x, y, z]: direction out of the socket
 //   }
 //   accept           {}                         when a result is applied:
 //     auto           false                      without asking a person

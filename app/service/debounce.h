@@ -16,9 +16,9 @@ class Debouncer {
 
   /// The level from which edges are counted.
   void begin(bool closed);
-  /// One edge, in the order of time. An edge to the level that already is says that others were
-  /// lost; it counts as a change of its own.
-  void add(const Edge& edge);
+  /// One edge, in the order of time, and when it was heard of; an edge to the level that already is
+  /// says nothing. Quiet is counted from the hearing: stamps may come from another clock.
+  void add(const Edge& edge, Nanoseconds heard);
   /// The level that has held since, if it is a new one.
   std::optional<Edge> settled(Nanoseconds now);
   std::uint64_t glitches() const { return glitches_; }
@@ -27,7 +27,7 @@ class Debouncer {
   Nanoseconds quiet_;
   bool level_ = false, raw_ = false;
   std::optional<Nanoseconds> burst_;  ///< its first edge
-  Nanoseconds last_ = 0;
+  Nanoseconds last_ = 0, heard_ = 0;  ///< of the last edge: stamp, hearing
   std::uint64_t glitches_ = 0;
 };
 

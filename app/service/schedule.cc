@@ -8,6 +8,10 @@ namespace selfcal {
 namespace {
 
 constexpr std::int64_t kMinute = 60'000, kHour = 60 * kMinute, kDay = 24 * kHour;
+constexpr std::int64_t kJustNow = 10 * kMinute;
+
+// A wall clock that was set back must not put the next session off for years.
+bool ahead(const Since& since, std::int64_t unix_ms) { return since.unix_ms > unix_ms + kHour; }
 
 /// First moment after `from` at which the local clock shows the minute of the day.
 std::int64_t next_at(int minute, std::int64_t from, int utc_offset_s) {
@@ -27,28 +31,26 @@ std::string hours(double value) {
 
 std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                       int utc_offset_s) {
+  const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
   std::int64_t next = 0;
   const auto earlier = [&](std::int64_t t) { next = next == 0 ? t : std::min(next, t); };
   if (schedule.every_hours)
-    earlier(since.unix_ms == 0 ? unix_ms
-                               : since.unix_ms + std::llround(*schedule.every_hours * kHour));
+    earlier(unknown ? unix_ms : since.unix_ms + std::llround(*schedule.every_hours * kHour));
   if (schedule.at_minute)
-    earlier(
-        next_at(*schedule.at_minute, since.unix_ms == 0 ? unix_ms : since.unix_ms, utc_offset_s));
+    earlier(next_at(*schedule.at_minute, unknown ? unix_ms : since.unix_ms, utc_offset_s));
   return next;
 }
 
 std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                        std::optional<double> temperature, int utc_offset_s) {
   std::string why;
-  // A wall clock that was set back must not put the next session off for years.
-  const bool ahead = since.unix_ms > unix_ms + kHour;
+  const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
   if (schedule.every_hours &&
-      (ahead || since.unix_ms == 0 ||
-       static_cast<double>(unix_ms - since.unix_ms) >= *schedule.every_hours * kHour))
+      (unknown || static_cast<double>(unix_ms - since.unix_ms) >= *schedule.every_hours * kHour))
     why = "every " + hours(*schedule.every_hours) + " h";
-  if (schedule.at_minute && since.unix_ms != 0 &&
-      next_at(*schedule.at_minute, since.unix_ms, utc_offset_s) <= unix_ms)
+  if (schedule.at_minute &&
+      next_at(*schedule.at_minute, unknown ? unix_ms - kJustNow : since.unix_ms, utc_offset_s) <=
+          unix_ms)
     why = "at the time of day";
   if (schedule.after_motion_hours && since.motion_hours >= *schedule.after_motion_hours)
     why = "after " + hours(since.motion_hours) + " h of motion";

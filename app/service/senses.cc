@@ -46,7 +46,7 @@ void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
     events.push_back(event_of(*level_ ? Event::What::closed : Event::What::opened, now));
     return;
   }
-  for (const Edge& edge : new_edges_) debouncer_.add(edge);
+  for (const Edge& edge : new_edges_) debouncer_.add(edge, now);
   const std::optional<Edge> edge = debouncer_.settled(now);
   if (!edge) return;
   level_ = edge->closed;

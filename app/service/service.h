@@ -80,6 +80,7 @@ class Service {
 
   // service_report.cc: what is told
   void report();
+  void report_health(bool in_any_case);
   void tell(const std::string& level, const std::string& text);
   void tell_progress(const TouchRecord* touch, const std::string& note);
   StatusMessage status() const;
@@ -119,8 +120,10 @@ class Service {
   std::optional<CommandMessage> command_;
   Since since_;
   double motion_hours_ = 0;
-  Nanoseconds last_turn_ = 0, last_report_ = 0, last_remembered_ = 0, last_due_ = 0;
-  std::string last_status_, last_levels_, last_stage_;
+  Nanoseconds last_turn_ = 0, last_report_ = 0, last_health_ = 0, last_remembered_ = 0,
+              last_due_ = 0;
+  Situation told_;  ///< as last published
+  std::string told_active_, last_levels_, last_stage_;
 };
 
 }  // namespace selfcal

@@ -11,6 +11,7 @@
 namespace selfcal {
 namespace {
 
+constexpr Nanoseconds kHealth = kSecond / 5;     // between two looks at what may have degraded
 constexpr Nanoseconds kRemember = 60 * kSecond;  // between two savings of the hours of motion
 
 std::string text(double value, const char* format = "%.4g") {
@@ -58,25 +59,33 @@ StatusMessage Service::status() const {
 }
 
 void Service::report() {
-  const StatusMessage now = status();
   // The phases of a touch change ten times a second; a subscriber needs the last, not each.
-  const std::string state = now.state + now.why + now.active + (now.candidate ? "c" : "");
-  const bool changed = state != last_status_;
+  const bool changed = situation_.state != told_.state || situation_.why != told_.why ||
+                       situation_.candidate != told_.candidate || models_.name() != told_active_;
   const bool second = now_ - last_report_ >= kSecond;
-  if (changed || second) messenger_.publish(now);
-  if (changed) supervisor_.status(now.state + ": " + now.why);
-  last_status_ = state;
+  if (changed || second) {
+    messenger_.publish(status());
+    supervisor_.status(std::string(to_string(situation_.state)) + ": " + situation_.why);
+    told_ = situation_;
+    told_active_ = models_.name();
+  }
   if (computation_.running()) {
     const Computation::Progress progress = computation_.progress();
     if (progress.stage != last_stage_) tell_progress(nullptr, last_stage_ = progress.stage);
   }
+  report_health(changed || second);
+  if (second) last_report_ = now_;
+  if (now_ - last_remembered_ >= kRemember) remember_use();
+}
+
+void Service::report_health(bool in_any_case) {
+  if (!in_any_case && now_ - last_health_ < kHealth) return;
+  last_health_ = now_;
   const std::vector<HealthMessage> lines = health();
   std::string levels;
   for (const HealthMessage& line : lines) levels += std::to_string(static_cast<int>(line.level));
-  if (second || levels != last_levels_) messenger_.publish(lines, config_.serial);
+  if (in_any_case || levels != last_levels_) messenger_.publish(lines, config_.serial);
   last_levels_ = levels;
-  if (second) last_report_ = now_;
-  if (now_ - last_remembered_ >= kRemember) remember_use();
 }
 
 void Service::tell_progress(const TouchRecord* touch, const std::string& note) {

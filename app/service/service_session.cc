@@ -226,10 +226,12 @@ void Service::keep(TouchRecord touch) {
 void Service::abort(const std::string& why) {
   computation_.give_up();
   when_computed_ = {};
-  std::int64_t id = session_.record.id;
-  if (const auto unfinished = store_.unfinished(); unfinished && *unfinished)
-    id = (*unfinished)->id;
-  if (id > 0) stored(store_.set_state(id, SessionState::aborted, ports_.clock->unix_ms()));
+  // While a session is being planned the store has none of it yet.
+  const auto unfinished = store_.unfinished();
+  if (!stored(unfinished)) return;
+  if (!*unfinished) return tell("warning", "planning ended early: " + why);
+  const std::int64_t id = (*unfinished)->id;
+  stored(store_.set_state(id, SessionState::aborted, ports_.clock->unix_ms()));
   tell("warning", "session " + std::to_string(id) + " ended early: " + why);
 }
 

@@ -95,6 +95,8 @@ class Step {
     if (s_.state == ServiceState::collecting || s_.state == ServiceState::analysing ||
         s_.state == ServiceState::identifying || s_.state == ServiceState::judging)
       s_.unfinished = true;
+    s_.held = s_.tested;   // before the first self-test has passed nothing has moved
+    s_.follow_up = false;  // what was to come by itself does not come after a fault
     enter(ServiceState::fault, why);
   }
 
@@ -108,9 +110,11 @@ class Step {
   void self_tested() {
     if (s_.state != ServiceState::self_test) return;
     if (!event_.ok) return fault("self-test: " + event_.why);
-    if (event_.resume && s_.unfinished) return resume("resumed after a restart");
+    if (event_.resume && s_.unfinished && !s_.held) return resume("resumed after a restart");
     s_.tested = true;
-    go_idle(s_.unfinished ? "an unfinished session can be resumed: start, or abort" : "ready");
+    go_idle(s_.unfinished ? "an unfinished session can be resumed: start, or abort"
+            : s_.held     ? "ready after a fault; nothing begins by itself before a start"
+                          : "ready");
   }
 
   void go_idle(std::string why) {
@@ -134,7 +138,7 @@ class Step {
   }
 
   void due() {
-    if (s_.state != ServiceState::idle) return;
+    if (s_.state != ServiceState::idle || s_.held) return;
     if (s_.unfinished) return resume("due: " + event_.why);
     begin(event_.kind, event_.why);
   }
@@ -163,6 +167,7 @@ class Step {
 
   void asked_to_start(SessionKind kind) {
     if (s_.state == ServiceState::fault) {
+      s_.held = false;
       grant();
       return test();
     }
@@ -170,6 +175,7 @@ class Step {
       return refuse("a result waits for acceptance: accept or reject it first");
     if (s_.state != ServiceState::idle)
       return refuse("the service is " + std::string(to_string(s_.state)));
+    s_.held = false;
     grant();
     if (s_.unfinished) return resume("resumed by command");
     begin(kind, "by command");
@@ -181,12 +187,14 @@ class Step {
                          s_.state == ServiceState::analysing ||
                          s_.state == ServiceState::identifying || s_.state == ServiceState::judging;
     if (!running && !s_.unfinished) return refuse("no session is running");
+    if (s_.state == ServiceState::applying || s_.state == ServiceState::publishing)
+      return refuse("the service is " + std::string(to_string(s_.state)));
     grant();
     act(Do::stop, "aborted by command");
     act(Do::abort, "aborted by command");
     s_.unfinished = false;
-    if (s_.state != ServiceState::fault)
-      enter(ServiceState::idle, "aborted by command; what was collected is kept");
+    if (running || s_.state == ServiceState::idle)
+      go_idle("aborted by command; what was collected is kept");
   }
 
   void asked_to_accept(bool accept) {
@@ -331,8 +339,8 @@ class Step {
   void computed() {
     if (s_.state != ServiceState::analysing && s_.state != ServiceState::identifying) return;
     if (!event_.ok) {
-      act(Do::abort, event_.why);
       fault(event_.why);
+      act(Do::abort, event_.why);
       s_.unfinished = false;
       return;
     }

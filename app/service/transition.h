@@ -51,6 +51,7 @@ struct Situation {
   bool unfinished = false;     ///< a session can be resumed by `start`
   int published = 0;           ///< results since the start
   bool tested = false;         ///< the self-test has been passed since the start
+  bool held = false;           ///< after a fault: nothing moves until a person says start
 };
 
 struct Event {

@@ -22,6 +22,9 @@ class TimeMapping {
   bool observe(Nanoseconds stamp, Nanoseconds arrived);
   /// A sender's stamp on our time base; nothing before the first observe().
   std::optional<Nanoseconds> ours(Nanoseconds stamp) const;
+  /// Takes the offset anew at the next observe(), for when nothing is being measured: clocks of two
+  /// computers drift apart by up to a tenth of a second in an hour.
+  void forget() { offset_.reset(); }
   /// How often the sender's clock has stepped.
   std::uint64_t steps() const { return steps_; }
 

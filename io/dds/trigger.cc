@@ -8,7 +8,7 @@
 namespace selfcal {
 
 Result<std::unique_ptr<DdsTrigger>> DdsTrigger::open(const DdsParticipant& participant,
-                                                     DdsTriggerConfig config,
+                                                     const DdsTriggerConfig& config,
                                                      std::shared_ptr<TimeMapping> mapping,
                                                      Wakeup& wakeup) {
   auto reader = DdsReader<dds::StampedBool>::open(participant, ros_topic(config.topic),

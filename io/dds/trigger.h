@@ -22,7 +22,7 @@ class DdsTrigger : public TouchTrigger {
   /// loses neither edge nor stamp. `mapping` is that of the machine's DdsEncoders, which alone
   /// tells it of time: edges wait until the first joint state has come. `wakeup` hears of levels.
   static Result<std::unique_ptr<DdsTrigger>> open(const DdsParticipant& participant,
-                                                  DdsTriggerConfig config,
+                                                  const DdsTriggerConfig& config,
                                                   std::shared_ptr<TimeMapping> mapping,
                                                   Wakeup& wakeup);
 

@@ -9,7 +9,7 @@
 
 #include "io/dds/messenger.h"
 #include "io/dds/robot_side.h"
-#include "tests/dds/domain.h"
+#include "tests/support/domain.h"
 
 namespace selfcal {
 namespace {

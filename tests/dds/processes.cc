@@ -7,7 +7,7 @@
 #include "io/dds/monitor.h"
 #include "io/dds/motion.h"
 #include "io/dds/trigger.h"
-#include "tests/dds/domain.h"
+#include "tests/support/domain.h"
 #include "tests/dds/peer.h"
 
 namespace selfcal {

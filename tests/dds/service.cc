@@ -1,22 +1,18 @@
-// The service and those who watch and command it, in one process.
+// The service and those who watch it, in one process.
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
-#include <thread>
 
-#include "io/dds/commander.h"
 #include "io/dds/messenger.h"
 #include "io/dds/monitor.h"
-#include "io/dds/names.h"
-#include "tests/dds/domain.h"
+#include "tests/support/domain.h"
 
 namespace selfcal {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::Pair;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -224,97 +220,6 @@ TEST_F(DdsService, DoesNotMixWithAnotherRobots) {
   const auto health = take<HealthReport>(*watch_second, 1);
   ASSERT_EQ(health.size(), 1);
   EXPECT_EQ(health[0].lines.at(0).message, "of b");
-}
-
-TEST_F(DdsService, RepliesToACommand) {
-  const auto told = service("r");
-  const auto commander = must(DdsCommander::open(participant, "r"));
-  Result<CommandReplyMessage> reply;
-  std::thread asking(
-      [&] { reply = commander->send({.id = "7", .verb = "start", .from = "a test"}, kLimit); });
-
-  std::vector<CommandMessage> commands;
-  EXPECT_TRUE(eventually([&] { return told->take(commands), !commands.empty(); }));
-  told->reply({.id = "7", .verb = "start", .accepted = false, .why = "a session runs"});
-  asking.join();
-
-  ASSERT_TRUE(reply) << reply.error().what;
-  EXPECT_EQ(commands.at(0).verb, "start");
-  EXPECT_EQ(commands.at(0).from, "a test");
-  EXPECT_FALSE(reply->accepted);
-  EXPECT_EQ(reply->verb, "start");
-  EXPECT_EQ(reply->why, "a session runs");
-}
-
-TEST_F(DdsService, IsMissedWhenThereIsNone) {
-  const auto commander = must(DdsCommander::open(participant, "r"));
-
-  const auto reply = commander->send({.id = "1", .verb = "start", .from = ""}, 20 * kMillisecond);
-
-  ASSERT_FALSE(reply);
-  EXPECT_EQ(reply.error().exit_status, kDeviceFailed);
-  EXPECT_THAT(reply.error().what, HasSubstr("no service of robot r"));
-}
-
-TEST_F(DdsService, IsReportedWhenItDoesNotReply) {
-  const auto told = service("r");
-  const auto commander = must(DdsCommander::open(participant, "r"));
-
-  const auto reply = commander->send({.id = "1", .verb = "start", .from = ""}, kSecond / 2);
-
-  ASSERT_FALSE(reply);
-  EXPECT_THAT(reply.error().what, HasSubstr("does not reply"));
-}
-
-TEST_F(DdsService, ObeysARepeatedCommandOnceAndRepeatsItsReply) {
-  const auto told = service("r");
-  auto commands =
-      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
-  auto replies = must(DdsReader<dds::CommandReply>::open(
-      participant, robot_topic("r", "command_reply"), kExchange, &wakeup));
-  char id[] = "5", verb[] = "start", from[] = "";
-  const dds::Command command{.id_ = id, .verb_ = verb, .from_ = from};
-  ASSERT_TRUE(eventually([&] { return commands.matched() > 0 && replies.matched() > 0; }));
-  std::vector<CommandMessage> taken;
-
-  must(commands.write(command));
-  ASSERT_TRUE(eventually([&] { return told->take(taken), !taken.empty(); }));
-  must(commands.write(command));  // no reply yet
-  told->take(taken);
-  told->reply({.id = "5", .verb = "start", .accepted = true, .why = ""});
-  must(commands.write(command));
-  told->take(taken);
-
-  EXPECT_EQ(taken.size(), 1);
-  int replied = 0;
-  must(replies.take([&](const dds::CommandReply& reply) { replied += reply.accepted_; }));
-  EXPECT_EQ(replied, 2);
-}
-
-TEST_F(DdsService, RefusesTheSeventeenthCommandThatWaits) {
-  const auto told = service("r");
-  auto commands =
-      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
-  auto replies = must(DdsReader<dds::CommandReply>::open(
-      participant, robot_topic("r", "command_reply"), kExchange, &wakeup));
-  ASSERT_TRUE(eventually([&] { return commands.matched() > 0 && replies.matched() > 0; }));
-  char verb[] = "check", from[] = "";
-  for (int i = 0; i < 20; ++i) {
-    std::string id = std::to_string(i);
-    must(commands.write({.id_ = id.data(), .verb_ = verb, .from_ = from}));
-  }
-  std::vector<CommandMessage> taken;
-
-  told->take(taken);
-
-  EXPECT_EQ(taken.size(), 16);
-  std::vector<std::string> refused;
-  must(replies.take([&](const dds::CommandReply& reply) {
-    EXPECT_FALSE(reply.accepted_);
-    EXPECT_THAT(reply.why_, HasSubstr("16 other commands are waiting"));
-    refused.emplace_back(reply.id_);
-  }));
-  EXPECT_THAT(refused, ElementsAre("16", "17", "18", "19"));
 }
 
 TEST_F(DdsService, FailsWhenTheDomainIsNone) {

@@ -39,6 +39,17 @@ TEST(TimeMapping, IsTakenAnewWhenTheSendersClockSteps) {
   EXPECT_EQ(mapping.steps(), 2);
 }
 
+TEST(TimeMapping, FollowsADriftWhenAsked) {
+  TimeMapping mapping;
+  mapping.observe(0, 0);
+  mapping.forget();
+
+  EXPECT_FALSE(mapping.ours(0));
+  EXPECT_FALSE(mapping.observe(kSecond, kSecond + 5));
+  EXPECT_EQ(mapping.ours(0), 5);
+  EXPECT_EQ(mapping.steps(), 0);
+}
+
 TEST(Stamps, ComeBackAsTheyWere) {
   for (const Nanoseconds t : {Nanoseconds{0}, Nanoseconds{1}, Nanoseconds{-1}, kSecond, -kSecond,
                               Nanoseconds{1'790'000'000'123'456'789}, -5 * kSecond - 7}) {

@@ -96,7 +96,8 @@ Result<MessageDefinitions> read_messages(const std::string& folder) {
     auto message =
         parse_message(path.parent_path().filename().string(), path.stem().string(), text.str());
     if (!message) return tl::make_unexpected(message.error());
-    all[message->full_name()] = *std::move(message);
+    const std::string name = message->full_name();
+    all[name] = *std::move(message);
   }
   if (error) return bad_input(folder + ": " + error.message());
   for (const auto& [name, message] : all)

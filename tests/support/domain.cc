@@ -1,4 +1,4 @@
-#include "tests/dds/domain.h"
+#include "tests/support/domain.h"
 
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,0 +1,163 @@
+// What is told of a store: results, drift, slots, and what cannot be exported.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "app/drift.h"
+#include "app/service/models.h"
+#include "io/file.h"
+#include "io/robot_file.h"
+#include "io/store/store.h"
+#include "tests/app/cell.h"
+
+namespace selfcal {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kDay = 86'400'000, kFirst = 1'790'000'000'000;
+constexpr const char* kRobot = SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml";
+
+/// The example robot with its parameter `index` moved by `change`.
+std::shared_ptr<const Robot> moved(int index, double change) {
+  const auto robot = load_robot(kRobot).value();
+  Eigen::VectorXd xi = values(*robot);
+  xi[index] += change;
+  return robot_of(robot_text(*robot, xi), "moved").value();
+}
+
+Calibration calibration(std::int64_t session, int index, double change) {
+  return {session, kFirst + session * kDay, moved(index, change)};
+}
+
+TEST(Drifts, ComeWithTheOneThatMovedMostFirst) {
+  // Parameter 3 jumps at the first calibration and stays; parameter 5 comes and goes after it.
+  const std::vector<Calibration> all = {calibration(1, 3, 2e-3), calibration(2, 5, 1e-3),
+                                        calibration(3, 5, 1.5e-3)};
+  const std::vector<Drift> found = drifts(all, 10);
+
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NEAR(found[0].since_factory[0], 2e-3, 1e-15);  // rounding of a value of 1
+  EXPECT_NEAR(found[0].since_last[1], -2e-3, 1e-15);
+  EXPECT_NEAR(found[1].since_factory[2], 1.5e-3, 1e-15);
+  EXPECT_NEAR(found[1].since_last[2], 0.5e-3, 1e-15);
+  EXPECT_EQ(drifts(all, 1).size(), 1);
+  EXPECT_THAT(drift_table(all, found), HasSubstr("(+0.500)"));
+}
+
+TEST(Drifts, OfOneCalibrationAreThoseFromTheFactory) {
+  const std::vector<Drift> found = drifts({calibration(1, 3, 2e-3)}, 10);
+  ASSERT_EQ(found.size(), 1);
+  EXPECT_NEAR(found[0].since_factory[0], 2e-3, 1e-15);  // rounding of a value of 1
+  EXPECT_TRUE(drifts({}, 10).empty());
+}
+
+class History : public ::testing::Test {
+ protected:
+  History()
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                (std::string("history_") +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::remove_all(folder_);
+    store_ = std::move(Store::open(folder_).value().store);
+  }
+
+  std::int64_t begin(const std::string& kind) {
+    SessionRecord session;
+    session.kind = kind;
+    session.reason = "by command";
+    session.model_hash = "none";
+    session.config = "target: 0.001\ndelay: 0\nsets: {}\n";
+    session.started_ms = kFirst;
+    return store_->begin(session, {StepRecord{}}).value();
+  }
+  /// A full session whose result is applied, with parameter 3 moved.
+  std::int64_t accepted(double change) {
+    ResultRecord result;
+    result.session = begin("full");
+    result.unix_ms = kFirst + result.session * kDay;
+    result.answer = "improved";
+    result.decision = "candidate";
+    result.check_before = 1.92e-3;
+    result.check_after = 0.0228e-3;
+    result.identified = 21;
+    const auto robot = moved(3, change);
+    result.robot_text = robot_text(*robot, values(*robot));
+    const SlotRecord slot{result.session, result.unix_ms, "none", result.robot_text};
+    EXPECT_TRUE(store_->finish(result, &slot));
+    EXPECT_TRUE(store_->accept(result.unix_ms));
+    return result.session;
+  }
+  Ran history(const std::string& arguments) const {
+    return run_selfcal("history " + folder_.string() + " " + arguments);
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<Store> store_;
+};
+
+TEST_F(History, TellsOfResultsNewestFirstWithDriftAndSlots) {
+  accepted(2e-3);
+  accepted(2.5e-3);
+  ASSERT_TRUE(store_->set_state(begin("check"), SessionState::aborted, kFirst));
+
+  const Ran ran = history("");
+
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  const auto third = ran.out.find("      3  "), second = ran.out.find("      2  "),
+             first = ran.out.find("      1  ");
+  EXPECT_LT(third, second);
+  EXPECT_LT(second, first);
+  EXPECT_THAT(ran.out, HasSubstr("aborted         by command"));
+  EXPECT_THAT(ran.out, HasSubstr("improved        applied        1.92   0.0228"));
+  EXPECT_THAT(ran.out, HasSubstr("+2.500  (+0.500)"));
+  EXPECT_THAT(ran.out, HasSubstr("active     session 2"));
+  EXPECT_THAT(ran.out, HasSubstr("previous   session 1"));
+  EXPECT_THAT(ran.out, HasSubstr("candidate  none"));
+}
+
+TEST_F(History, PrintsRecordsAndEventsInJson) {
+  accepted(2e-3);
+  begin("check");
+  ASSERT_TRUE(store_->add(EventRecord{0, kFirst, "warning", "trigger stuck"}));
+
+  const auto records = nlohmann::json::parse(history("--json").out);
+  ASSERT_EQ(records.size(), 2);
+  EXPECT_EQ(records[0]["state"], "unfinished");
+  EXPECT_TRUE(records[0]["result"].is_null());
+  EXPECT_EQ(records[1]["result"]["check_before"], 1.92e-3);
+  EXPECT_EQ(nlohmann::json::parse(history("--json --newest 1").out).size(), 1);
+  EXPECT_EQ(nlohmann::json::parse(history("--events --json").out)[0]["text"], "trigger stuck");
+  EXPECT_THAT(history("--events").out, HasSubstr("warning  trigger stuck"));
+}
+
+TEST_F(History, SaysThatThereIsNoSession) {
+  const Ran ran = history("");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_THAT(ran.out, HasSubstr("No session yet."));
+  EXPECT_THAT(ran.out, HasSubstr("active     the factory's"));
+  EXPECT_THAT(ran.out, HasSubstr("previous   none"));
+}
+
+TEST_F(History, RefusesWhatCannotBeExported) {
+  accepted(2e-3);
+  const std::string out = (folder_ / "out").string();
+  EXPECT_EQ(history("--export x " + out).status, 2);
+  EXPECT_EQ(history("--export 1").status, 2);
+  const Ran unknown = history("--export 7 " + out);
+  EXPECT_NE(unknown.status, 0);
+  const Ran empty = history("--export 1 " + out);
+  EXPECT_EQ(empty.status, 3);
+  EXPECT_THAT(empty.out, HasSubstr("has no rows"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(History, NamesTheStoreThatIsNotThere) {
+  const Ran ran = run_selfcal("history " + (folder_ / "nowhere").string());
+  EXPECT_NE(ran.status, 0);
+  EXPECT_THAT(ran.out, HasSubstr("nowhere"));
+}
+
+}  // namespace
+}  // namespace selfcal

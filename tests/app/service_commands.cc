@@ -1,0 +1,156 @@
+// Watching, commanding and looking back: the real program, with the service in another process.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "io/store/store.h"
+#include "tests/app/cell.h"
+
+namespace selfcal {
+namespace {
+
+using nlohmann::json;
+
+class ServiceCommands : public CellTest {
+ protected:
+  static bool ready(const json& message) {
+    return message["topic"] == "status" && message["state"] == "idle";
+  }
+};
+
+TEST_F(ServiceCommands, MonitorsOnceInJson) {
+  const auto service = serve("rx90");
+  ASSERT_FALSE(heard(ready).is_null());
+
+  const Ran ran = run_selfcal("monitor --once --json --wait 20" + in_domain());
+
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  std::istringstream lines(ran.out);
+  std::map<std::string, json> by_topic;
+  for (std::string line; std::getline(lines, line);)
+    by_topic[json::parse(line)["topic"]] = json::parse(line);
+  ASSERT_TRUE(by_topic.contains("status")) << ran.out;
+  EXPECT_EQ(by_topic["status"]["robot"], "rx90");
+  EXPECT_EQ(by_topic["status"]["active"], "factory");
+  ASSERT_TRUE(by_topic.contains("health")) << ran.out;
+  EXPECT_EQ(by_topic["health"]["lines"].size(), 5);
+  EXPECT_FALSE(by_topic.contains("result"));
+}
+
+TEST_F(ServiceCommands, SayWhenNoServiceIsHeard) {
+  for (const std::string command : {"monitor --once", "monitor --once --robot rx90", "monitor",
+                                    "command start", "command start --robot rx90"}) {
+    const Ran ran = run_selfcal(command + " --wait 0.3" + in_domain());
+    EXPECT_EQ(ran.status, 4) << command;
+    EXPECT_NE(ran.out.find("no service"), std::string::npos) << command << ": " << ran.out;
+  }
+}
+
+TEST_F(ServiceCommands, RefuseAWrongVerbAndTellTheServicesReason) {
+  const auto service = serve("rx90");
+  ASSERT_FALSE(heard(ready).is_null());
+
+  const Ran wrong = run_selfcal("command calibrate --wait 20" + in_domain());
+  const Ran refused = run_selfcal("command reject --wait 20" + in_domain());
+  const Ran in_json = run_selfcal("command reject --robot rx90 --json --wait 20" + in_domain());
+
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(refused.out, "refused: no result waits for acceptance\n");
+  EXPECT_EQ(in_json.status, 1);
+  EXPECT_EQ(json::parse(in_json.out)["accepted"], false);
+  EXPECT_EQ(json::parse(in_json.out)["why"], "no result waits for acceptance");
+}
+
+TEST_F(ServiceCommands, AskWhichRobotWhereThereAreTwo) {
+  const auto first = serve("left");
+  ASSERT_FALSE(heard(ready).is_null());
+  const auto second = serve("right");
+  ASSERT_EQ(run_selfcal("monitor --once --robot right --wait 20" + in_domain()).status, 0);
+
+  const Ran ran = run_selfcal("monitor --once --wait 20" + in_domain());
+
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.out.find("left, right"), std::string::npos) << ran.out;
+}
+
+TEST_F(ServiceCommands, EndTheMonitorOnInterrupt) {
+  const auto service = serve("rx90");
+  ASSERT_FALSE(heard(ready).is_null());
+  Running monitor({"monitor", "--robot", "rx90", "--domain", std::to_string(domain)},
+                  folder / "monitor.log");
+  ASSERT_EQ(run_selfcal("monitor --once --wait 20" + in_domain()).status, 0);
+
+  EXPECT_EQ(monitor.end(SIGINT), 0);
+}
+
+/// Identified parameters and their sigma, by name.
+std::map<std::string, std::pair<double, double>> identified(const json& solution) {
+  std::map<std::string, std::pair<double, double>> values;
+  for (const json& p : solution["parameters"])
+    if (p["status"] == "identified") values[p["name"]] = {p["value"], p["sigma"]};
+  return values;
+}
+
+TEST_F(ServiceCommands, TellOfASessionThatSolvesAgainToTheSameResult) {
+  const auto service = serve("rx90");
+  ASSERT_FALSE(heard(ready).is_null());
+  ASSERT_EQ(run_selfcal("command start --wait 20" + in_domain()).out, "accepted\n");
+  const json result = heard([](const json& m) { return m["topic"] == "result"; });
+  ASSERT_EQ(result["decision"], "candidate") << result;
+  ASSERT_EQ(run_selfcal("command accept --wait 20" + in_domain()).status, 0);
+  ASSERT_FALSE(heard([](const json& m) {
+                 return m["topic"] == "status" && m["active"] == "session 1" &&
+                        m["state"] == "idle";
+               }).is_null());
+
+  const Ran table = run_selfcal("history " + config("rx90").string());
+  const Ran records = run_selfcal("history --json " + (folder / "state_rx90").string());
+  const Ran exported = run_selfcal("history " + (folder / "state_rx90").string() + " --export 1 " +
+                                   (folder / "again").string());
+  const Ran again = run_selfcal("identify --json " + (folder / "again").string());
+
+  EXPECT_EQ(table.status, 0);
+  EXPECT_NE(table.out.find("improved"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("active     session 1"), std::string::npos) << table.out;
+  EXPECT_EQ(json::parse(records.out)[0]["result"]["decision"], "applied");
+  EXPECT_EQ(exported.status, 0) << exported.out;
+  ASSERT_EQ(again.status, 0) << again.out;
+  const auto was = identified(result["result"]), is = identified(json::parse(again.out));
+  ASSERT_GT(was.size(), 15);
+  EXPECT_EQ(was.size(), is.size());
+  for (const auto& [name, value] : was) {
+    ASSERT_TRUE(is.contains(name)) << name;
+    // The rows are the same to the bit; what remains is where the iteration stops.
+    EXPECT_NEAR(is.at(name).first, value.first, 1e-3 * value.second) << name;
+  }
+}
+
+TEST(ServiceWords, StandInManualAndCompletion) {
+  const auto text_of = [](const char* path) {
+    std::stringstream stream;
+    stream << std::ifstream(path).rdbuf();
+    return stream.str();
+  };
+  const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
+  const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
+  for (const std::string command : {"serve", "monitor", "command", "history", "simulate"}) {
+    EXPECT_NE(manual.find("selfcal " + command), std::string::npos) << command;
+    EXPECT_NE(completion.find(" " + command + " "), std::string::npos) << command;
+    std::istringstream help(run_selfcal(command + " --help").out);
+    for (std::string word; help >> word;) {
+      if (!word.starts_with("--") || word == "--help") continue;
+      word.erase(word.find_last_not_of(",:;.)") + 1);
+      std::string in_manual;
+      for (const char c : word) in_manual += c == '-' ? std::string("\\-") : std::string(1, c);
+      EXPECT_NE(manual.find(in_manual), std::string::npos) << command << " " << word;
+      EXPECT_NE(completion.find(word), std::string::npos) << command << " " << word;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,103 @@
+// What a person gets wrong in a configuration, and what it makes of a cell.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "app/service/session.h"
+#include "tests/service/cell.h"
+
+namespace selfcal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Config, SaysWhatIsMissing) {
+  for (const std::string key : {"robot", "motion.home", "sets.surface", "sets.within"}) {
+    CellKeys keys = small_cell();
+    keys.erase(key);
+    const auto config = load_text(cell_text(keys));
+    ASSERT_FALSE(config) << key;
+    EXPECT_THAT(config.error().what, HasSubstr(key.substr(key.find('.') + 1)));
+  }
+  EXPECT_THAT(load_text("robot: " + small_cell()["robot"] + "\nmotion: {home: [0,0,0,0,0,0]}\n")
+                  .error()
+                  .what,
+              HasSubstr("one set or more"));
+}
+
+TEST(Config, RefusesARobotThatIsBrokenOrNotThere) {
+  EXPECT_THAT(refusal({{"robot", "nowhere.yaml"}}), HasSubstr("nowhere.yaml"));
+  const Scratch scratch;
+  const auto broken =
+      scratch.write("bad.yaml", "robot: x\nkind: serial\nframes: [{name: j1, joint: bent}]\n");
+  CellKeys keys = small_cell();
+  keys["robot"] = broken.string();
+  const auto config = load_config(scratch.write("config.yaml", cell_text(keys)));
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().what, HasSubstr("bad.yaml:3"));
+}
+
+TEST(Config, RefusesWaysThatDoNotFitTogether) {
+  EXPECT_THAT(refusal({{"motion.apart", "0.03"}}), HasSubstr("less than clearance"));
+  EXPECT_THAT(refusal({{"motion.search", "0.03"}}), HasSubstr("less than clearance"));
+  EXPECT_EQ(refusal({{"motion.clearance", "0.021"}}), "");
+}
+
+TEST(Config, RefusesListsOfTheWrongLength) {
+  EXPECT_THAT(refusal({{"motion.home", "[0, 0, 0]"}}), HasSubstr("home"));
+  EXPECT_THAT(refusal({{"encoders.joints", "[a, b]"}}), HasSubstr("6 names"));
+}
+
+TEST(Config, RefusesATimeOfDayThatIsNone) {
+  for (const char* at : {"\"24:00\"", "\"2:60\"", "\"02:30h\"", "\"noon\"", "\"-1:30\""})
+    EXPECT_THAT(refusal({{"schedule.at", at}}), HasSubstr("HH:MM")) << at;
+  EXPECT_EQ(load_cell({{"schedule.at", "\"23:59\""}})->schedule.at_minute, 24 * 60 - 1);
+}
+
+TEST(Config, RefusesMethodsThatATouchCannotDo) {
+  EXPECT_NE(refusal({{"sets.method", "sphere"}}), "");
+  EXPECT_THAT(refusal({{"sets.method", "no-such"}}), HasSubstr("config.yaml:"));
+}
+
+TEST(Config, ReadsSocketsWithTheirPlacesAndTheWayOut) {
+  CellKeys keys = {{"robot", small_cell()["robot"]},
+                   {"motion.home", small_cell()["motion.home"]},
+                   {"sets.method", "position-constraint"},
+                   {"sets.noise", "2.0e-5"},
+                   {"sets.places", "[[0.7, 0, 0.2], [0.6, 0.2, 0.2]]"},
+                   {"sets.way_out", "[0, 0, 2]"}};
+  const auto config = load_text(cell_text(keys));
+  ASSERT_TRUE(config) << config.error().what;
+  EXPECT_EQ(config->targets[0].places.size(), 2u);
+  EXPECT_EQ(config->targets[0].outward, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(config->obstacles.empty());
+  keys.erase("sets.way_out");
+  EXPECT_THAT(load_text(cell_text(keys)).error().what, HasSubstr("way_out"));
+  keys.erase("sets.places");
+  EXPECT_THAT(load_text(cell_text(keys)).error().what, HasSubstr("places"));
+}
+
+TEST(Config, LoadsTheExampleThatIsShipped) {
+  const auto config = load_config(example("rx90_cell.config.yaml"));
+  ASSERT_TRUE(config) << config.error().what;
+  EXPECT_EQ(config->sets.size(), 6u);
+  EXPECT_EQ(config->targets.size(), 6u);
+  EXPECT_EQ(config->obstacles.size(), 6u);
+  const auto far = std::ranges::find(config->sets, "gauge_far", &Set::name);
+  EXPECT_EQ(config->sets[far->reference].name, "gauge_near");
+  EXPECT_TRUE(std::filesystem::exists(config->simulation));
+  for (std::size_t i = 0; i < config->obstacles.size(); ++i)
+    EXPECT_NEAR(config->obstacles[i].outward.norm(), 1, 1e-15);  // rounding
+}
+
+TEST(Config, ChangesItsHashWithTheMeaningOfTheRowsOnly) {
+  const std::string hash = load_cell()->hash;
+  EXPECT_EQ(load_cell({{"schedule.every_hours", "24"}, {"motion.speed", "2"}})->hash, hash);
+  EXPECT_EQ(load_cell({{"sets.touches", "99"}})->hash, hash);
+  EXPECT_NE(load_cell({{"sets.noise", "3.0e-5"}})->hash, hash);
+  EXPECT_NE(load_cell({{"target", "2.0e-3"}})->hash, hash);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,131 @@
+// What the joints read at the moment of an edge, against numbers worked out by hand.
+#include "app/service/reading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+EncoderSample sample_of(Nanoseconds time, std::vector<std::int64_t> counts) {
+  EncoderSample sample;
+  sample.time = time;
+  sample.joints = static_cast<int>(counts.size());
+  std::ranges::copy(counts, sample.counts.begin());
+  return sample;
+}
+
+const std::vector<EncoderScale> kScales = {{1e-3, 100}, {-2e-3, 0}};
+
+TEST(Reading, TurnsCountsIntoReadingsByStepAndZero) {
+  const Eigen::VectorXd q = reading_of(sample_of(0, {1100, 500}), kScales);
+  EXPECT_DOUBLE_EQ(q[0], 1.0);
+  EXPECT_DOUBLE_EQ(q[1], -1.0) << "a negative step turns the joint";
+}
+
+TEST(Reading, IsExactBetweenTwoSamplesAtASteadySpeed) {
+  // Over 4 ms joint 0 goes from 1.0 to 1.4 and joint 1 from -1.0 to -0.2: 100 and 200 rad/s.
+  const Reading reading =
+      reading_between(sample_of(0, {1100, 500}), sample_of(4 * kMillisecond, {1500, 100}),
+                      1 * kMillisecond, kScales);
+  constexpr double kRounding = 1e-15;  // a few roundings of numbers about 1
+  EXPECT_NEAR(reading.q[0], 1.1, kRounding);
+  EXPECT_NEAR(reading.q[1], -0.8, kRounding);
+  EXPECT_NEAR(reading.dq[0], 100, 100 * kRounding);
+  EXPECT_NEAR(reading.dq[1], 200, 200 * kRounding);
+}
+
+TEST(Reading, IsTheSamplesOwnAtTheMomentOfASample) {
+  const EncoderSample first = sample_of(0, {1100, 500}), second = sample_of(100, {1500, 100});
+  EXPECT_EQ(reading_between(first, second, 0, kScales).q, reading_of(first, kScales));
+  const Eigen::VectorXd last = reading_between(first, second, 100, kScales).q;
+  EXPECT_LT((last - reading_of(second, kScales)).norm(), 1e-15);  // rounding of 1 + (1.4 - 1)
+  const Reading still = reading_between(second, second, 100, kScales);
+  EXPECT_EQ(still.q, reading_of(second, kScales));
+  EXPECT_EQ(still.dq, Eigen::VectorXd::Zero(2)) << "one sample tells no speed";
+}
+
+TEST(Reading, IsOffByAnEighthOfAccelerationTimesTimeSquaredAtMost) {
+  constexpr double a = 20, t = 0.002, step = 1e-9;  // rad/s^2, s, rad
+  const std::vector<EncoderScale> scales = {{step, 0}};
+  const auto q = [&](Nanoseconds at) { return a * seconds(at) * seconds(at) / 2; };
+  const auto sample = [&](Nanoseconds at) { return sample_of(at, {std::llround(q(at) / step)}); };
+  double most = 0;
+  for (Nanoseconds start = 0; start < 20 * kMillisecond; start += 3 * kMillisecond)
+    for (int i = 0; i <= 20; ++i) {
+      const Nanoseconds at = start + i * nanoseconds(t) / 20;
+      const Reading reading =
+          reading_between(sample(start), sample(start + nanoseconds(t)), at, scales);
+      most = std::max(most, std::abs(reading.q[0] - q(at)));
+    }
+  const double bound = a * t * t / 8;  // 10 urad, met half way between the samples
+  EXPECT_LE(most, bound + step);       // half a count of each sample
+  EXPECT_GE(most, bound - step);
+}
+
+TEST(SampleHistory, FindsTheTwoSamplesAroundAMoment) {
+  SampleHistory history;
+  EXPECT_TRUE(history.empty());
+  EXPECT_FALSE(history.around(0));
+  for (Nanoseconds t = 10; t <= 50; t += 10) history.add(sample_of(t, {t}));
+  EXPECT_EQ(history.around(25)->first.time, 20);
+  EXPECT_EQ(history.around(25)->second.time, 30);
+  EXPECT_EQ(history.around(30)->first.time, 30) << "a sample at the very moment is both";
+  EXPECT_EQ(history.around(30)->second.time, 30);
+  EXPECT_EQ(history.around(10)->first.time, 10);
+  EXPECT_FALSE(history.around(9)) << "the one before is gone";
+  EXPECT_FALSE(history.around(51)) << "the one after has not come";
+}
+
+TEST(SampleHistory, DropsAndCountsSamplesThatDoNotFollowInTime) {
+  SampleHistory history;
+  history.add(sample_of(10, {1}));
+  history.add(sample_of(10, {2}));
+  history.add(sample_of(5, {3}));
+  history.add(sample_of(11, {4}));
+  EXPECT_EQ(history.out_of_order(), 2u);
+  EXPECT_EQ(history.last().counts[0], 4);
+  EXPECT_EQ(history.around(10)->first.counts[0], 1);
+}
+
+TEST(SampleHistory, KeepsTheLastSamplesOnly) {
+  SampleHistory history;
+  for (Nanoseconds t = 1; t <= 100'000; ++t) history.add(sample_of(t, {t}));
+  EXPECT_TRUE(history.around(100'000 - 1000));
+  EXPECT_FALSE(history.around(100'000 - 5000)) << "4096 are kept";
+}
+
+TEST(SampleHistory, TellsWhetherTheJointsStandOnceItHasThreeSamples) {
+  const std::vector<EncoderScale> scales = {{1e-6, 0}, {-1e-6, 0}};
+  constexpr double kSpeed = 1e-3;  // 20 counts over 20 ms
+  const Nanoseconds span = 20 * kMillisecond;
+  const auto moved = [&](std::int64_t counts) {
+    SampleHistory history;
+    for (int i = 0; i <= 10; ++i)
+      history.add(sample_of(i * 2 * kMillisecond, {7, counts * i / 10}));
+    return history.at_rest(scales, kSpeed, span);
+  };
+  EXPECT_EQ(moved(0), true);
+  EXPECT_EQ(moved(19), true);
+  EXPECT_EQ(moved(21), false);
+  EXPECT_EQ(moved(-21), false);
+
+  SampleHistory history;
+  history.add(sample_of(0, {0, 0}));
+  EXPECT_FALSE(history.at_rest(scales, kSpeed, span));
+  history.add(sample_of(2 * kMillisecond, {0, 0}));
+  EXPECT_FALSE(history.at_rest(scales, kSpeed, span)) << "two samples say little";
+  history.add(sample_of(4 * kMillisecond, {0, 0}));
+  EXPECT_EQ(history.at_rest(scales, kSpeed, span), true);
+}
+
+TEST(SampleHistory, ForgivesOneCountBetweenTwoSteps) {
+  const std::vector<EncoderScale> coarse = {{1e-3, 0}};
+  SampleHistory history;
+  for (int i = 0; i < 11; ++i) history.add(sample_of(i * 2 * kMillisecond, {i / 10}));
+  EXPECT_EQ(history.at_rest(coarse, 1e-4, 20 * kMillisecond), true);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,196 @@
+// What becomes of a result.
+#include "app/service/ruling.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "constraints/identification.h"
+#include "tests/sim/pretend.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+/// A candidate that is twice as good on the check rows and changes nothing.
+struct Case {
+  Acceptance accept;
+  Solution candidate, unchanged;
+  Case() {
+    candidate.verdict = {Answer::improved, "better", 1e-6};
+    candidate.residual.check.rms_without_rejected = 1e-4;
+    unchanged.residual.check.rms_without_rejected = 2e-4;
+    for (const Parameter& parameter : rx90().parameters())
+      candidate.parameters.push_back({parameter, parameter.value, 1e-5, Status::identified, {}});
+  }
+  ParameterResult& find(Part part, Quantity quantity) {
+    return *std::ranges::find_if(candidate.parameters, [&](const ParameterResult& each) {
+      return each.parameter.part == part && each.parameter.quantity == quantity;
+    });
+  }
+  Ruling rule() const { return rule_on_result(accept, rx90(), candidate, unchanged); }
+};
+
+TEST(Ruling, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
+  Case good;
+  good.find(Part::link, Quantity::length).value += 1e-3;
+  const Ruling ruling = good.rule();
+  EXPECT_TRUE(ruling.acceptable);
+  EXPECT_EQ(ruling.answer, "improved");
+  EXPECT_EQ(ruling.check_before, 2e-4);
+  EXPECT_EQ(ruling.check_after, 1e-4);
+  EXPECT_THAT(ruling.why, HasSubstr("check residual 0.2 to 0.1 mm"));
+  EXPECT_THAT(ruling.why, HasSubstr("(100 sigma)"));
+}
+
+TEST(Ruling, RefusesWhatTheVerdictDoesNotCallImproved) {
+  for (const Answer answer : {Answer::not_improved, Answer::not_determined}) {
+    Case bad;
+    bad.candidate.verdict = {answer, "the data do not tell", 0.5};
+    EXPECT_FALSE(bad.rule().acceptable);
+    EXPECT_EQ(bad.rule().why, "the data do not tell");
+    EXPECT_EQ(bad.rule().answer, to_string(answer));
+  }
+}
+
+TEST(Ruling, RefusesWhatIsNotBetterByTheMargin) {
+  Case one;
+  one.accept.margin = 0.5;
+  EXPECT_FALSE(one.rule().acceptable) << "exactly half is not better than half";
+  EXPECT_THAT(one.rule().why, HasSubstr("explain the check rows as well"));
+  one.accept.margin = 0.49;
+  EXPECT_TRUE(one.rule().acceptable);
+  one.candidate.residual.check.rms_without_rejected = std::nan("");
+  EXPECT_FALSE(one.rule().acceptable) << "what is not a number is not better";
+}
+
+TEST(Ruling, HasALimitOfItsOwnForEachPartOfTheMachine) {
+  const LargestChange limits{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
+  const std::tuple<Part, Quantity, double> each[] = {
+      {Part::link, Quantity::length, 1e-3}, {Part::link, Quantity::angle, 2e-3},
+      {Part::base, Quantity::length, 3e-3}, {Part::base, Quantity::angle, 4e-3},
+      {Part::tool, Quantity::length, 5e-3}, {Part::tool, Quantity::angle, 6e-3}};
+  for (const auto& [part, quantity, limit] : each)
+    for (const double sign : {-1.0, 1.0}) {
+      Case one;
+      one.accept.largest_change = limits;
+      ParameterResult& parameter = one.find(part, quantity);
+      const double value = parameter.value;
+      parameter.value = value + sign * 0.99 * limit;
+      EXPECT_TRUE(one.rule().acceptable) << parameter.parameter.name;
+      parameter.value = value + sign * 1.01 * limit;
+      EXPECT_FALSE(one.rule().acceptable) << parameter.parameter.name;
+      EXPECT_THAT(one.rule().why, HasSubstr(parameter.parameter.name + " changes by"));
+      EXPECT_THAT(one.rule().why, HasSubstr("look at the robot first"));
+    }
+}
+
+TEST(Ruling, TakesALimitOfZeroAsNoChangeAtAll) {
+  Case one;
+  one.accept.largest_change.length = 0;
+  EXPECT_TRUE(one.rule().acceptable) << "nothing has changed";
+  one.find(Part::link, Quantity::length).value += 1e-9;
+  EXPECT_FALSE(one.rule().acceptable);
+}
+
+// ---------------------------------------------------------------------- quick check
+
+Solution check_of(int rows, double rms) {
+  Solution solution;
+  solution.residual.check.rows = rows;
+  solution.residual.check.rms_after = solution.residual.check.rms_without_rejected = rms;
+  return solution;
+}
+
+TEST(CheckRuling, ExplainsWhatIsAsGoodAsItWas) {
+  const CheckRuling ruling = rule_on_check(check_of(80, 2e-5), check_of(12, 2e-5), 0.01);
+  EXPECT_TRUE(ruling.explained);
+  EXPECT_NEAR(ruling.p_value, 0.47, 0.03);  // the median of F(12, 80) is 0.953, below 1
+  EXPECT_THAT(ruling.why, HasSubstr("the active model explains them"));
+}
+
+TEST(CheckRuling, DoesNotExplainWhatHasBecomeWorse) {
+  // F(12, 80) exceeds 2.415 with 1 % (tables of the F distribution).
+  EXPECT_TRUE(rule_on_check(check_of(80, 1), check_of(12, std::sqrt(2.40)), 0.01).explained);
+  EXPECT_FALSE(rule_on_check(check_of(80, 1), check_of(12, std::sqrt(2.43)), 0.01).explained);
+  EXPECT_TRUE(rule_on_check(check_of(80, 1), check_of(12, 0.1), 0.01).explained);
+}
+
+TEST(CheckRuling, ExplainsNothingWithoutRowsToCompare) {
+  EXPECT_FALSE(rule_on_check(check_of(0, 0), check_of(12, 1e-5), 0.01).explained);
+  EXPECT_FALSE(rule_on_check(check_of(80, 1e-5), check_of(0, 0), 0.01).explained);
+  EXPECT_EQ(rule_on_check({}, {}, 0.01).why, "nothing to compare with");
+}
+
+TEST(CheckRuling, RaisesAFalseAlarmAsRarelyAsItIsAskedTo) {
+  // Rows as the service has them: planes fitted to the fit rows of a session, its check rows and
+  // the new touches judged by them; the robot held, nothing changed but the noise.
+  const Simulated simulated = made(
+      "robot: r\nseed: 3\ncheck: 0.5\nsets:\n"
+      "  a: {method: plane, noise: 2.0e-5, rows: 200,\n"
+      "      within: {center: [0.7, 0, 0.2], radius: 0.4}}\n");
+  Options held;
+  held.fix = {"*"};
+  std::mt19937_64 random(5);
+  constexpr int kTrials = 60, kNew = 12;
+  constexpr double kP = 0.2;
+  int alarms = 0;
+  DataSet all = simulated.data;
+  std::vector<int> check;
+  for (int row = 0; row < all.rows.rows(); ++row)
+    if (all.rows.check[row]) check.push_back(row);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    // Other touches of the same noise: which check rows belong to the session, which are new.
+    std::ranges::shuffle(check, random);
+    const auto only = [&](std::size_t from, std::size_t to) {
+      DataSet data = all;
+      std::vector<int> rows;
+      for (int row = 0; row < all.rows.rows(); ++row)
+        if (!all.rows.check[row]) rows.push_back(row);
+      rows.insert(rows.end(), check.begin() + from, check.begin() + to);
+      data.rows.q = all.rows.q(rows, Eigen::all);
+      data.rows.normal = all.rows.normal(rows, Eigen::all);
+      data.rows.position = data.rows.orientation = Eigen::MatrixXd();
+      data.rows.distance = Eigen::VectorXd();
+      data.rows.repeat.clear();
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        data.rows.set[i] = all.rows.set[rows[i]];
+        data.rows.group[i] = all.rows.group[rows[i]];
+        data.rows.check[i] = all.rows.check[rows[i]];
+      }
+      data.rows.set.resize(rows.size());
+      data.rows.group.resize(rows.size());
+      data.rows.check.resize(rows.size());
+      return data;
+    };
+    const Solution now = identify(rx90(), only(0, kNew), held);
+    const Solution then = identify(rx90(), only(kNew, check.size()), held);
+    alarms += !rule_on_check(then, now, kP).explained;
+  }
+  // Binomial: 3 sigma of 60 trials at 0.2 are 9.3; the trials share rows, which narrows it.
+  const double sigma = std::sqrt(kTrials * kP * (1 - kP));
+  EXPECT_NEAR(alarms, kTrials * kP, 3 * sigma);
+}
+
+TEST(CheckRuling, RaisesAFalseAlarmAtTheRateAskedForOverManyGaussianChecks) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  const auto rms = [&](int rows) {
+    double sum = 0;
+    for (int i = 0; i < rows; ++i) sum += std::pow(normal(random), 2);
+    return 2e-5 * std::sqrt(sum / rows);
+  };
+  constexpr int kTrials = 20'000;
+  constexpr double kP = 0.01;
+  int alarms = 0;
+  for (int i = 0; i < kTrials; ++i)
+    alarms += !rule_on_check(check_of(80, rms(80)), check_of(24, rms(24)), kP).explained;
+  EXPECT_NEAR(alarms, kTrials * kP, 3 * std::sqrt(kTrials * kP * (1 - kP)));  // binomial, 3 sigma
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,147 @@
+// When a session begins by itself. Moments are worked out from the calendar by hand: day 20000
+// since 1970 (2024-10-04) began at 20000 * 86400 s UTC.
+#include "app/service/schedule.h"
+
+#include <gmock/gmock.h>
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kMinute = 60'000, kHour = 60 * kMinute, kDay = 24 * kHour;
+constexpr std::int64_t kMidnight = 20000 * kDay;  // UTC
+
+Since since_at(std::int64_t unix_ms) {
+  Since since;
+  since.unix_ms = unix_ms;
+  return since;
+}
+
+bool due_at(const Schedule& schedule, const Since& since, std::int64_t t, int offset_s = 0) {
+  return due(schedule, since, t, std::nullopt, offset_s).has_value();
+}
+
+TEST(Schedule, BeginsNothingByDefault) {
+  EXPECT_FALSE(Schedule().any());
+  EXPECT_FALSE(due_at({}, since_at(kMidnight), kMidnight + 1000 * kDay));
+  EXPECT_EQ(next_due({}, since_at(kMidnight), kMidnight, 0), 0);
+}
+
+TEST(Schedule, IsDueEverySoManyHoursAfterTheLastOne) {
+  Schedule schedule;
+  schedule.every_hours = 12.5;
+  const Since since = since_at(kMidnight);
+  const std::int64_t then = kMidnight + 12 * kHour + 30 * kMinute;
+  EXPECT_FALSE(due_at(schedule, since, then - 1));
+  EXPECT_TRUE(due_at(schedule, since, then));
+  EXPECT_EQ(next_due(schedule, since, kMidnight + kHour, 0), then);
+  EXPECT_EQ(due(schedule, since, then, {}, 0)->why, "every 12.5 h");
+}
+
+TEST(Schedule, IsDueAtOnceWhenNothingHasEverBeenMeasured) {
+  Schedule schedule;
+  schedule.every_hours = 24;
+  EXPECT_TRUE(due_at(schedule, {}, kMidnight));
+  EXPECT_EQ(next_due(schedule, {}, kMidnight, 0), kMidnight);
+}
+
+TEST(Schedule, IsDueAtTheTimeOfDayAcrossMidnight) {
+  Schedule schedule;
+  schedule.at_minute = 2 * 60 + 30;
+  const Since since = since_at(kMidnight - 2 * kHour);  // 22:00 the day before
+  const std::int64_t then = kMidnight + 2 * kHour + 30 * kMinute;
+  EXPECT_FALSE(due_at(schedule, since, kMidnight - kMinute));
+  EXPECT_FALSE(due_at(schedule, since, then - 1));
+  EXPECT_TRUE(due_at(schedule, since, then));
+  EXPECT_TRUE(due_at(schedule, since, then + 5 * kHour)) << "late, when it was busy at the time";
+  EXPECT_FALSE(due_at(schedule, since_at(then), then + kMinute)) << "once a day";
+  EXPECT_FALSE(due_at(schedule, since_at(then), then + kDay - 1));
+  EXPECT_TRUE(due_at(schedule, since_at(then), then + kDay));
+}
+
+TEST(Schedule, GoesByTheLocalTimeOfDay) {
+  Schedule schedule;
+  schedule.at_minute = 30;  // 00:30 local
+  const int east = 2 * 3600, west = -5 * 3600;
+  // East of Greenwich the local day begins before, west of it after the day of UTC.
+  const std::int64_t there = kMidnight + 30 * kMinute - 2 * kHour;
+  EXPECT_FALSE(due_at(schedule, since_at(there - kHour), there - 1, east));
+  EXPECT_TRUE(due_at(schedule, since_at(there - kHour), there, east));
+  const std::int64_t here = kMidnight + 30 * kMinute + 5 * kHour;
+  EXPECT_FALSE(due_at(schedule, since_at(here - kHour), here - 1, west));
+  EXPECT_TRUE(due_at(schedule, since_at(here - kHour), here, west));
+  EXPECT_EQ(next_due(schedule, since_at(there - kHour), there - kHour, east), there);
+}
+
+TEST(Schedule, WaitsForTheTimeOfDayBeforeTheFirstSession) {
+  Schedule schedule;
+  schedule.at_minute = 2 * 60 + 30;
+  const std::int64_t then = kMidnight + 2 * kHour + 30 * kMinute;
+  EXPECT_EQ(next_due(schedule, {}, kMidnight, 0), then);
+  EXPECT_FALSE(due_at(schedule, {}, then - 1));
+  EXPECT_TRUE(due_at(schedule, {}, then)) << "what was announced also comes";
+  EXPECT_FALSE(due_at(schedule, {}, kMidnight + 12 * kHour)) << "not whenever it is switched on";
+}
+
+TEST(Schedule, DoesNotWaitForYearsAfterTheWallClockWasSetBack) {
+  const Since since = since_at(kMidnight + 365 * kDay);
+  Schedule every, at;
+  every.every_hours = 24;
+  EXPECT_TRUE(due_at(every, since, kMidnight));
+  EXPECT_EQ(next_due(every, since, kMidnight, 0), kMidnight);
+  at.at_minute = 60;
+  EXPECT_FALSE(due_at(at, since, kMidnight));
+  EXPECT_TRUE(due_at(at, since, kMidnight + kHour));
+  EXPECT_EQ(next_due(at, since, kMidnight, 0), kMidnight + kHour);
+}
+
+TEST(Schedule, DoesNotBeginAgainWhenTheClockIsSetBackByASecond) {
+  Schedule schedule;
+  schedule.every_hours = 24;
+  EXPECT_FALSE(due_at(schedule, since_at(kMidnight + 1000), kMidnight));
+}
+
+TEST(Schedule, IsDueAfterHoursOfMotion) {
+  Schedule schedule;
+  schedule.after_motion_hours = 100;
+  Since since = since_at(kMidnight);
+  since.motion_hours = 99.9;
+  EXPECT_FALSE(due_at(schedule, since, kMidnight + kDay));
+  since.motion_hours = 100;
+  EXPECT_EQ(due(schedule, since, kMidnight, {}, 0)->why, "after 100 h of motion");
+  EXPECT_EQ(next_due(schedule, since, kMidnight, 0), 0) << "the clock alone does not tell";
+}
+
+TEST(Schedule, IsDueWhenTheTemperatureHasMovedEitherWay) {
+  Schedule schedule;
+  schedule.temperature_change = 4;
+  Since since = since_at(kMidnight);
+  EXPECT_FALSE(due(schedule, since, kMidnight, 30.0, 0)) << "not known what it was";
+  since.temperature = 20;
+  EXPECT_FALSE(due(schedule, since, kMidnight, std::nullopt, 0));
+  EXPECT_FALSE(due(schedule, since, kMidnight, 23.9, 0));
+  EXPECT_THAT(due(schedule, since, kMidnight, 24.0, 0)->why, HasSubstr("4 K"));
+  EXPECT_THAT(due(schedule, since, kMidnight, 15.5, 0)->why, HasSubstr("-4.5 K"));
+}
+
+TEST(Schedule, ChecksFirstAndTakesAFullSessionAfterSoManyChecks) {
+  Schedule schedule;
+  schedule.every_hours = 1;
+  schedule.full_after_checks = 3;
+  Since since = since_at(kMidnight);
+  const auto kind = [&] { return due(schedule, since, kMidnight + kDay, {}, 0)->kind; };
+  EXPECT_EQ(kind(), SessionKind::full) << "there is nothing that a check could test";
+  since.calibrated = true;
+  EXPECT_EQ(kind(), SessionKind::check);
+  since.checks = 2;
+  EXPECT_EQ(kind(), SessionKind::check);
+  since.checks = 3;
+  EXPECT_EQ(kind(), SessionKind::full);
+  since.checks = 0;
+  schedule.check_first = false;
+  EXPECT_EQ(kind(), SessionKind::full);
+}
+
+}  // namespace
+}  // namespace selfcal

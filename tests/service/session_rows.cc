@@ -1,0 +1,87 @@
+// Touches of a session as rows of a data set.
+#include <gmock/gmock.h>
+
+#include "tests/service/stored_session.h"
+
+namespace selfcal {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(RowsOf, HasTheGoodTouchesInTheOrderOfThePlanWithTheirRepeats) {
+  const Config config = two_planes();
+  Session session = session_of(4);
+  session.touches = {
+      touch_of(2, TouchOutcome::taken, 0.2), touch_of(0, TouchOutcome::put_aside, 0.9),
+      touch_of(0, TouchOutcome::taken, 0.1), touch_of(0, TouchOutcome::taken, 0.1),
+      touch_of(1, TouchOutcome::taken, 0.3), touch_of(3, TouchOutcome::put_aside, 0.9)};
+  const DataSet data = rows_of(session, meaning_of(config));
+  ASSERT_EQ(data.rows.rows(), 4);
+  constexpr double kHalfCount = kStep / 2;
+  EXPECT_NEAR(data.rows.q(0, 0), 0.1, kHalfCount);
+  EXPECT_NEAR(data.rows.q(2, 5), 0.3, kHalfCount);
+  EXPECT_NEAR(data.rows.q(3, 0), 0.2, kHalfCount);
+  EXPECT_THAT(data.rows.set, ElementsAre(0, 0, 1, 0));
+  EXPECT_THAT(data.rows.repeat, ElementsAre(0, 0, -1, -1));
+  EXPECT_THAT(data.rows.check, ElementsAre(0, 0, 1, 0));
+  EXPECT_EQ(data.rows.normal.row(2).transpose(), Eigen::Vector3d::UnitZ());
+  EXPECT_THAT(rows_of(session, meaning_of(config), Parts::all_check).rows.check,
+              ElementsAre(1, 1, 1, 1));
+  EXPECT_THAT(rows_of(session, meaning_of(config), Parts::all_fit).rows.check,
+              ElementsAre(0, 0, 0, 0));
+}
+
+TEST(RowsOf, LeavesOutTouchesBeforeOneThatDiffers) {
+  Session session = session_of(1);
+  session.touches = {touch_of(0, TouchOutcome::taken, 0.1), touch_of(0, TouchOutcome::differs, 0.2),
+                     touch_of(0, TouchOutcome::taken, 0.3)};
+  const DataSet data = rows_of(session, meaning_of(two_planes()));
+  ASSERT_EQ(data.rows.rows(), 1);
+  EXPECT_NEAR(data.rows.q(0, 0), 0.3, kStep / 2);
+}
+
+TEST(RowsOf, ReadsTheJointsAtTheContactNotAtTheDelayedEdge) {
+  Session session = session_of(1);
+  TouchRecord touch = touch_of(0);
+  touch.before.counts.fill(1000);         // 0 rad, 10 ms before the edge
+  touch.after.counts.fill(1000 + 20000);  // 0.02 rad, 10 ms after it: 1 rad/s
+  session.touches = {touch};
+  const DataSet data = rows_of(session, meaning_of(two_planes()));
+  EXPECT_NEAR(data.rows.q(0, 3), 0.009, 1e-15) << "1 ms before the edge";  // rounding
+}
+
+TEST(RowsOf, MakesNoRowsOfNoTouches) {
+  EXPECT_EQ(rows_of(session_of(3), meaning_of(two_planes())).rows.rows(), 0);
+}
+
+TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
+  const Meaning meaning = meaning_of(two_planes());
+  Session base = session_of(4), check = session_of(2);
+  for (int i = 0; i < 4; ++i) base.touches.push_back(touch_of(i, TouchOutcome::taken, 0.1 * i));
+  for (int i = 0; i < 2; ++i) check.touches.push_back(touch_of(i, TouchOutcome::taken, 0.7));
+  const DataSet data = joined(rows_of(base, meaning), rows_of(check, meaning, Parts::all_check));
+  ASSERT_EQ(data.rows.rows(), 5) << "three fit rows and two new ones";
+  EXPECT_THAT(data.rows.check, ElementsAre(0, 0, 0, 1, 1));
+  EXPECT_THAT(data.rows.set, ElementsAre(0, 0, 1, 0, 1));
+  EXPECT_NEAR(data.rows.q(1, 0), 0.2, kStep / 2);
+  EXPECT_NEAR(data.rows.q(4, 0), 0.7, kStep / 2);
+  EXPECT_EQ(data.rows.normal.row(4).transpose(), Eigen::Vector3d::UnitZ());
+}
+
+TEST(Joined, MeansTheSameSocketByTheSameName) {
+  Meaning meaning = meaning_of(two_planes());
+  Session base = session_of(2), check = session_of(2);
+  base.plan[0].group = check.plan[1].group = "g1";
+  base.plan[1].group = check.plan[0].group = "g0";
+  for (Session* each : {&base, &check}) {
+    for (StepRecord& step : each->plan) step.set = "near", step.check = false;
+    each->touches = {touch_of(0), touch_of(1)};
+  }
+  const DataSet data = joined(rows_of(base, meaning), rows_of(check, meaning, Parts::all_check));
+  std::vector<std::string> names;
+  for (const int group : data.rows.group) names.push_back(data.sets[0].groups[group]);
+  EXPECT_THAT(names, ElementsAre("g1", "g0", "g0", "g1"));
+}
+
+}  // namespace
+}  // namespace selfcal
