@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "constraints/contact.h"
+#include "constraints/spread.h"
 
 namespace selfcal {
 namespace {
@@ -127,37 +128,34 @@ class Candidates {
   const TouchPlanOptions& options_;
 };
 
-/// `count` of the candidates, each as far as possible from those taken before (and, where there
-/// are groups, the groups in turn).
-std::vector<PlannedTouch> spread(const Robot& robot, std::vector<PlannedTouch> from, int count) {
-  std::vector<PlannedTouch> taken;
-  if (from.empty()) return taken;
-  std::vector<double> nearest(from.size(), HUGE_VAL);
-  std::vector<char> used(from.size(), 0);
-  int groups = 1;
-  for (const PlannedTouch& each : from) groups = std::max(groups, each.group + 1);
-  std::size_t next = 0;
-  while (static_cast<int>(taken.size()) < count) {
-    taken.push_back(from[next]);
-    used[next] = 1;
-    const int turn = static_cast<int>(taken.size()) % groups;
-    double best = -1;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      nearest[i] = std::min(nearest[i], distance(robot, from[i].touch, taken.back().touch));
-      if (used[i] || (groups > 1 && from[i].group != turn) || nearest[i] <= best) continue;
-      best = nearest[i];
-      next = i;
+/// Those of the usable touches that tell most together, as many of each set as are asked for.
+std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
+                                 const std::vector<Set>& sets,
+                                 const std::vector<TouchTarget>& targets,
+                                 const std::vector<std::vector<PlannedTouch>>& usable) {
+  std::vector<Candidate> candidates;
+  std::vector<const PlannedTouch*> touches;
+  std::vector<int> counts(sets.size(), 0);
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    counts[targets[t].set] = targets[t].touches;
+    for (const PlannedTouch& each : usable[t]) {
+      candidates.push_back({each.touch, each.set, each.group, targets[t].outward});
+      touches.push_back(&each);
     }
-    if (best < 0) break;
   }
-  return taken;
+  std::vector<PlannedTouch> chosen;
+  for (const int i : most_telling(robot, xi, sets, candidates, std::move(counts)))
+    chosen.push_back(*touches[i]);
+  return chosen;
 }
 
-/// Every third or so, evenly over the order of choice.
-void mark_check(std::vector<PlannedTouch>& touches, double share) {
-  for (std::size_t i = 0; i < touches.size(); ++i)
-    touches[i].check =
-        std::floor(share * static_cast<double>(i + 1)) > std::floor(share * static_cast<double>(i));
+/// Every third or so of each set, evenly over the order of choice.
+void mark_check(std::vector<PlannedTouch>& touches, std::size_t sets, double share) {
+  std::vector<int> seen(sets, 0);
+  for (PlannedTouch& touch : touches) {
+    const int i = seen[touch.set]++;
+    touch.check = std::floor(share * (i + 1)) > std::floor(share * i);
+  }
 }
 
 /// The touches of each target in an order of short ways, begun at home; a touch that can be
@@ -222,20 +220,19 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   TouchPlan plan;
   const Candidates candidates(robot, xi, sets, obstacles, options);
   Random random(options.seed);
-  std::vector<PlannedTouch> all;
+  std::vector<std::vector<PlannedTouch>> usable;
   int obstacle = 0;
   for (const TouchTarget& target : targets) {
-    const int own_obstacle = target.places.empty() ? obstacle++ : -1;
-    std::vector<PlannedTouch> usable = candidates.of(target, own_obstacle, random);
-    std::vector<PlannedTouch> taken = spread(robot, std::move(usable), target.touches);
-    if (static_cast<int>(taken.size()) < target.touches && plan.unreached.empty())
-      plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(taken.size()) +
-                       " of " + std::to_string(target.touches) +
+    usable.push_back(candidates.of(target, target.places.empty() ? obstacle++ : -1, random));
+    const auto found = static_cast<int>(usable.back().size());
+    if (found < target.touches && plan.unreached.empty())
+      plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(found) + " of " +
+                       std::to_string(target.touches) +
                        " touches are within the joint limits, the tilt and reach of home";
-    mark_check(taken, options.check);
-    std::ranges::move(taken, std::back_inserter(all));
   }
-  plan.touches = order(robot, xi, std::move(all), obstacles, options);
+  std::vector<PlannedTouch> chosen = choose(robot, xi, sets, targets, usable);
+  mark_check(chosen, sets.size(), options.check);
+  plan.touches = order(robot, xi, std::move(chosen), obstacles, options);
   return plan;
 }
 

@@ -1,9 +1,8 @@
 // Which configurations a session visits, and how it gets into each contact and out again.
 //
 // Many random configurations touch each surface or sit in each socket of the model; of these the
-// ones farthest from each other in joint space are taken (farthest-point choice), so that every
-// joint moves through its range. Each is entered along a straight joint path from a free
-// configuration, and no path may cross another surface.
+// ones are taken that tell most together (spread.h). Each is entered along a straight joint path
+// from a free configuration, and no path may cross another surface.
 #pragma once
 
 #include <string>

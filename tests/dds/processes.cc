@@ -7,8 +7,8 @@
 #include "io/dds/monitor.h"
 #include "io/dds/motion.h"
 #include "io/dds/trigger.h"
-#include "tests/support/domain.h"
 #include "tests/dds/peer.h"
+#include "tests/support/domain.h"
 
 namespace selfcal {
 namespace {

@@ -1,0 +1,29 @@
+// Which of many possible touches tell most together: each next one is the one that the parameters,
+// as far as they are known from those before it and from the priors, predict worst.
+//
+// With C the covariance of the parameters and the surfaces, the variance that a touch w would show
+// is w C wᵀ / sigma²; taking the largest raises det(C⁻¹) most (Fedorov 1972), and C is updated by
+//   C -= C wᵀ w C / (sigma² + w C wᵀ).
+#pragma once
+
+#include <vector>
+
+#include "constraints/data_set.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+/// A touch that could be made.
+struct Candidate {
+  Eigen::VectorXd q;        ///< readings in the contact
+  int set = 0, group = -1;  ///< group: of sockets and nests
+  Eigen::Vector3d outward;  ///< of a surface (world, unit)
+};
+
+/// Indices of the chosen candidates in the order of choice, as many of each set as `counts` says or
+/// as there are. `xi` are the parameters that are believed.
+std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
+                              const std::vector<Set>& sets,
+                              const std::vector<Candidate>& candidates, std::vector<int> counts);
+
+}  // namespace selfcal
