@@ -84,8 +84,8 @@ TEST(Config, LoadsTheExampleThatIsShipped) {
   EXPECT_EQ(config->sets.size(), 6u);
   EXPECT_EQ(config->targets.size(), 6u);
   EXPECT_EQ(config->obstacles.size(), 6u);
-  const auto far = std::ranges::find(config->sets, "gauge_far", &Set::name);
-  EXPECT_EQ(config->sets[far->reference].name, "gauge_near");
+  const auto far = std::ranges::find(config->sets, "gauge_right", &Set::name);
+  EXPECT_EQ(config->sets[far->reference].name, "gauge_left");
   EXPECT_TRUE(std::filesystem::exists(config->simulation));
   for (std::size_t i = 0; i < config->obstacles.size(); ++i)
     EXPECT_NEAR(config->obstacles[i].outward.norm(), 1, 1e-15);  // rounding
