@@ -253,9 +253,10 @@ void Service::act(const Action& action) {
 Nanoseconds Service::longest_wait() const {
   switch (situation_.state) {
     case ServiceState::collecting:
+      // An edge ends the wait early where the trigger can say so.
       return situation_.phase == Phase::touch || situation_.phase == Phase::settle
-                 ? 4 * kMillisecond
-                 : 10 * kMillisecond;
+                 ? 8 * kMillisecond
+                 : 20 * kMillisecond;
     case ServiceState::idle:
     case ServiceState::awaiting_acceptance:
     case ServiceState::fault:

@@ -1,0 +1,87 @@
+// What the service costs the robot's computer.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <fstream>
+
+#include <algorithm>
+#include <sstream>
+
+#include "tests/sessions/cell.h"
+
+namespace selfcal {
+namespace {
+
+/// CPU time so far of a process, or of its first thread alone (s).
+double cpu_seconds(pid_t pid, bool first_thread) {
+  const std::string id = std::to_string(pid);
+  std::ifstream file("/proc/" + id + (first_thread ? "/task/" + id : "") + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+/// A line of /proc/PID/status, in MB.
+double megabytes(pid_t pid, const std::string& key) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(key + ":")) return std::stod(line.substr(key.size() + 1)) / 1024;
+  return 0;
+}
+
+TEST(Overhead, StaysBelowFiveMillisecondsOfCpuATouch) {
+  CellOptions options;
+  options.live = true;
+  options.touches = 12;
+  Cell cell(options);
+  cell.start_robot();
+  cell.start_service();
+  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
+  ASSERT_TRUE(cell.command("start").accepted);
+  const auto touches = [&] {
+    return std::ranges::count_if(cell.progress, [](const auto& p) { return !p.set.empty(); });
+  };
+  ASSERT_TRUE(cell.until([&] { return touches() >= 6; }));
+  const double own_before = cpu_seconds(cell.service_pid(), true);
+  const double all_before = cpu_seconds(cell.service_pid(), false);
+  const auto first = touches();
+  ASSERT_TRUE(cell.until([&] { return touches() >= 60; }));
+  const double count = static_cast<double>(touches() - first);
+  const double own = (cpu_seconds(cell.service_pid(), true) - own_before) / count;
+  const double all = (cpu_seconds(cell.service_pid(), false) - all_before) / count;
+  std::printf(
+      "%.2f ms of CPU a touch by the service, %.2f ms with the threads of DDS, which carry "
+      "encoders at 500 Hz; %.0f MB at most\n",
+      1e3 * own, 1e3 * all, megabytes(cell.service_pid(), "VmHWM"));
+  // Three times the bound, for sanitizers and loaded machines; the figure itself is printed.
+  EXPECT_LT(own, 0.015);
+}
+
+TEST(Overhead, KeepsToItsMemoryOverManySessions) {
+  const int sessions = repetitions("SELFCAL_ENDURANCE", 8);
+  CellOptions options;
+  options.touches = 8;
+  Cell cell(options);
+  cell.start_service();
+  double early = 0;
+  for (int session = 1; session <= sessions; ++session) {
+    ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
+    ASSERT_TRUE(cell.command("start").accepted);
+    ASSERT_TRUE(cell.until(
+        [&] { return static_cast<int>(cell.results.size()) >= session && cell.in_state("idle"); }));
+    if (session == (sessions + 3) / 4) early = megabytes(cell.service_pid(), "VmRSS");
+  }
+  const double late = megabytes(cell.service_pid(), "VmRSS");
+  std::printf("%d sessions: %.1f MB after a quarter of them, %.1f MB at the end, %.1f MB at most\n",
+              sessions, early, late, megabytes(cell.service_pid(), "VmHWM"));
+  EXPECT_LT(megabytes(cell.service_pid(), "VmHWM"), 64);
+  EXPECT_LT(late, early + 3) << "the allocator's own reserves aside, it does not grow";
+}
+
+}  // namespace
+}  // namespace selfcal
