@@ -220,7 +220,7 @@ Result<void> print_export(Store& store, const Arguments& arguments, const Source
 int history_command(const Arguments& arguments) {
   if (!arguments.exported.empty()) {
     const std::string& id = arguments.exported[0];
-    if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != id.npos)
+    if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != std::string::npos)
       return wrong_usage("--export SESSION FOLDER: expected a session's number, got '" + id + "'");
   }
   const auto source = find_source(arguments.where);

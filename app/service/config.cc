@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "io/dds/names.h"
 #include "io/file.h"
 #include "io/robot_file.h"
 #include "io/yaml.h"
@@ -89,7 +90,7 @@ class Reader {
   }
 
   void read_trigger(Fields& f) {
-    c_.trigger_topic = f.text("topic", "selfcal/" + c_.id + "/trigger");
+    c_.trigger_topic = f.text("topic", "selfcal/" + ros_name(c_.id) + "/trigger");
     c_.touch.debounce = number_within(f, "debounce", c_.touch.debounce, 0, 0.1);
     c_.touch.delay = number_within(f, "delay", c_.touch.delay, 0, 0.1);
   }
@@ -100,6 +101,12 @@ class Reader {
       c_.plan.home = *home;
     else
       f.fail("home", "a reading for each joint (rad, m)");
+    for (std::size_t j = 0; home && j < c_.robot->joints().size(); ++j) {
+      const Joint& joint = c_.robot->joints()[j];
+      const double q = (*home)[static_cast<Eigen::Index>(j)];
+      if (joint.limited() && (q < joint.lower || q > joint.upper))
+        f.fail("home", "a reading of " + joint.name + " within its limits");
+    }
     c_.speeds.travel = number_within(f, "speed", c_.speeds.travel, 1e-3, 100);
     c_.speeds.touch = number_within(f, "touch_speed", c_.speeds.touch, 1e-4, 1);
     c_.plan.clearance = number_within(f, "clearance", c_.plan.clearance, 1e-3, 0.5);
@@ -219,6 +226,8 @@ class Reader {
   }
 
   void read_plane(Fields& f, const Node* surface, const Node* within, TouchTarget& target) {
+    for (const char* key : {"places", "way_out"})
+      if (f.has(key)) return f.fail(key, "only for sockets and nests");
     if (!surface) return f.fail("surface", "{point: [x, y, z], normal: [x, y, z]}");
     if (!within) return f.fail("within", "{center: [x, y, z], radius: R}");
     const Surface s = read_surface(*surface, f.what() + " surface", problems_);
@@ -229,6 +238,8 @@ class Reader {
   }
 
   void read_sockets(Fields& f, const Node* places, TouchTarget& target) {
+    for (const char* key : {"surface", "within"})
+      if (f.has(key)) return f.fail(key, "only for planes");
     if (!places) return f.fail("places", "[[x, y, z], ...]");
     target.places = read_places(*places, f.what() + " places", problems_);
     target.outward = read_unit(f, "way_out");
