@@ -2,7 +2,7 @@
 
 #include "app/pretend.h"
 #include "app/words.h"
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/discovery.h"
 
 namespace selfcal {

@@ -13,7 +13,7 @@
 #include "app/pretend.h"
 #include "app/screen.h"
 #include "app/words.h"
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/monitor.h"
 
 namespace selfcal {

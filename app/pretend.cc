@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/participant.h"
 #include "io/dds/robot_side.h"
 #include "io/robot_file.h"
@@ -27,6 +27,7 @@ class Player {
     std::vector<RobotRequest> requests;
     if (auto taken = robot_.take(requests); !taken) return taken;
     machine_.advance(now);
+    if (!robot_.connected() && machine_.moving()) machine_.stop("the service is gone");
     for (const RobotRequest& request : requests)
       request.stop ? machine_.stop(request.why) : machine_.request(request.move);
     samples_.clear();

@@ -12,7 +12,7 @@
 #include "app/command.h"
 #include "app/pretend.h"
 #include "app/service/service.h"
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/encoders.h"
 #include "io/dds/messenger.h"
 #include "io/dds/motion.h"
@@ -93,11 +93,10 @@ void set_up_log(const std::string& level) {
   spdlog::set_default_logger(std::move(log));
 }
 
-Result<void> run(Service& service, int sessions) {
+void run(Service& service, int sessions) {
   while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions))
-    if (auto turned = service.turn(); !turned) return turned;
+    service.turn();
   service.shut_down();
-  return {};
 }
 
 Result<void> serve(const Arguments& arguments, Config config) {
@@ -123,7 +122,8 @@ Result<void> serve(const Arguments& arguments, Config config) {
   const auto serve_with = [&](const Ports& ports) {
     Service service(config, ports, **messenger, *opened->store, std::move(*models),
                     opened->set_aside);
-    return run(service, arguments.sessions);
+    run(service, arguments.sessions);
+    return Result<void>{};
   };
   if (!arguments.simulate) {
     auto dds = DdsPorts::open(*participant, config, wakeup);

@@ -49,6 +49,8 @@ class EncoderSource {
   /// source is broken for good; silence is no failure, the service notices it.
   virtual Result<void> take(std::vector<EncoderSample>& out) = 0;
   virtual std::uint64_t dropped() const = 0;  ///< samples lost since the start
+  /// Senders heard at the moment, where the transport can tell: more than one are two robots.
+  virtual int senders() const { return 1; }
   static constexpr std::size_t kMostSamples = 1024;
 };
 
@@ -71,7 +73,8 @@ class TouchTrigger {
 
 enum class MoveKind : std::uint8_t {
   travel,   ///< through free space
-  touch,    ///< towards a surface, until the service says stop
+  touch,    ///< towards a surface, until the service says stop; a robot stops by itself when it no
+            ///< longer hears the service
   seat,     ///< the tool gives way until it sits in the socket or nest
   retract,  ///< back out of a contact
 };

@@ -40,6 +40,7 @@ class Machine {
   Nanoseconds now() const { return now_; }
   /// True from a request to half a second after the robot stands.
   bool busy() const;
+  bool moving() const { return moving_.has_value(); }
 
   void request(const MotionRequest& request);
   void stop(const std::string& why);

@@ -196,7 +196,6 @@ class Reader {
     c_.description = Node::map();
     c_.description.set("target", Node::of(c_.target));
     c_.description.set("sets", std::move(entries));
-    c_.hash = sha256_hex(write_yaml(c_.description) + c_.robot->identity());
   }
 
   /// Reads the configuration's own keys and returns the rest, an entry of dataset.yaml.

@@ -105,7 +105,7 @@ struct Speeds {
 struct Config {
   std::string robot_text;  ///< the robot file's content, as the maker gives it
   std::shared_ptr<const Robot> robot;
-  std::string id, serial, hash;  ///< hash: of what the rows of a session mean
+  std::string id, serial;
   std::filesystem::path state;
   double target = 1e-3;
   int domain = 0;

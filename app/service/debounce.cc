@@ -13,14 +13,26 @@ void Debouncer::add(const Edge& edge, Nanoseconds heard) {
     burst_.reset();
   }
   if (!burst_ && edge.closed == level_) return;
-  if (!burst_) burst_ = edge.time;
+  if (!burst_) {
+    burst_ = edge.time;
+    burst_heard_ = heard;
+  }
   raw_ = edge.closed;
   last_ = edge.time;
   heard_ = heard;
 }
 
+void Debouncer::reconcile(bool closed, Nanoseconds now) {
+  if (!burst_ && closed != level_) add({now, closed}, now);
+}
+
 std::optional<Edge> Debouncer::settled(Nanoseconds now) {
-  if (!burst_ || now - heard_ < quiet_) return std::nullopt;
+  if (!burst_) return std::nullopt;
+  const bool chatters = !level_ && now - burst_heard_ >= 5 * quiet_;
+  if (now - heard_ < quiet_) {
+    if (!chatters) return std::nullopt;
+    raw_ = true;
+  }
   const Edge edge{*burst_, raw_};
   burst_.reset();
   if (raw_ == level_) {

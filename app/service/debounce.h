@@ -1,7 +1,8 @@
 // From a chattering contact to a level and the moment at which it was first met.
 //
 // A new level counts once nothing has changed for `quiet`; its moment is that of the first edge of
-// the burst. A burst that ends at the old level is a glitch.
+// the burst. A burst that ends at the old level is a glitch; one that does not end within five
+// times `quiet` counts as closed, which is the safe side.
 #pragma once
 
 #include <optional>
@@ -19,6 +20,8 @@ class Debouncer {
   /// One edge, in the order of time, and when it was heard of; an edge to the level that already is
   /// says nothing. Quiet is counted from the hearing: stamps may come from another clock.
   void add(const Edge& edge, Nanoseconds heard);
+  /// The level as the port has it: where edges were lost it begins a burst, stamped now.
+  void reconcile(bool closed, Nanoseconds now);
   /// The level that has held since, if it is a new one.
   std::optional<Edge> settled(Nanoseconds now);
   std::uint64_t glitches() const { return glitches_; }
@@ -28,6 +31,7 @@ class Debouncer {
   bool level_ = false, raw_ = false;
   std::optional<Nanoseconds> burst_;  ///< its first edge
   Nanoseconds last_ = 0, heard_ = 0;  ///< of the last edge: stamp, hearing
+  Nanoseconds burst_heard_ = 0;
   std::uint64_t glitches_ = 0;
 };
 

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace selfcal {
+namespace {
+
+constexpr double kDither = 1e-5;  // rad or m: encoders of robots that stand still move so much
+
+}  // namespace
 
 Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<EncoderScale>& scales) {
   Eigen::VectorXd q(sample.joints);
@@ -21,13 +26,18 @@ Reading reading_between(const EncoderSample& before, const EncoderSample& after,
   return {first + share * (second - first), (second - first) / seconds(after.time - before.time)};
 }
 
-void SampleHistory::add(const EncoderSample& sample) {
+bool SampleHistory::add(const EncoderSample& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) {
     ++out_of_order_;
-    return;
+    // Three in a row: the sender's clock has been set back, and what came before is of another
+    // time.
+    if (++back_in_a_row_ < 3) return false;
+    samples_.clear();
   }
+  back_in_a_row_ = 0;
   samples_.push_back(sample);
   if (samples_.size() > kMost) samples_.pop_front();
+  return true;
 }
 
 std::optional<std::pair<EncoderSample, EncoderSample>> SampleHistory::around(Nanoseconds t) const {
@@ -44,7 +54,7 @@ std::optional<bool> SampleHistory::at_rest(const std::vector<EncoderScale>& scal
   const auto first =
       std::ranges::lower_bound(samples_, samples_.back().time - span, {}, &EncoderSample::time);
   if (samples_.end() - first < 3) return std::nullopt;
-  const double allowed = speed * seconds(samples_.back().time - first->time);
+  const double allowed = kDither + speed * seconds(samples_.back().time - first->time);
   for (int j = 0; j < first->joints; ++j) {
     const auto counts = std::abs(samples_.back().counts[j] - first->counts[j]);
     if (counts > 1 && static_cast<double>(counts) * std::abs(scales[j].step) > allowed)

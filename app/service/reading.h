@@ -25,8 +25,9 @@ Reading reading_between(const EncoderSample& before, const EncoderSample& after,
 /// The last samples, as many as a touch needs; bounded.
 class SampleHistory {
  public:
-  /// Samples that do not follow the last one in time are dropped and counted.
-  void add(const EncoderSample& sample);
+  /// False, and counted, for a sample that does not follow the last one in time. After three of
+  /// them in a row the history begins anew: the sender's clock has been set back.
+  bool add(const EncoderSample& sample);
   void clear() { samples_.clear(); }
   bool empty() const { return samples_.empty(); }
   const EncoderSample& last() const { return samples_.back(); }
@@ -35,8 +36,8 @@ class SampleHistory {
   /// The two samples around a moment; nothing while the later one has not come or when the earlier
   /// one is gone.
   std::optional<std::pair<EncoderSample, EncoderSample>> around(Nanoseconds t) const;
-  /// True when no joint moved faster than `speed` over the last `span` (by more than one count);
-  /// nothing as long as there are fewer than three samples in it.
+  /// True when no joint moved faster than `speed` over the last `span`, one count and a dither of
+  /// 10 urad aside; nothing as long as there are fewer than three samples in it.
   std::optional<bool> at_rest(const std::vector<EncoderScale>& scales, double speed,
                               Nanoseconds span) const;
 
@@ -44,6 +45,7 @@ class SampleHistory {
   static constexpr std::size_t kMost = 4096;
   std::deque<EncoderSample> samples_;
   std::uint64_t out_of_order_ = 0;
+  int back_in_a_row_ = 0;
 };
 
 }  // namespace selfcal

@@ -88,7 +88,7 @@ CheckRuling rule_on_check(const Solution& then, const Solution& now, double leas
   const Figures& after = now.residual.check;
   ruling.rms = after.rms_after;
   ruling.expected = before.rms_without_rejected;
-  if (before.rows == 0 || after.rows == 0 || ruling.expected <= 0) {
+  if (before.rows == 0 || after.rows == 0 || !(ruling.expected > 0) || !std::isfinite(ruling.rms)) {
     ruling.why = "nothing to compare with";
     return ruling;
   }

@@ -1,5 +1,7 @@
 #include "app/service/senses.h"
 
+#include <algorithm>
+
 namespace selfcal {
 namespace {
 
@@ -25,8 +27,10 @@ void Senses::listen_to_encoders(Nanoseconds now, std::deque<Event>& events) {
   new_samples_.clear();
   if (const auto taken = ports_.encoders->take(new_samples_); !taken)
     events.push_back(event_of(Event::What::broken, now, taken.error().what));
-  for (const EncoderSample& sample : new_samples_) samples_.add(sample);
-  if (!new_samples_.empty()) heard_ = now;
+  for (const EncoderSample& sample : new_samples_) {
+    if (!samples_.empty()) period_ = sample.time - samples_.last().time;
+    if (samples_.add(sample)) heard_ = now;
+  }
   counted_ += new_samples_.size();
   if (now - counted_from_ >= kSecond) {
     rate_ = static_cast<double>(counted_) / seconds(now - counted_from_);
@@ -40,13 +44,16 @@ void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
   if (const auto taken = ports_.trigger->take(new_edges_); !taken)
     events.push_back(event_of(Event::What::broken, now, taken.error().what));
   if (!level_) {
-    level_ = ports_.trigger->closed();
+    known_ = level_ = ports_.trigger->closed();
     if (!level_) return;
     debouncer_.begin(*level_);
     events.push_back(event_of(*level_ ? Event::What::closed : Event::What::opened, now));
     return;
   }
   for (const Edge& edge : new_edges_) debouncer_.add(edge, now);
+  // An edge that was lost on the way shows in the level; a trigger that is gone shows in nothing.
+  known_ = ports_.trigger->closed();
+  if (known_ && new_edges_.empty()) debouncer_.reconcile(*known_, now);
   const std::optional<Edge> edge = debouncer_.settled(now);
   if (!edge) return;
   level_ = edge->closed;
@@ -68,7 +75,7 @@ void Senses::listen_to_motion(Nanoseconds now, std::deque<Event>& events) {
 }
 
 std::optional<bool> Senses::at_rest() const {
-  return samples_.at_rest(ports_.encoders->scales(), rest_, kRestSpan);
+  return samples_.at_rest(ports_.encoders->scales(), rest_, std::max(kRestSpan, 4 * period_));
 }
 
 std::optional<Eigen::VectorXd> Senses::q() const {

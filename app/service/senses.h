@@ -29,7 +29,8 @@ class Senses {
   }
   std::optional<bool> at_rest() const;
   bool moving() const { return at_rest() == false; }
-  std::optional<bool> closed() const { return level_; }
+  /// The debounced level; nothing while the trigger is not known or gone.
+  std::optional<bool> closed() const { return known_ ? level_ : std::nullopt; }
   const std::optional<Edge>& closing() const { return closing_; }  ///< the last one
   std::optional<double> celsius() const {
     return ports_.thermometer ? ports_.thermometer->celsius() : std::nullopt;
@@ -51,8 +52,9 @@ class Senses {
   SampleHistory samples_;
   Debouncer debouncer_;
   double rest_;
-  Nanoseconds silence_, heard_ = 0, counted_from_ = 0;
-  std::optional<bool> level_;
+  Nanoseconds silence_, heard_ = 0, counted_from_ = 0, period_ = 0;
+  std::optional<bool> level_;  ///< debounced
+  std::optional<bool> known_;  ///< as the port has it
   std::optional<Edge> closing_;
   std::uint64_t expected_ = 0, counted_ = 0;
   double rate_ = 0;

@@ -8,6 +8,9 @@ namespace selfcal {
 namespace {
 
 constexpr std::size_t kMostEvents = 1024;
+constexpr std::size_t kMostName = 64;                 // of who sends a command
+constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
+constexpr Nanoseconds kStopAgain = kSecond / 2;       // until the robot stands
 
 std::optional<Verb> verb_of(const std::string& text) {
   for (const Verb verb :
@@ -35,7 +38,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
       damaged_(std::move(damaged)),
       senses_(ports, nanoseconds(config_.touch.debounce), config_.touch.rest,
               nanoseconds(config_.silence)) {
-  now_ = test_began_ = last_turn_ = ports_.clock->now();
+  now_ = test_began_ = last_turn_ = began_ = ports_.clock->now();
   // Requests of an earlier life must not be taken for ours.
   motion_id_ = static_cast<std::uint64_t>(ports_.clock->unix_ms()) * 1000;
   situation_.since = now_;
@@ -48,7 +51,8 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
   finish_interrupted_apply();
   recall_use();
   situation_.candidate = models_.candidate();
-  ports_.motion->stop("the service has started").or_else([](const Failure&) {});
+  outstanding_ = situation_.unfinished;  // of an earlier life, told to stop until it stands
+  if (outstanding_) stop("the service has started");
   tell("info", "started with " + models_.name() + " parameters");
   supervisor_.ready();
 }
@@ -78,11 +82,12 @@ template bool Service::stored(const Result<std::optional<SessionRecord>>&);
 template bool Service::stored(const Result<std::optional<ResultRecord>>&);
 template bool Service::stored(const Result<std::int64_t>&);
 
-Result<void> Service::turn() {
+void Service::turn() {
   now_ = ports_.clock->now();
   listen();
   check_self();
   check_rest();
+  check_stop();
   check_schedule();
   std::string failure;
   if (computation_.take(failure) && when_computed_) std::exchange(when_computed_, {})(failure);
@@ -92,7 +97,6 @@ Result<void> Service::turn() {
   supervisor_.alive(now_);
   last_turn_ = now_;
   ports_.clock->wait(longest_wait());
-  return {};
 }
 
 void Service::listen() {
@@ -101,6 +105,9 @@ void Service::listen() {
   if (needed && !senses_.encoders_alive(now_))
     put(Event::What::broken, false,
         "no encoder reading for " + format_number(config_.silence) + " s");
+  if (needed && !senses_.closed()) put(Event::What::broken, false, "the trigger is gone");
+  if (needed && ports_.encoders->senders() > 1)
+    put(Event::What::broken, false, "two senders of encoder readings: are they of two robots?");
   if (senses_.moving()) motion_hours_ += seconds(now_ - last_turn_) / 3600;
   std::vector<CommandMessage> commands;
   messenger_.take(commands);
@@ -113,6 +120,10 @@ void Service::check_self() {
   std::string missing;
   if (!senses_.encoders_alive(now_) || !senses_.at_rest())
     missing = "no encoder readings come in";
+  else if (ports_.encoders->senders() > 1)
+    missing = "two senders of encoder readings: are they of two robots?";
+  else if (situation_.unfinished && !*senses_.at_rest())
+    missing = "the robot moves";
   else if (senses_.samples().last().joints != joints)
     missing = "the encoders give " + std::to_string(senses_.samples().last().joints) +
               " joints, the robot has " + std::to_string(joints);
@@ -126,7 +137,7 @@ void Service::check_self() {
   event.what = Event::What::self_tested;
   event.ok = missing.empty();
   event.why = missing;
-  event.resume = config_.resume && !situation_.tested;
+  event.resume = config_.resume && !situation_.tested && now_ - began_ < kResumeWithin;
   put(std::move(event));
 }
 
@@ -137,11 +148,25 @@ void Service::check_rest() {
   if (senses_.samples().last().time > edge) put(Event::What::at_rest);
 }
 
+/// A stop may be lost on the way, or come before the robot listens: it is said until it stands.
+void Service::check_stop() {
+  if (stopped_ == 0) return;
+  if (senses_.encoders_alive(now_) && senses_.at_rest() == true && now_ - stopped_ > kStopAgain) {
+    stopped_ = 0;
+    outstanding_ = false;
+    return;
+  }
+  if (now_ - stopped_ < kStopAgain || may_move(situation_.state)) return;
+  stop("until it stands");
+}
+
 void Service::check_schedule() {
   if (situation_.state != ServiceState::idle || !config_.schedule.any()) return;
   if (now_ - last_due_ < kSecond) return;
   last_due_ = now_;
   const std::int64_t unix_ms = ports_.clock->unix_ms();
+  // Before the first session, and after the clock was set back, the interval begins now.
+  if (since_.unix_ms == 0 || since_.unix_ms > unix_ms + 3'600'000) since_.unix_ms = unix_ms;
   Since since = since_;
   since.motion_hours = motion_hours_ - since_.motion_hours;
   since.calibrated = can_check();
@@ -167,7 +192,7 @@ void Service::handle_command(const CommandMessage& command) {
   // What came in before the command is handled first, so that it meets the situation as it is.
   handle_events();
   command_ = command;
-  tell("info", "command " + command.verb + " from " + command.from);
+  tell("info", "command " + command.verb + " from " + command.from.substr(0, kMostName));
   Event event;
   event.what = Event::What::asked;
   event.verb = *verb;
@@ -182,7 +207,9 @@ void Service::handle_events() {
     events_.pop_front();
     if (event.what == Event::What::moved) reached_ = asked_;
     Transition transition = step(situation_, event, config_.limits);
+    const bool held = situation_.held;
     situation_ = std::move(transition.next);
+    if (situation_.held != held) remember_held();
     for (const Action& action : transition.actions) act(action);
   }
 }
@@ -201,6 +228,10 @@ void Service::act(const Action& action) {
   switch (action.what) {
     case Do::stop:
       return stop(action.why);
+    case Do::give_up:
+      computation_.give_up();
+      when_computed_ = {};
+      return;
     case Do::test:
       testing_ = true;
       test_began_ = now_;

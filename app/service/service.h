@@ -24,8 +24,8 @@ class Service {
   Service(Config config, const Ports& ports, Messenger& messenger, Store& store, Models models,
           std::string damaged);
 
-  /// One turn: listen, step, act, tell, wait. Fails when the store can no longer be written.
-  Result<void> turn();
+  /// One turn: listen, step, act, tell, wait.
+  void turn();
   /// Stops motion and tells so; the session goes on after the next start.
   void shut_down();
 
@@ -36,6 +36,7 @@ class Service {
   void listen();
   void check_self();
   void check_rest();
+  void check_stop();
   void check_schedule();
   void handle_events();
   void handle_command(const CommandMessage& command);
@@ -48,6 +49,7 @@ class Service {
   Nanoseconds longest_wait() const;
 
   // service_session.cc: from the plan to the last touch
+  std::string config_hash() const;
   bool can_check() const;
   void begin_plan(const std::string& why);
   void keep_plan(SessionRecord record, const TouchPlan& plan);
@@ -86,6 +88,7 @@ class Service {
   StatusMessage status() const;
   std::vector<HealthMessage> health() const;
   void remember_use();
+  void remember_held();
   void recall_use();
 
   Config config_;
@@ -101,6 +104,9 @@ class Service {
   Nanoseconds now_ = 0;
 
   std::uint64_t motion_id_ = 0;
+  bool outstanding_ = false;  ///< a move of ours may be under way
+  Nanoseconds stopped_ = 0;   ///< when the robot was last told to stop; 0 once it stands
+  Nanoseconds began_ = 0;     ///< this life of the service
   std::vector<double> asked_,
       reached_;  ///< readings: target of the last move, of the last that ended
   Nanoseconds test_began_ = 0;
@@ -108,14 +114,14 @@ class Service {
 
   Session session_;
   Meaning meaning_;
-  std::int64_t collecting_since_ms_ = 0;
+  Nanoseconds collecting_since_ = 0;
   int touches_this_run_ = 0;
 
   Computation computation_;
   std::function<void(const std::string& failure)> when_computed_;
   std::shared_ptr<DataSet> data_, base_;
   std::shared_ptr<Solution> solution_, unchanged_;
-  CheckRuling last_check_;
+  std::optional<CheckRuling> last_check_;
 
   std::optional<CommandMessage> command_;
   Since since_;

@@ -102,9 +102,7 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
   progress.put_aside =
       static_cast<std::uint32_t>(steps_put_aside(session_, repeats, config_.limits.attempts));
   const double each =
-      touches_this_run_ > 0
-          ? static_cast<double>(progress.unix_ms - collecting_since_ms_) / 1000 / touches_this_run_
-          : std::nan("");
+      touches_this_run_ > 0 ? seconds(now_ - collecting_since_) / touches_this_run_ : std::nan("");
   progress.seconds_left = each * repeats * (progress.planned - progress.done);
   progress.residual = std::nan("");
   progress.note = note;
@@ -160,7 +158,7 @@ std::vector<HealthMessage> Service::health() const {
                          : damaged_,
       {{"size_mb", text(bytes ? static_cast<double>(*bytes) / 1e6 : 0)},
        {"limit_mb", text(static_cast<double>(config_.store_bytes) / 1e6)}});
-  const bool unexplained = last_check_.p_value > 0 && !last_check_.explained;
+  const bool unexplained = last_check_ && !last_check_->explained;
   const bool wrong = !models_.refused().empty();
   std::string message = models_.name() + " is active";
   if (wrong) message = models_.refused();
@@ -175,8 +173,8 @@ std::vector<HealthMessage> Service::health() const {
         text(models_.since_ms() == 0
                  ? 0
                  : static_cast<double>(ports_.clock->unix_ms() - models_.since_ms()) / 3.6e6)},
-       {"check_p", text(last_check_.p_value)},
-       {"check_rms_mm", text(1e3 * last_check_.rms)},
+       {"check_p", last_check_ ? text(last_check_->p_value) : "none yet"},
+       {"check_rms_mm", last_check_ ? text(1e3 * last_check_->rms) : "none yet"},
        {"motion_h", text(motion_hours_)},
        {"temperature_c", text(senses_.celsius().value_or(std::nan("")))}});
   return lines;
@@ -191,7 +189,10 @@ void Service::remember_use() {
   stored(store_.remember("use", line));
 }
 
+void Service::remember_held() { stored(store_.remember("held", situation_.held ? "yes" : "")); }
+
 void Service::recall_use() {
+  if (const auto held = store_.remembered("held")) situation_.held = *held == "yes";
   const auto line = store_.remembered("use");
   long long unix_ms = 0;
   double temperature = std::nan("");

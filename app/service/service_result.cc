@@ -96,13 +96,14 @@ void Service::judge() {
     }
     if (check) {
       last_check_ = rule_on_check(*solution_, *unchanged_, config_.schedule.check_p);
+      const CheckRuling& ruling = *last_check_;
       result.touches -= static_cast<int>(std::ranges::count(data_->rows.check, 0));
-      result.answer = last_check_.explained ? "explained" : "not-explained";
+      result.answer = ruling.explained ? "explained" : "not-explained";
       result.decision = "none";
-      result.why = last_check_.why;
-      result.p_value = last_check_.p_value;
-      result.check_before = last_check_.expected;
-      result.check_after = last_check_.rms;
+      result.why = ruling.why;
+      result.p_value = ruling.p_value;
+      result.check_before = ruling.expected;
+      result.check_after = ruling.rms;
       return keep_result(std::move(result), false);
     }
     const Ruling ruling =
@@ -162,6 +163,7 @@ bool Service::reload_models() {
 
 void Service::apply(const std::string& why) {
   if (!stored(store_.accept(ports_.clock->unix_ms())) || !reload_models()) return;
+  last_check_.reset();
   tell("info", models_.name() + " is active: " + why);
   put(Event::What::applied);
 }
@@ -169,6 +171,10 @@ void Service::apply(const std::string& why) {
 void Service::finish_interrupted_apply() {
   const auto last = store_.results(1);
   if (!last || last->empty() || last->front().decision != "applying") return;
+  const auto slot = store_.slot(Slot::candidate);
+  if (!slot || !*slot || (*slot)->session != last->front().session ||
+      (*slot)->model_hash != models_.hash())
+    return;
   if (stored(store_.accept(ports_.clock->unix_ms())) && reload_models())
     tell("info", models_.name() + " is active: the power had failed while it was applied");
 }
@@ -201,7 +207,8 @@ void Service::publish(const ResultRecord& result) {
   message.robot = config_.id;
   message.model_hash = models_.hash();
   message.session = result.session;
-  message.kind = result.json.empty() ? "check" : "full";
+  const auto session = store_.session(result.session);
+  message.kind = session ? session->kind : "";
   message.answer = result.answer;
   message.decision = result.decision;
   message.why = result.why;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "app/service/service.h"
-#include "io/yaml.h"
+#include "io/file.h"
 
 namespace selfcal {
 namespace {
@@ -24,10 +24,15 @@ double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
 
 }  // namespace
 
+/// Of all that the rows of a session mean: sets, encoders, trigger delay, robot.
+std::string Service::config_hash() const {
+  return sha256_hex(meaning_text(config_, ports_.encoders->scales()) + config_.robot->identity());
+}
+
 bool Service::can_check() const {
   if (models_.session() == 0) return false;
   const auto base = store_.session(models_.session());
-  return base && base->config_hash == config_.hash && base->model_hash == models_.hash();
+  return base && base->config_hash == config_hash() && base->model_hash == models_.hash();
 }
 
 void Service::begin_plan(const std::string& why) {
@@ -36,8 +41,8 @@ void Service::begin_plan(const std::string& why) {
   record.kind = std::string(to_string(situation_.kind));
   record.reason = why;
   record.model_hash = models_.hash();
-  record.config_hash = config_.hash;
   record.config = meaning_text(config_, ports_.encoders->scales());
+  record.config_hash = config_hash();
   record.started_ms = ports_.clock->unix_ms();
   const auto sessions = store_.sessions(1);
   record.seed = sessions && !sessions->empty() ? sessions->front().id + 1 : 1;
@@ -83,7 +88,7 @@ bool Service::open(Session session) {
   meaning_ = std::move(*meaning);
   session_ = std::move(session);
   base_.reset();
-  collecting_since_ms_ = ports_.clock->unix_ms();
+  collecting_since_ = now_;
   touches_this_run_ = 0;
   return true;
 }
@@ -97,7 +102,7 @@ void Service::resume() {
     put(Event::What::planned, false, why);
   };
   if (!*record) return give_up("there is no unfinished session");
-  if ((*record)->model_hash != models_.hash() || (*record)->config_hash != config_.hash)
+  if ((*record)->model_hash != models_.hash() || (*record)->config_hash != config_hash())
     return give_up("session " + std::to_string((*record)->id) +
                    " was begun with another robot or configuration and is ended");
   auto plan = store_.plan((*record)->id);
@@ -117,15 +122,24 @@ void Service::announce_plan() {
   event.steps = static_cast<int>(session_.plan.size());
   event.step = next_step(session_, repeats, config_.limits.attempts);
   event.via_home = true;
+  if (!senses_.encoders_alive(now_) || senses_.at_rest() != true)
+    return put(Event::What::planned, false, "the robot does not stand still, or is silent");
   const auto here = senses_.q();
   if (here) reached_.assign(here->begin(), here->end());
   if (here && event.step < event.steps) {
     const StepRecord& step = session_.plan[event.step];
     // It was in the middle of this very touch: the way back is the way out.
     const bool in_it = off_path(*here, step) < kNearPath;
-    if (in_it) event.via_home = false;
-    if (!in_it && !path_is_free(*models_.active(), values(*models_.active()), *here,
-                                config_.plan.home, config_.obstacles, 0)) {
+    const StepRecord* last =
+        session_.touches.empty() ? nullptr : &session_.plan[session_.touches.back().step];
+    if (in_it) {
+      event.via_home = false;
+    } else if (last && off_path(*here, *last) < kNearPath) {
+      // The last touch was stored, and the robot is not out of it yet.
+      event.back_off = true;
+      reached_ = last->start;
+    } else if (!path_is_free(*models_.active(), values(*models_.active()), *here, config_.plan.home,
+                             config_.obstacles, 0)) {
       event.ok = false;
       event.why = "no free way home from where the robot stands: move it there by hand";
     }
@@ -164,6 +178,8 @@ void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
   request.q = q;
   request.speed = speed;
   asked_ = q;
+  outstanding_ = true;
+  stopped_ = 0;
   senses_.expect(request.id);
   if (const auto sent = ports_.motion->request(request); !sent)
     put(Event::What::broken, false, sent.error().what);
@@ -171,6 +187,8 @@ void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
 
 void Service::stop(const std::string& why) {
   senses_.expect(0);
+  if (!outstanding_) return;  // what moves is not ours to stop
+  stopped_ = now_;
   if (const auto sent = ports_.motion->stop(why); !sent) tell("error", sent.error().what);
 }
 
@@ -206,11 +224,12 @@ void Service::keep(TouchRecord touch) {
   for (const TouchRecord& other : session_.touches) touch.attempt += other.step == touch.step;
   touch.unix_ms = ports_.clock->unix_ms();
   touch.temperature = senses_.celsius().value_or(std::nan(""));
+  const std::string called = label();
   // Before the robot moves on.
   if (!stored(store_.add(session_.record.id, touch))) return;
   session_.touches.push_back(touch);
   ++touches_this_run_;
-  if (touch.outcome != TouchOutcome::taken) tell("warning", label() + ": " + touch.why);
+  if (touch.outcome != TouchOutcome::taken) tell("warning", called + ": " + touch.why);
   const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
                                                             : config_.touch.repeats;
   Event event;

@@ -91,12 +91,13 @@ class Step {
   void fault(const std::string& why) {
     if (s_.state == ServiceState::fault) return;
     act(Do::stop, why);
+    act(Do::give_up);
     act(Do::tell, "fault: " + why);
     if (s_.state == ServiceState::collecting || s_.state == ServiceState::analysing ||
         s_.state == ServiceState::identifying || s_.state == ServiceState::judging)
       s_.unfinished = true;
-    s_.held = s_.tested;   // before the first self-test has passed nothing has moved
-    s_.follow_up = false;  // what was to come by itself does not come after a fault
+    s_.held = s_.held || s_.tested;  // before the first self-test has passed nothing has moved
+    s_.follow_up = false;            // what was to come by itself does not come after a fault
     enter(ServiceState::fault, why);
   }
 
@@ -113,8 +114,8 @@ class Step {
     if (event_.resume && s_.unfinished && !s_.held) return resume("resumed after a restart");
     s_.tested = true;
     go_idle(s_.unfinished ? "an unfinished session can be resumed: start, or abort"
-            : s_.held     ? "ready after a fault; nothing begins by itself before a start"
-                          : "ready");
+            : s_.held ? "ready; after a fault or an abort nothing begins by itself before a start"
+                      : "ready");
   }
 
   void go_idle(std::string why) {
@@ -168,13 +169,15 @@ class Step {
   void asked_to_start(SessionKind kind) {
     if (s_.state == ServiceState::fault) {
       s_.held = false;
-      grant();
+      act(Do::grant, "testing first; what is unfinished goes on with another start");
       return test();
     }
     if (s_.state == ServiceState::awaiting_acceptance)
       return refuse("a result waits for acceptance: accept or reject it first");
     if (s_.state != ServiceState::idle)
       return refuse("the service is " + std::string(to_string(s_.state)));
+    if (kind == SessionKind::check && s_.unfinished)
+      return refuse("an unfinished session waits: start or abort it first");
     s_.held = false;
     grant();
     if (s_.unfinished) return resume("resumed by command");
@@ -193,6 +196,7 @@ class Step {
     act(Do::stop, "aborted by command");
     act(Do::abort, "aborted by command");
     s_.unfinished = false;
+    s_.held = true;
     if (running || s_.state == ServiceState::idle)
       go_idle("aborted by command; what was collected is kept");
   }
@@ -212,8 +216,8 @@ class Step {
   }
 
   void asked_to_roll_back() {
-    if (s_.state != ServiceState::idle && s_.state != ServiceState::awaiting_acceptance &&
-        s_.state != ServiceState::fault)
+    if (s_.candidate) return refuse("a result waits for acceptance: accept or reject it first");
+    if (s_.state != ServiceState::idle && s_.state != ServiceState::fault)
       return refuse("the service is " + std::string(to_string(s_.state)));
     act(Do::roll_back);  // answers the command: the store knows whether there is something
   }
@@ -230,7 +234,18 @@ class Step {
     s_.lost_in_a_row = 0;
     s_.unfinished = false;
     if (s_.step >= s_.steps) return analyse();
+    if (s_.closed && event_.via_home && !event_.back_off)
+      return fault("the trigger is closed away from any touch: move the robot out by hand");
     enter(ServiceState::collecting, s_.why);
+    s_.felt = false;
+    if (event_.back_off) {
+      s_.next_step = s_.step;
+      s_.attempt = s_.failures = 0;
+      s_.stray = true;
+      s_.out = false;
+      enter(Phase::retract);
+      return act(Do::back_off);
+    }
     approach(event_.via_home);
   }
 
@@ -253,6 +268,7 @@ class Step {
     s_.closed = true;
     if (s_.state != ServiceState::collecting) return;
     if (s_.phase == Phase::touch) {
+      s_.felt = true;
       act(Do::stop, "touched");
       enter(Phase::settle);
     } else if (s_.phase == Phase::approach) {
@@ -264,13 +280,13 @@ class Step {
 
   void moved() {
     if (s_.state != ServiceState::collecting) return;
+    if (s_.phase == Phase::approach && s_.closed)
+      return fault("the trigger is closed before " + touch_name() + ": it is stuck");
     if (s_.phase == Phase::approach && s_.via_home) {
       s_.via_home = false;
       enter(Phase::approach);
       return act(Do::go_to_start);
     }
-    if (s_.phase == Phase::approach && s_.closed)
-      return fault("the trigger is closed before " + touch_name() + ": it is stuck");
     if (s_.phase == Phase::approach) return touch();
     if (s_.phase == Phase::touch) return act(Do::put_aside, "no touch up to the end of the search");
     if (s_.phase != Phase::retract) return;
@@ -317,6 +333,8 @@ class Step {
     s_.out = false;
     if (event_.ok)
       s_.lost_in_a_row = 0;
+    else if (s_.next_step != s_.step && !s_.felt)
+      return fault("no touch has been felt: is the probe connected? The first: " + event_.why);
     else if (s_.next_step != s_.step && ++s_.lost_in_a_row >= limits_.most_failures)
       return fault(std::to_string(s_.lost_in_a_row) +
                    " touches in a row gave nothing; the last: " + event_.why);

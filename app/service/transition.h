@@ -51,7 +51,8 @@ struct Situation {
   bool unfinished = false;     ///< a session can be resumed by `start`
   int published = 0;           ///< results since the start
   bool tested = false;         ///< the self-test has been passed since the start
-  bool held = false;           ///< after a fault: nothing moves until a person says start
+  bool held = false;  ///< after a fault or an abort: nothing moves until a person says start
+  bool felt = false;  ///< a touch has been felt in this run of the session
 };
 
 struct Event {
@@ -77,6 +78,7 @@ struct Event {
   What what = What::tick;
   Nanoseconds now = 0;
   bool ok = true, resume = false;
+  bool back_off = false;  ///< of `planned`: out of the contact in which the robot stands, first
   std::string why;
   Verb verb = Verb::start;
   SessionKind kind = SessionKind::full;
@@ -88,10 +90,11 @@ struct Event {
 
 struct Action {
   enum class Do : std::uint8_t {
-    stop,    ///< motion, now; `why`
-    test,    ///< begin the self-test
-    plan,    ///< a session of the situation's kind
-    resume,  ///< the unfinished session
+    stop,     ///< motion, now; `why`
+    give_up,  ///< whatever is being computed
+    test,     ///< begin the self-test
+    plan,     ///< a session of the situation's kind
+    resume,   ///< the unfinished session
     go_home,
     go_to_start,
     go_touch,

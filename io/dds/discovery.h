@@ -8,7 +8,7 @@
 
 #include "io/dds/entity.h"
 #include "io/dds/participant.h"
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 
 namespace selfcal {
 

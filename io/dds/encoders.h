@@ -35,7 +35,7 @@ class DdsEncoders : public EncoderSource {
   /// Messages that were no sample.
   std::uint64_t incomplete() const { return incomplete_; }
   /// Publishers heard at the moment.
-  int publishers() const { return reader_.matched(); }
+  int senders() const override { return reader_.matched(); }
 
  private:
   DdsEncoders(std::vector<std::string> joints, std::shared_ptr<TimeMapping> mapping,

@@ -14,11 +14,11 @@
 
 #include <selfcal_messages/types.h>
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/entity.h"
 #include "io/dds/participant.h"
 #include "io/dds/qos.h"
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 #include "io/result.h"
 
 namespace selfcal {

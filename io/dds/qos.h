@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 
 namespace selfcal {
 

@@ -19,7 +19,7 @@ class DdsEncodersTest : public DdsTest {
   // A robot that names its joints so, heard by the encoders.
   void connect(const std::vector<std::string>& names) {
     robot = must(DdsRobotSide::open(participant, {.robot = "r", .joints = names}, wakeup));
-    ASSERT_TRUE(eventually([&] { return encoders->publishers() == 1; }));
+    ASSERT_TRUE(eventually([&] { return encoders->senders() == 1; }));
   }
   std::vector<EncoderSample> take() {
     std::vector<EncoderSample> samples;
@@ -53,7 +53,7 @@ TEST_F(DdsEncodersTest, FollowAnOrderThatChanges) {
   connect({"a", "b", "c"});
   auto other =
       must(DdsRobotSide::open(participant, {.robot = "q", .joints = {"c", "b", "a"}}, wakeup));
-  ASSERT_TRUE(eventually([&] { return encoders->publishers() == 2; }));
+  ASSERT_TRUE(eventually([&] { return encoders->senders() == 2; }));
 
   must(robot->publish_joints(1000, {1, 2, 3}));
   must(other->publish_joints(2000, {3, 2, 1}));
@@ -157,7 +157,7 @@ TEST_F(DdsEncodersTest, CountNothingWhenAPublisherComesAndGoes) {
     must(robot->publish_joints(1000, {1, 2, 3}));
     EXPECT_EQ(take().size(), 1);
     robot.reset();
-    EXPECT_TRUE(eventually([&] { return encoders->publishers() == 0; }));
+    EXPECT_TRUE(eventually([&] { return encoders->senders() == 0; }));
     EXPECT_TRUE(take().empty());
   }
 
@@ -168,7 +168,7 @@ TEST_F(DdsEncodersTest, AreHeardFromBestEffortPublishersToo) {
   auto writer = must(DdsWriter<dds::JointState>::open(participant, ros_topic("joint_states"),
                                                       {.reliable = false, .depth = 5}));
 
-  EXPECT_TRUE(eventually([&] { return encoders->publishers() == 1 && writer.matched() == 1; }));
+  EXPECT_TRUE(eventually([&] { return encoders->senders() == 1 && writer.matched() == 1; }));
 }
 
 TEST_F(DdsEncodersTest, RefuseNoJointsAndTooMany) {

@@ -20,7 +20,7 @@ class DdsMachine : public DdsTest {
     robot = must(DdsRobotSide::open(participant, {.robot = "r", .joints = {"a"}}, wakeup));
     ASSERT_TRUE(eventually([&] {
       return robot->connected() && robot->heard() && motion->connected() &&
-             encoders->publishers() == 1 && trigger->publishers() == 1;
+             encoders->senders() == 1 && trigger->publishers() == 1;
     }));
   }
   std::vector<Edge> edges() {

@@ -78,7 +78,7 @@ TEST_F(DdsProcesses, LoseARobotThatIsKilledAndFindItAgain) {
     robot.kill();
     EXPECT_TRUE(eventually([&] {
       must(encoders->take(samples));
-      return encoders->publishers() == 0 && !motion->connected() && !trigger->closed();
+      return encoders->senders() == 0 && !motion->connected() && !trigger->closed();
     }));
     EXPECT_FALSE(motion->request({.id = 100, .label = "", .q = {}}));
   }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <thread>
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "io/dds/convert.h"
 #include "io/dds/time_mapping.h"
 

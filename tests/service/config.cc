@@ -196,7 +196,7 @@ TEST(Config, HasTheDefaultsOfItsTable) {
   EXPECT_EQ(config->id, rx90().name());
   EXPECT_EQ(config->serial, config->id);
   EXPECT_EQ(config->joint_topic, "joint_states");
-  EXPECT_EQ(config->trigger_topic, "selfcal/" + config->id + "/trigger");
+  EXPECT_EQ(config->trigger_topic, "selfcal/staubli_rx90/trigger");
   EXPECT_EQ(config->joint_names.size(), 6u);
 }
 

@@ -91,12 +91,17 @@ TEST(Config, LoadsTheExampleThatIsShipped) {
     EXPECT_NEAR(config->obstacles[i].outward.norm(), 1, 1e-15);  // rounding
 }
 
-TEST(Config, ChangesItsHashWithTheMeaningOfTheRowsOnly) {
-  const std::string hash = load_cell()->hash;
-  EXPECT_EQ(load_cell({{"schedule.every_hours", "24"}, {"motion.speed", "2"}})->hash, hash);
-  EXPECT_EQ(load_cell({{"sets.touches", "99"}})->hash, hash);
-  EXPECT_NE(load_cell({{"sets.noise", "3.0e-5"}})->hash, hash);
-  EXPECT_NE(load_cell({{"target", "2.0e-3"}})->hash, hash);
+TEST(Config, ChangesTheMeaningOfASessionWithWhatItsRowsMeanOnly) {
+  const std::vector<EncoderScale> scales(6);
+  const auto meaning = [&](const CellKeys& keys) { return meaning_text(*load_cell(keys), scales); };
+  using Keys = CellKeys;
+  const std::string usual = meaning(Keys{});
+  EXPECT_EQ(meaning(Keys{{"schedule.every_hours", "24"}, {"motion.speed", "2"}}), usual);
+  EXPECT_EQ(meaning(Keys{{"sets.touches", "99"}}), usual);
+  EXPECT_NE(meaning(Keys{{"sets.noise", "3.0e-5"}}), usual);
+  EXPECT_NE(meaning(Keys{{"target", "2.0e-3"}}), usual);
+  EXPECT_NE(meaning(Keys{{"trigger.delay", "0.003"}}), usual);
+  EXPECT_NE(meaning_text(*load_cell(), std::vector<EncoderScale>(6, {1e-6, 5})), usual);
 }
 
 }  // namespace

@@ -107,9 +107,10 @@ TEST(SampleHistory, TellsWhetherTheJointsStandOnceItHasThreeSamples) {
     return history.at_rest(scales, kSpeed, span);
   };
   EXPECT_EQ(moved(0), true);
-  EXPECT_EQ(moved(19), true);
-  EXPECT_EQ(moved(21), false);
-  EXPECT_EQ(moved(-21), false);
+  // And a dither of 10 counts (10 urad).
+  EXPECT_EQ(moved(29), true);
+  EXPECT_EQ(moved(31), false);
+  EXPECT_EQ(moved(-31), false);
 
   SampleHistory history;
   history.add(sample_of(0, {0, 0}));

@@ -10,6 +10,8 @@ namespace selfcal {
 inline std::string name_of(Action::Do what) {
   using Do = Action::Do;
   switch (what) {
+    case Do::give_up:
+      return "give_up";
     case Do::stop:
       return "stop";
     case Do::test:
@@ -125,7 +127,7 @@ struct Script {
     return on(Event::What::opened).on(Event::What::moved);
   }
 
-  /// What is to be done, in order: "stop, tell".
+  /// What is to be done, in order: "stop, give_up, tell".
   std::string done() const {
     std::string names;
     for (const Action& action : actions)

@@ -30,8 +30,7 @@ bool accepted(Verb verb, ServiceState state) {
     case Verb::reject:
       return state == ServiceState::awaiting_acceptance;
     case Verb::rollback:
-      return state == ServiceState::idle || state == ServiceState::awaiting_acceptance ||
-             state == ServiceState::fault;
+      return state == ServiceState::idle || state == ServiceState::fault;
   }
   return false;
 }

@@ -15,7 +15,7 @@ using Do = Action::Do;
 void expect_fault(const Script& script, const std::string& why) {
   EXPECT_EQ(script.s.state, ServiceState::fault);
   EXPECT_EQ(script.s.phase, Phase::none);
-  EXPECT_THAT(script.done(), StartsWith("stop, tell"));
+  EXPECT_THAT(script.done(), StartsWith("stop, give_up, tell"));
   EXPECT_THAT(script.why(Do::stop), HasSubstr(why));
   EXPECT_THAT(script.s.why, HasSubstr(why));
 }
@@ -63,8 +63,12 @@ TEST(Transition, NamesATriggerThatStaysClosedAfterTheRetract) {
 
 TEST(Transition, RefusesToTouchWithAClosedTrigger) {
   Script script = script_at(ServiceState::planning);
-  script.on(What::closed).planned(5).on(What::moved);
-  expect_fault(script.on(What::moved), "the trigger is closed before touch 1 of 5: it is stuck");
+  expect_fault(script.on(What::closed).planned(5), "the trigger is closed away from any touch");
+
+  Script in_it = script_at(ServiceState::planning);
+  in_it.on(What::closed).planned(5, SessionKind::full, 0, false);
+  EXPECT_EQ(in_it.done(), "go_to_start") << "the way out of the touch that it was in";
+  expect_fault(in_it.on(What::moved), "the trigger is closed before touch 1 of 5: it is stuck");
 }
 
 TEST(Transition, BacksOffFromAContactOnTheWayAndTriesAgainThroughHome) {
@@ -125,8 +129,31 @@ TEST(Transition, HasATimeLimitForEachPartOfASession) {
   late(in(Phase::retract).on(What::opened), limits.retract, "the way out of touch 1 of 5");
 }
 
+TEST(Transition, StopsWhereTheFirstTouchesFeelNothingAtAll) {
+  Script script = script_at(ServiceState::collecting, Phase::touch);
+  script.on(What::moved);
+  expect_fault(script.read(false, 1, "no touch"), "no touch has been felt");
+}
+
+TEST(Transition, BacksOutOfTheContactInWhichASessionIsResumedAndGoesHome) {
+  Script script = script_at(ServiceState::planning);
+  Event event;
+  event.what = What::planned;
+  event.steps = 5;
+  event.step = 2;
+  event.via_home = event.back_off = true;
+  const Transition first = step(script.on(What::closed).s, event, script.limits);
+  EXPECT_EQ(first.next.phase, Phase::retract);
+  EXPECT_EQ(first.actions.front().what, Action::Do::back_off);
+  script.s = first.next;
+  EXPECT_EQ(script.on(What::moved).done(), "");
+  EXPECT_EQ(script.on(What::opened).done(), "go_home");
+  EXPECT_EQ(script.s.step, 2);
+}
+
 TEST(Transition, PutsATouchAsideThatMeetsNothingAndGoesOn) {
   Script script = script_at(ServiceState::collecting, Phase::touch);
+  script.s.felt = true;  // an earlier one was
   EXPECT_EQ(script.on(What::moved).done(), "put_aside");
   EXPECT_THAT(script.why(Do::put_aside), HasSubstr("no touch"));
   EXPECT_EQ(script.read(false, 0, "no touch").done(), "go_back");  // an attempt is left
@@ -141,6 +168,7 @@ TEST(Transition, PutsATouchAsideThatMeetsNothingAndGoesOn) {
 TEST(Transition, StopsAfterTooManyTouchesPutAsideInARow) {
   Script script = script_at(ServiceState::planning);
   script.planned(20, SessionKind::full, 0, false);
+  script.s.felt = true;
   for (int i = 0; i < script.limits.most_failures; ++i) {
     ASSERT_EQ(script.s.state, ServiceState::collecting) << i;
     script.on(What::moved).on(What::moved).read(false, i + 1, "no touch").on(What::moved);
@@ -153,6 +181,7 @@ TEST(Transition, StopsAfterTooManyTouchesPutAsideInARow) {
 TEST(Transition, ForgivesLostTouchesAfterAGoodOne) {
   Script script = script_at(ServiceState::planning);
   script.planned(20, SessionKind::full, 0, false);
+  script.s.felt = true;
   for (int i = 0; i < script.limits.most_failures - 1; ++i)
     script.on(What::moved).on(What::moved).read(false, i + 1).on(What::moved);
   script.touch_well(script.s.step + 1);
@@ -163,7 +192,7 @@ TEST(Transition, ForgivesLostTouchesAfterAGoodOne) {
 TEST(Transition, EndsASessionThatCannotBeComputed) {
   Script script = script_at(ServiceState::analysing);
   expect_fault(script.on(What::computed, false, "set table has only 2 good touches"), "table");
-  EXPECT_EQ(script.done(), "stop, tell, abort");
+  EXPECT_EQ(script.done(), "stop, give_up, tell, abort");
   EXPECT_FALSE(script.s.unfinished) << "the same rows would fail again";
 }
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "constraints/endpoint_sigma.h"
-#include "io/dds/clock.h"
+#include "io/clock.h"
 
 namespace selfcal {
 namespace {

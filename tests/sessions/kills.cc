@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 #include "tests/sessions/cell.h"
 
 namespace selfcal {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 
 namespace selfcal {
 

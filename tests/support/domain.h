@@ -7,7 +7,7 @@
 #include <string>
 
 #include "io/dds/participant.h"
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 
 namespace selfcal {
 

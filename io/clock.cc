@@ -1,6 +1,6 @@
 // The machine's own clocks.
 
-#include "io/dds/clock.h"
+#include "io/clock.h"
 
 #include <time.h>
 

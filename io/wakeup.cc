@@ -1,6 +1,6 @@
 // What a waiting loop is woken by.
 
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 
 #include <algorithm>
 #include <chrono>

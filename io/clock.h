@@ -1,7 +1,7 @@
 // The machine's own clocks: CLOCK_MONOTONIC for stamps, CLOCK_REALTIME for people.
 #pragma once
 
-#include "io/dds/wakeup.h"
+#include "io/wakeup.h"
 #include "io/ports.h"
 
 namespace selfcal {
