@@ -1,5 +1,6 @@
 // selfcal serve CONFIG.yaml: the service, over DDS, with a real robot or a pretend one.
 #include <fcntl.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
@@ -85,10 +86,32 @@ struct DdsPorts {
   }
 };
 
+/// The level as the journal takes it from the beginning of a line: <3> error to <7> debug.
+class JournalLevel final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    const int level = message.level >= spdlog::level::err    ? 3
+                      : message.level == spdlog::level::warn ? 4
+                      : message.level == spdlog::level::info ? 6
+                                                             : 7;
+    const std::string text = "<" + std::to_string(level) + ">";
+    out.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JournalLevel>();
+  }
+};
+
 void set_up_log(const std::string& level) {
   auto log = spdlog::stderr_logger_st("selfcal");
-  // The journal adds the time by itself and reads the level from <N>.
-  log->set_pattern(std::getenv("JOURNAL_STREAM") ? "%v" : "%Y-%m-%d %H:%M:%S %l: %v");
+  if (std::getenv("JOURNAL_STREAM")) {  // which adds the time by itself
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<JournalLevel>('*').set_pattern("%*%v");
+    log->set_formatter(std::move(formatter));
+  } else {
+    log->set_pattern("%Y-%m-%d %H:%M:%S %l: %v");
+  }
   log->set_level(spdlog::level::from_str(level));
   spdlog::set_default_logger(std::move(log));
 }

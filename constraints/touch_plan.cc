@@ -221,9 +221,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   const Candidates candidates(robot, xi, sets, obstacles, options);
   Random random(options.seed);
   std::vector<std::vector<PlannedTouch>> usable;
-  int obstacle = 0;
   for (const TouchTarget& target : targets) {
-    usable.push_back(candidates.of(target, target.places.empty() ? obstacle++ : -1, random));
+    usable.push_back(candidates.of(target, target.obstacle, random));
     const auto found = static_cast<int>(usable.back().size());
     if (found < target.touches && plan.unreached.empty())
       plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(found) + " of " +

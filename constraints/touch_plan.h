@@ -27,6 +27,7 @@ struct TouchTarget {
   std::optional<Eigen::VectorXd> own;  ///< nominal own values (a plane's normal and distance)
   std::vector<Location> places;        ///< nominal sockets or nests, one a group; empty for planes
   Patch within;
+  int obstacle = -1;  ///< what lies behind its surface, of the obstacles; -1 for sockets
 };
 
 struct TouchPlanOptions {

@@ -45,7 +45,6 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   within("trigger_delay", machine.trigger_delay, 0, 0.1);
   machine.bounce = fields.integer("bounce", machine.bounce, 0, 20);
   within("missed", machine.missed, 0, 0.5);
-  within("stray", machine.stray, 0, 0.5);
   within("temperature", machine.temperature, -40, 80);
   within("warming", machine.warming, -20, 20);
   if (const Node* faults = fields.node("faults"))

@@ -7,7 +7,6 @@
 //   trigger_delay   0         0 to 0.1 s     from the contact to the edge
 //   bounce          0         0 to 20        times that the trigger opens again at once
 //   missed          0         0 to 0.5       share of the touches that trigger nothing
-//   stray           0         0 to 0.5       share of the free moves on which the trigger fires
 //   temperature     20        -40 to 80      °C at the start
 //   warming         0         -20 to 20      °C per hour
 //   faults          []                       [{what: WHAT, at: S, for: S}]: what breaks, when
@@ -36,7 +35,7 @@ struct MachineScenario {
   double speed = 2, acceleration = 20;
   double trigger_delay = 0;
   int bounce = 0;
-  double missed = 0, stray = 0;
+  double missed = 0;
   double temperature = 20, warming = 0;
   std::vector<MachineFault> faults;
 };

@@ -1,6 +1,7 @@
 #include "app/service/computation.h"
 
 #include <exception>
+#include <stdexcept>
 
 namespace selfcal {
 
@@ -10,12 +11,14 @@ Computation::~Computation() {
 
 void Computation::start(Job job) {
   if (thread_.joinable()) thread_.join();
+  given_up_ = false;
   progress_ = {};
   failure_.clear();
   running_ = true;
   wanted_ = true;
   thread_ = std::thread([this, job = std::move(job)] {
     const Tell tell = [this](std::string_view stage, double share) {
+      if (given_up_) throw std::runtime_error("given up");
       const std::lock_guard lock(mutex_);
       progress_.stage = stage;
       progress_.share = share;

@@ -20,8 +20,11 @@ class Computation {
   ~Computation();
   /// Waits for a job that was given up before it starts the next.
   void start(Job job);
-  /// Its outcome is no longer asked for.
-  void give_up() { wanted_ = false; }
+  /// Its outcome is no longer asked for; it ends at the next word it tells.
+  void give_up() {
+    wanted_ = false;
+    given_up_ = true;
+  }
   bool running() const { return running_; }
   /// True once, when the job that was asked for has ended; `failure` is what it returned.
   bool take(std::string& failure);
@@ -35,7 +38,7 @@ class Computation {
 
  private:
   std::thread thread_;
-  std::atomic<bool> running_ = false;
+  std::atomic<bool> running_ = false, given_up_ = false;
   bool wanted_ = false;
   mutable std::mutex mutex_;
   Progress progress_;

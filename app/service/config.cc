@@ -233,6 +233,7 @@ class Reader {
     target.within = read_patch(*within, f.what() + " within", problems_);
     target.outward = s.normal;
     target.own = (Eigen::VectorXd(4) << s.normal, s.normal.dot(s.point)).finished();
+    target.obstacle = static_cast<int>(c_.obstacles.size());
     c_.obstacles.push_back({s.point, s.normal, target.within});
   }
 

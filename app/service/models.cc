@@ -38,7 +38,10 @@ Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) 
     models.refused_ = robot.error().what + ": the factory's are used";
     return models;
   }
-  models.active_ = std::move(*robot);
+  // The maker's file as it is today (limits, tolerances), with the values of the slot.
+  Problems problems;
+  models.active_ = make_robot(models.factory_->describe(values(**robot)), problems);
+  if (problems.any()) return bad_input(problems);
   models.session_ = record.session;
   models.since_ms_ = record.since_ms;
   return models;

@@ -52,6 +52,7 @@ struct Cell {
     target.own = (Eigen::VectorXd(4) << target.outward, target.outward.dot(point)).finished();
     target.within = {point, radius};
     sets.push_back(set_of("plane" + std::to_string(sets.size()), "plane"));
+    target.obstacle = static_cast<int>(obstacles.size());
     targets.push_back(target);
     obstacles.push_back({point, target.outward, target.within});
     return *this;

@@ -41,6 +41,7 @@ inline const std::vector<PlannedTouch>& planned_touches() {
     target.outward = Eigen::Vector3d::UnitZ();
     target.own = (Eigen::VectorXd(4) << 0, 0, 1, 0.15).finished();
     target.within = {{0.75, 0, 0.15}, 0.25};
+    target.obstacle = 0;
     TouchPlanOptions options;
     options.clearance = 0.05;
     options.search = 0.03;
