@@ -1,8 +1,8 @@
 // The machine's own clocks: CLOCK_MONOTONIC for stamps, CLOCK_REALTIME for people.
 #pragma once
 
-#include "io/wakeup.h"
 #include "io/ports.h"
+#include "io/wakeup.h"
 
 namespace selfcal {
 

@@ -18,8 +18,8 @@
 #include "io/dds/entity.h"
 #include "io/dds/participant.h"
 #include "io/dds/qos.h"
-#include "io/wakeup.h"
 #include "io/result.h"
+#include "io/wakeup.h"
 
 namespace selfcal {
 
