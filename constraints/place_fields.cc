@@ -46,7 +46,7 @@ Eigen::Vector3d read_unit(Fields& fields, std::string_view key) {
 
 Surface read_surface(const Node& node, const std::string& what, Problems& problems) {
   Fields fields(node, what, problems);
-  const Surface surface{read_point(fields, "point"), read_unit(fields, "normal")};
+  Surface surface{read_point(fields, "point"), read_unit(fields, "normal")};
   fields.refuse_unknown();
   return surface;
 }

@@ -70,7 +70,7 @@ class Service {
   void analyse();
   void identify();
   void judge();
-  void keep_result(ResultRecord result, bool candidate);
+  void keep_result(const ResultRecord& result, bool candidate);
   void apply(const std::string& why);
   void reject();
   void roll_back();
@@ -129,6 +129,8 @@ class Service {
   Nanoseconds last_turn_ = 0, last_report_ = 0, last_health_ = 0, last_remembered_ = 0,
               last_due_ = 0;
   Situation told_;  ///< as last published
+  std::string last_told_;
+  Nanoseconds last_told_at_ = 0;
   std::string told_active_, last_levels_, last_stage_;
 };
 

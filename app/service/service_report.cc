@@ -11,8 +11,9 @@
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kHealth = kSecond / 5;     // between two looks at what may have degraded
-constexpr Nanoseconds kRemember = 60 * kSecond;  // between two savings of the hours of motion
+constexpr Nanoseconds kHealth = kSecond / 5;        // between two looks at what may have degraded
+constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the store
+constexpr Nanoseconds kRemember = 60 * kSecond;     // between two savings of the hours of motion
 
 std::string text(double value, const char* format = "%.4g") {
   char out[32];
@@ -29,6 +30,10 @@ void Service::tell(const std::string& level, const std::string& text) {
     spdlog::warn("{}", text);
   else
     spdlog::info("{}", text);
+  // A robot that is switched off must not fill the store with one sentence.
+  if (text == last_told_ && now_ - last_told_at_ < kTellAgain) return;
+  last_told_ = text;
+  last_told_at_ = now_;
   // An event that cannot be stored must not become an event itself.
   if (const auto kept = store_.add(EventRecord{0, ports_.clock->unix_ms(), level, text}); !kept)
     spdlog::error("{}", kept.error().what);

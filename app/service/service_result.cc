@@ -92,7 +92,7 @@ void Service::judge() {
       result.answer = "failed";
       result.decision = "rejected";
       result.why = failure;
-      return keep_result(std::move(result), false);
+      return keep_result(result, false);
     }
     if (check) {
       last_check_ = rule_on_check(*solution_, *unchanged_, config_.schedule.check_p);
@@ -104,7 +104,7 @@ void Service::judge() {
       result.p_value = ruling.p_value;
       result.check_before = ruling.expected;
       result.check_after = ruling.rms;
-      return keep_result(std::move(result), false);
+      return keep_result(result, false);
     }
     const Ruling ruling =
         rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
@@ -121,11 +121,11 @@ void Service::judge() {
     result.identified = identified(*solution_);
     result.json = to_json(*solution_, config_.robot->name(), models_.hash()).dump();
     result.robot_text = robot_text(*models_.active(), solution_->values);
-    keep_result(std::move(result), ruling.acceptable);
+    keep_result(result, ruling.acceptable);
   };
 }
 
-void Service::keep_result(ResultRecord result, bool candidate) {
+void Service::keep_result(const ResultRecord& result, bool candidate) {
   const SlotRecord slot{result.session, result.unix_ms, models_.hash(), result.robot_text};
   if (!stored(store_.finish(result, candidate ? &slot : nullptr))) return;
   tell(candidate || result.answer == "explained" ? "info" : "warning",

@@ -19,7 +19,7 @@ std::string robot_of_status(std::string_view topic) {
   if (topic.size() <= kBefore.size() + kAfter.size()) return {};
   topic.remove_prefix(kBefore.size());
   topic.remove_suffix(kAfter.size());
-  return topic.find('/') == topic.npos ? std::string(topic) : std::string();
+  return topic.find('/') == std::string_view::npos ? std::string(topic) : std::string();
 }
 
 Result<std::unique_ptr<DdsRobots>> DdsRobots::open(const DdsParticipant& participant,
@@ -53,8 +53,7 @@ Result<std::vector<std::string>> DdsRobots::heard() {
   std::vector<std::string> robots;
   for (const auto& [handle, robot] : writers_) robots.push_back(robot);
   std::ranges::sort(robots);
-  const auto twice = std::ranges::unique(robots);
-  robots.erase(twice.begin(), twice.end());
+  robots.erase(std::unique(robots.begin(), robots.end()), robots.end());
   return robots;
 }
 

@@ -65,6 +65,9 @@ void expect_accurate_and_honest(const std::string& robot, int seeds) {
     after.push_back(outcome.after);
     within += outcome.within;
     identified += outcome.identified;
+    std::printf("  seed %d: %.3f to %.4f mm, %d of %d within 95 %%\n", seed, 1e3 * outcome.before,
+                1e3 * outcome.after, outcome.within, outcome.identified);
+    std::fflush(stdout);
     EXPECT_LT(outcome.after, 0.10e-3) << "seed " << seed;
   }
   std::ranges::sort(before);
@@ -82,7 +85,7 @@ void expect_accurate_and_honest(const std::string& robot, int seeds) {
   // three sigma of a share of 0.95 with six independent parameters a robot.
   const double slack = 3 * std::sqrt(0.95 * 0.05 / (6.0 * seeds));
   EXPECT_GT(covered, std::min(0.90, 0.95 - slack));
-  EXPECT_LT(covered, 0.995);
+  EXPECT_LT(covered, std::max(0.99, 0.95 + slack));
 }
 
 TEST(WholeSession, CalibratesTheRx90AndItsIntervalsHoldTheTruth) {
