@@ -93,7 +93,7 @@ TEST(WholeSession, CalibratesTheRx90AndItsIntervalsHoldTheTruth) {
 }
 
 TEST(WholeSession, CalibratesTheIrb1600AndItsIntervalsHoldTheTruth) {
-  expect_accurate_and_honest("irb1600", repetitions("SELFCAL_SEEDS", 3));
+  expect_accurate_and_honest("irb1600", repetitions("SELFCAL_SEEDS", 6));
 }
 
 /// Labels of good touches (session/step.attempt set) that the result has put aside.
