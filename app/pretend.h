@@ -1,5 +1,5 @@
-// The pretend machine of a configuration's scenario: loaded, and played over DDS in a process of
-// its own.
+// The pretend machine of a configuration's scenario: loaded, and played in a process of its own
+// over the transports that the configuration names.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,12 @@ Result<std::unique_ptr<Machine>> load_machine(const std::string& scenario, const
 /// What the machine really is, and what it did: false touches and how often each label was visited.
 std::string machine_truth(const Machine& machine);
 
-/// Plays the machine over DDS at the pace of the clock until told to stop.
-Result<void> play(Machine& machine, const Config& config);
+/// Whether the configuration's transports are stamped by the kernel that receives them.
+bool paced(const Config& config);
+
+/// Plays the machine at the pace of the clock until told to stop. Where it is paced, every edge it
+/// drove then goes to the file `touches` with the truth of its moment (app/paced_output.h), unless
+/// that is empty.
+Result<void> play(Machine& machine, const Config& config, const std::string& touches);
 
 }  // namespace selfcal

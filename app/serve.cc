@@ -1,4 +1,4 @@
-// selfcal serve CONFIG.yaml: the service, over DDS, with a real robot or a pretend one.
+// selfcal serve CONFIG.yaml: the service, with a real robot or a pretend one.
 #include <fcntl.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -14,12 +14,10 @@
 #include "app/pretend.h"
 #include "app/service/service.h"
 #include "io/clock.h"
-#include "io/dds/encoders.h"
 #include "io/dds/messenger.h"
 #include "io/dds/motion.h"
 #include "io/dds/participant.h"
 #include "io/dds/thermometer.h"
-#include "io/dds/trigger.h"
 #include "io/file.h"
 #include "sim/ports.h"
 
@@ -56,22 +54,20 @@ class Lock {
   int file_;
 };
 
-/// The ports of a robot on DDS, as far as they stand.
-struct DdsPorts {
-  std::shared_ptr<TimeMapping> mapping = std::make_shared<TimeMapping>();
-  std::unique_ptr<DdsEncoders> encoders;
-  std::unique_ptr<DdsTrigger> trigger;
+/// The ports of a real robot: encoders and trigger of the configured kinds, the rest over DDS.
+struct RobotPorts {
+  std::unique_ptr<EncoderSource> encoders;
+  std::unique_ptr<TouchTrigger> trigger;
   std::unique_ptr<DdsMotion> motion;
   std::unique_ptr<DdsThermometer> thermometer;
 
-  static Result<DdsPorts> open(const DdsParticipant& participant, const Config& config,
-                               Wakeup& wakeup) {
-    DdsPorts ports;
-    auto encoders = DdsEncoders::open(
-        participant, {.topic = config.joint_topic, .joints = config.joint_names}, ports.mapping);
+  static Result<RobotPorts> open(const DdsParticipant& participant, const Config& config,
+                                 Wakeup& wakeup) {
+    RobotPorts ports;
+    const PortContext context{participant, wakeup};
+    auto encoders = config.encoders->open(context);
     if (!encoders) return tl::unexpected(encoders.error());
-    auto trigger =
-        DdsTrigger::open(participant, {.topic = config.trigger_topic}, ports.mapping, wakeup);
+    auto trigger = config.trigger->open(context);
     if (!trigger) return tl::unexpected(trigger.error());
     auto motion = DdsMotion::open(participant, config.id, wakeup);
     if (!motion) return tl::unexpected(motion.error());
@@ -149,10 +145,10 @@ Result<void> serve(const Arguments& arguments, Config config) {
     return Result<void>{};
   };
   if (!arguments.simulate) {
-    auto dds = DdsPorts::open(*participant, config, wakeup);
-    if (!dds) return tl::unexpected(dds.error());
-    return serve_with({&clock, dds->encoders.get(), dds->trigger.get(), dds->motion.get(),
-                       dds->thermometer.get()});
+    auto robot = RobotPorts::open(*participant, config, wakeup);
+    if (!robot) return tl::unexpected(robot.error());
+    return serve_with({&clock, robot->encoders.get(), robot->trigger.get(), robot->motion.get(),
+                       robot->thermometer.get()});
   }
   auto machine = load_machine(config.simulation, config);
   if (!machine) return tl::unexpected(machine.error());
@@ -175,6 +171,8 @@ int show_plan(const Config& config) {
   std::printf("%s: robot %s, %zu joints, state in %s, DDS domain %d\n", config.id.c_str(),
               config.robot->name().c_str(), config.robot->joints().size(), config.state.c_str(),
               config.domain);
+  std::printf("  encoders: %s\n  trigger: %s\n", config.encoders->source().c_str(),
+              config.trigger->source().c_str());
   for (std::size_t s = 0; s < config.sets.size(); ++s) {
     int touches = 0, check = 0, home = 0;
     for (const PlannedTouch& touch : plan.touches)

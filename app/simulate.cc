@@ -15,7 +15,7 @@ namespace selfcal {
 namespace {
 
 struct Arguments {
-  std::string scenario, out, truth, live;
+  std::string scenario, out, truth, live, touches;
 };
 
 constexpr std::size_t kMostRobotBytes = 4 << 20;
@@ -34,14 +34,17 @@ Result<void> write(const Arguments& arguments, const Scenario& scenario,
   return write_file_atomically(arguments.truth, truth_json(scenario, robot, made).dump(1) + "\n");
 }
 
-/// Plays the machine over DDS until it is told to stop; then says what it was.
+/// Plays the machine until it is told to stop; then says what it was.
 int play_command(const Arguments& arguments) {
   const auto config = load_config(arguments.live);
   if (!config) return tell(config.error());
+  if (!arguments.touches.empty() && !paced(*config))
+    return wrong_usage("--touches needs encoders and a trigger that the kernel stamps");
   const auto machine = load_machine(arguments.scenario, *config);
   if (!machine) return tell(machine.error());
   listen_to_signals();
-  if (const auto played = play(**machine, *config); !played) return tell(played.error());
+  if (const auto played = play(**machine, *config, arguments.touches); !played)
+    return tell(played.error());
   if (arguments.truth.empty()) return kDone;
   const auto written = write_file_atomically(arguments.truth, machine_truth(**machine));
   return written ? kDone : tell(written.error());
@@ -50,6 +53,8 @@ int play_command(const Arguments& arguments) {
 int simulate_command(const Arguments& arguments) {
   if (arguments.live.empty() == arguments.out.empty())
     return wrong_usage("give --out FOLDER for a data set, or --live CONFIG to play the robot");
+  if (arguments.live.empty() && !arguments.touches.empty())
+    return wrong_usage("--touches needs --live");
   if (!arguments.live.empty()) return play_command(arguments);
   const Result<Scenario> scenario = load_scenario(arguments.scenario);
   if (!scenario) return tell(scenario.error());
@@ -88,7 +93,10 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--out", arguments->out,
                       "Folder of the data set; new, empty or a simulated data set to be replaced");
   command->add_option("--live", arguments->live,
-                      "CONFIG.yaml of a service: play its robot over DDS until interrupted");
+                      "CONFIG.yaml of a service: play its robot until interrupted");
+  command->add_option(
+      "--touches", arguments->touches,
+      "File for every edge that the played robot drove and the truth of its moment");
   command->add_option("--truth", arguments->truth, "File for the truth (JSON); not kept otherwise");
   command->callback([arguments, &status] { status = simulate_command(*arguments); });
 }

@@ -72,16 +72,18 @@ struct Shown {
   double factor;
   const char* unit;
 };
-Shown shown(Quantity quantity) {
-  switch (quantity) {
+Shown shown(const Parameter& parameter) {
+  switch (parameter.quantity) {
     case Quantity::length:
       return {1e3, "mm"};
     case Quantity::angle:
       return {1e3, "mrad"};
     case Quantity::ratio:
       return {1e6, "ppm"};
+    case Quantity::other:
+      break;
   }
-  return {1, ""};
+  return {1, parameter.other_unit.c_str()};
 }
 
 std::string parameter_table(const Solution& solution) {
@@ -91,10 +93,12 @@ std::string parameter_table(const Solution& solution) {
     grouped += p.status == Status::grouped;
     without_effect += p.status == Status::no_effect;
     if (p.status != Status::identified) continue;
-    const Shown unit = shown(p.parameter.quantity);
+    const Shown unit = shown(p.parameter);
     const std::string name = p.parameter.name + " " + p.parameter.frame + "." + p.parameter.field;
-    text += print("  %-18s %9.4f  %9.4f %s\n", name.c_str(),
-                  unit.factor * (p.value - p.parameter.nominal), unit.factor * p.sigma, unit.unit);
+    text += print(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
+                                                   : "  %-18s %9.4f  %9.4f %s\n",
+                  name.c_str(), unit.factor * (p.value - p.parameter.nominal),
+                  unit.factor * p.sigma, unit.unit);
   }
   if (grouped + without_effect > 0)
     text += print(

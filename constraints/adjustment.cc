@@ -102,7 +102,9 @@ class Adjustment {
       State other = attempt == 0 ? adjusted_.before.state : start_;
       for (size_t i = 0; attempt > 0 && i < adjusted_.prior.free.size(); ++i)
         if (adjusted_.prior.free[i])
-          other.xi[static_cast<Eigen::Index>(i)] += parameters()[i].tolerance * normal(random);
+          other.xi[static_cast<Eigen::Index>(i)] +=
+              (parameters()[i].part == Part::effect ? 0 : parameters()[i].tolerance) *
+              normal(random);
       if (attempt > 0) equations_.start(other);
       const Fit tried = run_fit(other, adjusted_.prior, "identifying from another start");
       const bool better = tried.objective < adjusted_.fitted.objective - kClearlyBetter;
@@ -130,7 +132,7 @@ class Adjustment {
     Chi2 chi2;
     for (size_t i = 0; i < parameters().size(); ++i) {
       const Parameter& p = parameters()[i];
-      if (!adjusted_.prior.free[i] || is_placed(p)) continue;
+      if (!adjusted_.prior.free[i] || !is_own(p)) continue;
       chi2.value += std::pow((adjusted_.fitted.state.xi[i] - p.nominal) / p.tolerance, 2);
       chi2.freedom += 1 - adjusted_.fitted.covariance(i, i) / std::pow(adjusted_.prior.sigma[i], 2);
     }
@@ -148,7 +150,7 @@ class Adjustment {
     if (!adjusted_.priors_fail) return;
     adjusted_.widening = std::sqrt(adjusted_.chi2.value / adjusted_.chi2.freedom);
     for (size_t i = 0; i < parameters().size(); ++i)
-      if (!is_placed(parameters()[i]))
+      if (is_own(parameters()[i]))
         adjusted_.prior.sigma[i] = adjusted_.widening * parameters()[i].tolerance;
     adjusted_.fitted =
         run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
@@ -165,6 +167,7 @@ class Adjustment {
 }  // namespace
 
 bool is_placed(const Parameter& p) { return p.part == Part::base || p.part == Part::tool; }
+bool is_own(const Parameter& p) { return p.part == Part::link || p.part == Part::gear; }
 
 Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress) {
   return Adjustment(equations, options, progress).run();

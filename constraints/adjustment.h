@@ -30,6 +30,8 @@ struct Adjusted {
 
 /// True for parameters of base and tool frames, whose priors say where things were put up.
 bool is_placed(const Parameter& p);
+/// True for parameters of the links and gears, which the maker gives tolerances for.
+bool is_own(const Parameter& p);
 
 Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress);
 

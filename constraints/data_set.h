@@ -23,6 +23,7 @@ struct Set {
 struct DataSet {
   std::vector<Set> sets;
   Observations rows;
+  bool speeds = true;      ///< dq are velocities; false: only their signs mean something
   double target = 1.0e-3;  ///< end-position accuracy wanted (m, 1 sigma)
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/corrected_robot.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -44,7 +45,10 @@ double RowResidual::sigmas(const Scale& scale) const {
 }
 
 Equations::Equations(const Robot& robot, const DataSet& data, Use use)
-    : robot_(robot), data_(data), plans_(data.sets.size()) {
+    : robot_(robot),
+      data_(data),
+      conditions_matter_(!effects_of(robot).empty()),
+      plans_(data.sets.size()) {
   own_end_ = robot_columns();
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) {
     make_plan(s, use);
@@ -73,10 +77,13 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   const auto load = [&](ConfigurationBlock& into, bool previous) {
     into.q.resize(kLanes, data_.rows.q.cols());
     into.count = count;
+    std::vector<int> rows(kLanes);
     for (int lane = 0; lane < kLanes; ++lane) {
       const SetPlan::Item& item = plans_[set].items[first + std::min(lane, count - 1)];
-      into.q.row(lane) = data_.rows.q.row(previous ? item.previous : item.row).array();
+      rows[lane] = previous ? item.previous : item.row;
+      into.q.row(lane) = data_.rows.q.row(rows[lane]).array();
     }
+    if (conditions_matter_) into.conditions = conditions(data_.rows, rows);
   };
   block.rows.resize(count);
   for (int lane = 0; lane < count; ++lane) block.rows[lane] = plans_[set].items[first + lane].row;

@@ -63,6 +63,14 @@ struct Linearised {
   std::vector<ClusterFactor> clusters;
 };
 
+/// Every equation of some rows, for data sets small enough to hold them: whitened, not weighed.
+struct DenseEquations {
+  Eigen::MatrixXd W;      ///< equations x [columns() | freedoms of the groups, set by set]
+  Eigen::VectorXd y;      ///< Delta Y
+  Eigen::MatrixXd shift;  ///< equations x 3, derivative to a shift of the world (1/sigma per m)
+  std::vector<int> row;   ///< of the data set, by equation; -1 of an equation that no row carries
+};
+
 /// Rows of one set in the order of evaluation, and how its groups hang together.
 struct SetPlan {
   struct Item {
@@ -113,6 +121,9 @@ class Equations {
   Eigen::MatrixXd bend(const State& state, const Weighting& weighting, const Linearised& at,
                        const Eigen::VectorXd& step) const;
   std::vector<RowResidual> residuals(const State& state) const;
+  /// `scale` by set. Rows that are put aside in `put_aside` (by row of the data set) are left out.
+  DenseEquations dense(const State& state, const std::vector<Scale>& scale,
+                       const std::vector<char>& put_aside) const;
 
   /// The state after a step of the global columns (columns() entries).
   State stepped(const State& state, const Linearised& at, const Eigen::VectorXd& step) const;
@@ -139,6 +150,7 @@ class Equations {
 
   const Robot& robot_;
   const DataSet& data_;
+  bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
   std::vector<SetPlan> plans_;
   std::vector<int> own_at_, own_count_;
   int own_end_ = 0;

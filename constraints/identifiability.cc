@@ -55,8 +55,7 @@ class Threshold {
   }
   double of(int column) const {
     if (rule_.rows > 0) return tau_;
-    const bool ratio = !rule_.ratio.empty() && rule_.ratio[column];
-    return 1 / (ratio ? rule_.least_ratio_sigma : rule_.least_sigma);
+    return 1 / (rule_.least.empty() ? rule_.least_sigma : rule_.least[column]);
   }
 
  private:
@@ -113,9 +112,12 @@ Identifiability identifiability(const Equations& equations, const Eigen::MatrixX
   for (const int p : robot.preference())
     if (candidate[p]) order.push_back(p);
   RankRule of_robot = rule;
-  of_robot.ratio.assign(equations.columns(), 0);
-  for (size_t i = 0; i < robot.parameters().size(); ++i)
-    of_robot.ratio[i] = robot.parameters()[i].quantity == Quantity::ratio;
+  of_robot.least.assign(equations.columns(), rule.least_sigma);
+  for (size_t i = 0; i < robot.parameters().size(); ++i) {
+    const Parameter& p = robot.parameters()[i];
+    if (p.quantity == Quantity::ratio) of_robot.least[i] = rule.least_ratio_sigma;
+    if (p.part == Part::effect) of_robot.least[i] = p.tolerance;  // no better than its prior
+  }
   const std::vector<ColumnRank> ranks = rank_columns(R, order, leading, of_robot);
 
   Identifiability result;

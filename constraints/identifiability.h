@@ -22,7 +22,7 @@ struct RankRule {
   double least_sigma = 2.0e-3;
   /// The same for gear ratios, which act on the whole joint angle.
   double least_ratio_sigma = 1.0e-4;
-  std::vector<char> ratio;  ///< by column of R: is a gear ratio; empty: none is
+  std::vector<double> least;  ///< by column of R, in place of least_sigma; empty: that for all
 };
 
 struct ColumnRank {
@@ -37,7 +37,7 @@ struct ColumnRank {
 std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
                                      int leading, const RankRule& rule);
 
-/// Status and carriers of every parameter of the robot from R of `equations`; `rule.ratio` is
+/// Status and carriers of every parameter of the robot from R of `equations`; `rule.least` is
 /// filled in from the robot. Parameters that `candidate` leaves out are fixed (or held) and have no
 /// say.
 struct Identifiability {

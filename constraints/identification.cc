@@ -39,7 +39,7 @@ void add_warnings(const DataSet& data, const Adjusted& adjusted, Solution& solut
         format_number(std::round(adjusted.widening * 100) / 100));
   for (const ParameterResult& each : solution.parameters) {
     const double moved = std::abs(each.value - each.parameter.nominal) / each.parameter.tolerance;
-    if (moved > 4 && each.status != Status::fixed)
+    if (moved > 4 && each.status != Status::fixed && each.parameter.part != Part::effect)
       solution.warnings.push_back(each.parameter.name + " (" + each.parameter.frame + "." +
                                   each.parameter.field + ") moved by " +
                                   format_number(std::round(moved * 10) / 10) + " tolerances");

@@ -71,8 +71,15 @@ struct SetFigures {
   Figures figures;
 };
 
+/// One row that judges.
+struct CheckRow {
+  double residual = 0;    ///< m, after
+  bool rejected = false;  ///< beyond the noise
+};
+
 struct Residuals {
   Figures fit, check;
+  std::vector<CheckRow> check_rows;  ///< in the order of the data set's
   std::vector<SetFigures> check_by_set;
 };
 

@@ -94,6 +94,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   for (size_t i = 0; i < after.check.size(); ++i) {
     check.push_back({&before.check[i], &after.check[i]});
     far[after.check[i].row] = is_far(after.check[i], after);
+    result.check_rows.push_back({after.check[i].length, far[after.check[i].row] != 0});
   }
   result.fit = figures(fit, put_aside);
   result.check = figures(check, far);

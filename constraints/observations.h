@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/robot.h"
+
 namespace selfcal {
 
 /// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
@@ -16,6 +18,10 @@ struct Observations {
   Eigen::MatrixXd orientation;  ///< rows x 4, qw qx qy qz, unit
   Eigen::VectorXd distance;     ///< rows, to the previous row of the group (m)
   Eigen::MatrixXd normal;       ///< rows x 3, outward normal of the touched surface, world, unit
+  Eigen::MatrixXd wrench;       ///< rows x 6, on the tool at the last frame's origin, in its axes
+  Eigen::MatrixXd velocity;     ///< rows x joints, just before the reading (rad/s, m/s)
+  Eigen::VectorXd temperature;  ///< rows (C)
+  Eigen::VectorXd time;         ///< rows (s)
   std::vector<int> set;         ///< rows, index into the data set's sets
   std::vector<int> group;       ///< rows, index into its set's group names; -1 without a group
   std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column
@@ -23,5 +29,8 @@ struct Observations {
 
   int rows() const { return static_cast<int>(q.rows()); }
 };
+
+/// What else held when `rows` were taken, a lane each.
+Conditions conditions(const Observations& data, const std::vector<int>& rows);
 
 }  // namespace selfcal

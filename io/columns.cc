@@ -118,12 +118,21 @@ tl::expected<Layout, RowFault> read_header(Cells names, int joints) {
   layout.repeat = layout.find("repeat");
   layout.part = layout.find("part");
   layout.distance = layout.find("distance");
+  layout.temperature = layout.find("temperature");
+  layout.time = layout.find("time");
+  for (int joint = 1; joint <= joints; ++joint)
+    if (const auto place = layout.find("dq" + std::to_string(joint))) layout.dq.push_back(*place);
+  if (!layout.dq.empty() && static_cast<int>(layout.dq.size()) != joints)
+    return tl::unexpected(RowFault{"dq is given for some joints and not for all", layout.dq[0]});
   const auto position = find_all<3>(layout, {"x", "y", "z"});
   if (!position) return tl::unexpected(position.error());
   const auto normal = find_all<3>(layout, {"nx", "ny", "nz"});
   if (!normal) return tl::unexpected(normal.error());
   const auto orientation = find_all<4>(layout, {"qw", "qx", "qy", "qz"});
   if (!orientation) return tl::unexpected(orientation.error());
+  const auto wrench = find_all<6>(layout, {"fx", "fy", "fz", "tx", "ty", "tz"});
+  if (!wrench) return tl::unexpected(wrench.error());
+  layout.wrench = *wrench;
   layout.position = *position;
   layout.normal = *normal;
   layout.orientation = *orientation;

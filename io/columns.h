@@ -33,8 +33,10 @@ struct Layout {
   std::vector<Column> columns;
   std::size_t set = 0;
   std::vector<std::size_t> q;
-  std::optional<std::size_t> group, repeat, part, distance;
+  std::vector<std::size_t> dq;  ///< one place a joint, or none at all
+  std::optional<std::size_t> group, repeat, part, distance, temperature, time;
   Columns<3> position, normal;
+  Columns<6> wrench;
   Columns<4> orientation;
 
   std::optional<std::size_t> find(std::string_view name) const;

@@ -41,9 +41,9 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   }
   data.target = fields.positive("target", kDefaultTarget);
   if (data.target >= kCoarsest) fields.fail("target", "metres below 1 (millimetres?)");
-  // Only effects use the velocities; their meaning is checked wherever it stands.
   const std::string dq = fields.text("dq", "velocity");
   if (dq != "velocity" && dq != "sign") fields.fail("dq", "velocity or sign");
+  data.speeds = dq == "velocity";
   const Node* sets = fields.node("sets");
   if (sets == nullptr) fields.fail("sets", "a mapping of sets");
   fields.refuse_unknown();

@@ -25,6 +25,7 @@ struct StatusMessage {
   bool candidate = false;            ///< a result waits for acceptance
   std::int64_t next_due_ms = 0;      ///< 0 when nothing is scheduled
   double temperature = 0;            ///< °C; NaN when not known
+  bool operator==(const StatusMessage&) const = default;
 };
 
 /// How far the running session is; sent after every touch.
@@ -40,6 +41,7 @@ struct ProgressMessage {
   double residual = 0;      ///< m, against the active model and the surface as known so far; NaN
   bool accepted = false;    ///< false: put aside
   std::string note;         ///< why it was put aside, or the stage of the computation
+  bool operator==(const ProgressMessage&) const = default;
 };
 
 /// The outcome of a session.
@@ -56,8 +58,11 @@ struct ResultMessage {
   double check_before = 0;    ///< m, rms on rows kept aside with the active model
   double check_after = 0;     ///< m, with the candidate
   double endpoint_sigma = 0;  ///< m, rms
-  std::uint32_t touches = 0, rejected = 0, identified = 0;
-  std::string json;  ///< result.json's content; empty for a check
+  std::uint32_t touches = 0;  ///< that count as rows, those put aside too
+  std::uint32_t rejected = 0;    ///< of them put aside when identifying; outliers that judge count
+  std::uint32_t identified = 0;  ///< parameters
+  std::string json;              ///< result.json's content; empty for a check
+  bool operator==(const ResultMessage&) const = default;
 };
 
 enum class Health : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };

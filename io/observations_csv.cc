@@ -84,6 +84,10 @@ class RowReader {
     rows.orientation = to_matrix(std::move(orientation_), 4);
     rows.distance = to_matrix(std::move(distance_), 1);
     rows.normal = to_matrix(std::move(normal_), 3);
+    rows.wrench = to_matrix(std::move(wrench_), 6);
+    rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
+    rows.temperature = to_matrix(std::move(temperature_), 1);
+    rows.time = to_matrix(std::move(time_), 1);
     rows.set = std::move(set_);
     rows.group = std::move(group_);
     rows.repeat = std::move(repeat_);
@@ -113,6 +117,10 @@ class RowReader {
     if (layout_.position) extend(position_, numbers_.position());
     if (layout_.orientation) extend(orientation_, numbers_.orientation());
     if (layout_.normal) extend(normal_, numbers_.normal());
+    for (const std::size_t column : layout_.dq) velocity_.push_back(numbers_.value(column));
+    if (layout_.wrench) extend(wrench_, numbers_.wrench());
+    if (layout_.temperature) temperature_.push_back(numbers_.value(*layout_.temperature));
+    if (layout_.time) time_.push_back(numbers_.value(*layout_.time));
     if (layout_.distance) distance_.push_back(numbers_.value(*layout_.distance));
     if (layout_.repeat) repeat_.push_back(labels.repeat);
     set_.push_back(static_cast<int>(labels.set));
@@ -127,6 +135,7 @@ class RowReader {
   NumberReader numbers_;
   std::vector<std::vector<Need>> needs_;  // per set
   std::vector<double> q_, position_, orientation_, distance_, normal_;
+  std::vector<double> wrench_, velocity_, temperature_, time_;
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
 };

@@ -71,6 +71,13 @@ std::string observations_text(const DataSet& data) {
   const Eigen::MatrixXd distance = rows.distance;
   add_numbers(distance, {"distance"}, columns);
   add_numbers(rows.normal, {"nx", "ny", "nz"}, columns);
+  add_numbers(rows.wrench, {"fx", "fy", "fz", "tx", "ty", "tz"}, columns);
+  std::vector<std::string> speeds;
+  for (Eigen::Index j = 1; j <= rows.q.cols(); ++j) speeds.push_back("dq" + std::to_string(j));
+  add_numbers(rows.velocity, speeds, columns);
+  const Eigen::MatrixXd temperature = rows.temperature, time = rows.time;
+  add_numbers(temperature, {"temperature"}, columns);
+  add_numbers(time, {"time"}, columns);
   std::string text = line(columns, [](const Column& column) { return column.name; });
   for (int row = 0; row < rows.rows(); ++row)
     text += line(columns, [row](const Column& column) { return column.cell(row); });

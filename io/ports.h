@@ -51,6 +51,8 @@ class EncoderSource {
   virtual std::uint64_t dropped() const = 0;  ///< samples lost since the start
   /// Senders heard at the moment, where the transport can tell: more than one are two robots.
   virtual int senders() const { return 1; }
+  /// What is wrong at the moment, in a sentence for a person; empty when nothing is.
+  virtual std::string trouble() const { return {}; }
   static constexpr std::size_t kMostSamples = 1024;
 };
 
@@ -58,6 +60,7 @@ class EncoderSource {
 struct Edge {
   Nanoseconds time = 0;
   bool closed = false;
+  bool timed = true;  ///< false: the edge was lost, and this is when it was noticed
 };
 
 class TouchTrigger {
@@ -68,6 +71,8 @@ class TouchTrigger {
   /// Appends the edges since the last call, oldest first, not debounced, at most `kMostEdges`.
   virtual Result<void> take(std::vector<Edge>& out) = 0;
   virtual std::uint64_t dropped() const = 0;
+  /// What is wrong at the moment, in a sentence for a person; empty when nothing is.
+  virtual std::string trouble() const { return {}; }
   static constexpr std::size_t kMostEdges = 256;
 };
 

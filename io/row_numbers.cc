@@ -56,6 +56,7 @@ std::optional<RowFault> NumberReader::read_vectors() {
   if (auto fault = read_vector(layout_->position, position_)) return fault;
   if (auto fault = read_vector(layout_->normal, normal_)) return fault;
   if (auto fault = read_vector(layout_->orientation, orientation_)) return fault;
+  if (auto fault = read_vector(layout_->wrench, wrench_)) return fault;
   std::optional<std::string> fault;
   if (layout_->normal && !std::isnan(normal_[0])) {
     fault = make_unit(normal_, kNormalTolerance, "the normal nx ny nz");

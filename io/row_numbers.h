@@ -24,7 +24,8 @@ class NumberReader {
   /// Of the row read last; NaN where a cell is empty or no number's.
   double value(std::size_t column) const { return values_[column]; }
   const std::array<double, 3>& position() const { return position_; }
-  const std::array<double, 3>& normal() const { return normal_; }            ///< unit
+  const std::array<double, 3>& normal() const { return normal_; }  ///< unit
+  const std::array<double, 6>& wrench() const { return wrench_; }
   const std::array<double, 4>& orientation() const { return orientation_; }  ///< unit
 
   /// How many readings were a little outside their joint's limits and where the first one was.
@@ -42,6 +43,7 @@ class NumberReader {
   std::vector<double> values_;  // per column
   std::array<double, 3> position_{}, normal_{};
   std::array<double, 4> orientation_{};
+  std::array<double, 6> wrench_{};
   int outside_ = 0;
   std::string first_outside_;
 };

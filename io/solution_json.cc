@@ -32,7 +32,7 @@ Json of_parameter(const ParameterResult& result) {
   };
   return Json::object({{"name", result.parameter.name},
                        {"frame", result.parameter.frame},
-                       {"unit", unit(result.parameter.quantity)},
+                       {"unit", result.parameter.unit()},
                        {"nominal", finite(result.parameter.nominal)},
                        {"value", finite(result.value)},
                        {"sigma", sigma(result.sigma)},

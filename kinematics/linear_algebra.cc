@@ -1,6 +1,8 @@
 // Decompositions by Eigen.
 #include "kinematics/linear_algebra.h"
 
+#include <cmath>
+
 namespace selfcal {
 
 void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
@@ -30,6 +32,29 @@ Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(onto);
   const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(onto.rows(), qr.rank());
   return M - Q * (Q.transpose() * M);
+}
+
+OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A) {
+  OrthogonalColumns result;
+  const Eigen::VectorXd length = A.colwise().norm().cwiseMax(1e-300);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A * length.cwiseInverse().asDiagonal());
+  result.Q = qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), qr.rank());
+  for (Eigen::Index i = 0; i < qr.rank(); ++i)
+    result.log_volume +=
+        std::log(std::abs(qr.matrixQR()(i, i)) * length[qr.colsPermutation().indices()[i]]);
+  return result;
+}
+
+Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A) {
+  return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
+}
+
+Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  return L.triangularView<Eigen::Lower>().solve(B);
+}
+
+Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {
+  return Eigen::LLT<Eigen::MatrixXd>(A).solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
 }
 
 SingularValues singular_values(const Eigen::MatrixXd& A) {

@@ -22,6 +22,21 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 /// What is left of the columns of `M` after projecting the column space of `onto` out.
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M);
 
+/// An orthonormal basis of the columns of `A`, as many as its rank, and the log of the product of
+/// the diagonal of its triangle.
+struct OrthogonalColumns {
+  Eigen::MatrixXd Q;
+  double log_volume = 0;
+};
+OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A);
+
+/// Lower Cholesky factor of the positive definite `A`.
+Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A);
+/// L^-1 B of the lower triangular `L`.
+Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
+/// Inverse of the positive definite `A`.
+Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A);
+
 struct SingularValues {
   Eigen::VectorXd values;      ///< descending
   Eigen::MatrixXd directions;  ///< right singular vectors, one a column

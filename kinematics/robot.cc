@@ -1,6 +1,11 @@
 // What every kind of robot shares: looking parameters up by name, making a robot from its file.
 #include "kinematics/robot.h"
 
+#include <algorithm>
+#include <set>
+
+#include "kinematics/corrected_robot.h"
+
 namespace selfcal {
 
 #define X(identifier, text) \
@@ -21,6 +26,29 @@ constexpr Kind kKinds[] = {
 #undef X
 };
 
+/// The robot of a kind, and around it the effects that the file says it has.
+std::unique_ptr<Robot> with_effects_of(const Node& node, const Kind& kind, Problems& problems) {
+  const Node* effects = node.find("effects");
+  if (!effects) return kind.make(node, problems);
+  Node geometry = node;
+  const auto at = std::find(geometry.keys.begin(), geometry.keys.end(), "effects");
+  geometry.items.erase(geometry.items.begin() + (at - geometry.keys.begin()));
+  geometry.keys.erase(at);
+  std::shared_ptr<const Robot> robot = kind.make(geometry, problems);
+  if (!robot) return nullptr;
+  if (effects->kind != Node::Kind::list) {
+    problems.add(effects->place, "effects: expected a list of effects");
+    return nullptr;
+  }
+  auto corrected = correct(std::move(robot), effects->items, {}, problems);
+  std::set<std::string> names;
+  for (size_t i = 0; corrected && i < corrected->parameters().size(); ++i)
+    if (!names.insert(corrected->parameters()[i].name).second)
+      problems.add(effects->place,
+                   "effects: " + corrected->parameters()[i].name + " is there twice");
+  return problems.any() ? nullptr : std::move(corrected);
+}
+
 bool matches(std::string_view text, std::string_view pattern) {
   if (pattern.empty()) return text.empty();
   if (pattern.front() == '*')
@@ -38,6 +66,7 @@ std::string_view unit(Quantity quantity) {
     case Quantity::angle:
       return "rad";
     case Quantity::ratio:
+    case Quantity::other:
       return "1";
   }
   return "1";
@@ -79,7 +108,7 @@ std::unique_ptr<Robot> make_robot(const Node& node, Problems& problems) {
   }
   std::string known;
   for (const Kind& each : kKinds) {
-    if (each.name == kind->text) return each.make(node, problems);
+    if (each.name == kind->text) return with_effects_of(node, each, problems);
     known += (known.empty() ? "" : ", ") + std::string(each.name);
   }
   problems.add(kind->place, "robot: kind '" + kind->text + "' is unknown; known: " + known);

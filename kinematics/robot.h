@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kinematics/description.h"
+#include "kinematics/mechanics.h"
 #include "kinematics/parameter.h"
 
 namespace selfcal {
@@ -26,10 +27,22 @@ using LaneArray = Eigen::Array<double, Eigen::Dynamic, columns, 0, kLanes, colum
 /// One number a lane; always kLanes long.
 using Lanes = LaneArray<1>;
 
+/// What else held when the rows of a block were taken, a row a lane; NaN where it is not known. A
+/// matrix without rows is not known of any lane. Only effects ask for it.
+struct Conditions {
+  Eigen::MatrixXd wrench;    ///< kLanes x 6, on the tool at the last frame's origin, in its axes
+  Eigen::MatrixXd velocity;  ///< kLanes x joints
+  Eigen::MatrixXd normal;    ///< kLanes x 3, outward, of the touched surface, world, unit
+  Eigen::VectorXd temperature, time;  ///< C, s
+  std::vector<int> set;               ///< of the data set
+};
+
 /// Joint readings of a block: kLanes x joints (rad or m). Lanes past `count` repeat the last one.
 struct ConfigurationBlock {
   Eigen::ArrayXXd q;
   int count = 0;
+  Eigen::ArrayXXd added = {};  ///< kLanes x joints, to the joint variables; without rows: nothing
+  Conditions conditions = {};
 };
 
 /// Location of a body in the world frame, lane by lane.
@@ -81,6 +94,13 @@ class Robot {
   /// block.
   virtual void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
                               Eigen::MatrixXd& J) const = 0;
+
+  /// Masses and links, as the maker gives them.
+  virtual const Mechanics& mechanics() const = 0;
+  /// Poses of mechanics().links in the world at readings `q`, with the maker's geometry.
+  virtual std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const = 0;
+  /// Index of the parameter that the variable of joint `j` is added to.
+  virtual int variable_parameter(int j) const = 0;
 
   /// The robot file's content with parameter values `xi`; the prior's centre is kept as `nominal`.
   virtual Node describe(const Eigen::VectorXd& xi) const = 0;

@@ -110,16 +110,24 @@ void Machine::advance(Nanoseconds now) {
     reply(moving_->id, MotionReply::Outcome::done, "");
     moving_.reset();
   }
-  const Nanoseconds period = nanoseconds(settings_.encoder_period);
   const auto most = static_cast<Nanoseconds>(EncoderSource::kMostSamples);
-  Nanoseconds t = std::max(sampled_ + period, (now / period - most) * period);
-  for (; t <= now; t += period) {
+  Nanoseconds t = std::max(sampled_ + period(), (now / period() - most) * period());
+  for (; t <= now; t += period()) {
     if (!broken(MachineFault::What::encoders, t)) samples_.push_back(sample(t));
     sampled_ = t;
   }
   bound(samples_, EncoderSource::kMostSamples);
   now_ = now;
   stick(now);
+}
+
+Nanoseconds Machine::next_sample() const { return sampled_ + period(); }
+
+std::optional<Nanoseconds> Machine::next_edge() const {
+  if (ahead_.empty()) return std::nullopt;
+  const Nanoseconds when = path_.when(ahead_.front().s);
+  if (when > path_.end()) return std::nullopt;
+  return when + nanoseconds(settings_.trigger_delay);
 }
 
 void Machine::stick(Nanoseconds until) {
@@ -182,6 +190,7 @@ void Machine::begin(const MotionRequest& request) {
                      now_);
   ahead_ = crossings(request, path_);
   moving_ = request;
+  label_ = request.label;
   last_motion_ = now_;
   reply(request.id, MotionReply::Outcome::accepted, "");
 }

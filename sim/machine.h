@@ -41,6 +41,15 @@ class Machine {
   /// True from a request to half a second after the robot stands.
   bool busy() const;
   bool moving() const { return moving_.has_value(); }
+  /// The moment after now() at which the next sample is taken.
+  Nanoseconds next_sample() const;
+  /// When the contact that lies next on the path shows at the trigger, as the path stands now;
+  /// nothing when none does. It comes out of take() once its contact is passed.
+  std::optional<Nanoseconds> next_edge() const;
+  /// True joint readings at a moment, as the path stands now: neither rounded nor sampled.
+  Eigen::VectorXd readings(Nanoseconds t) const { return path_.q(t); }
+  /// What the encoders count at a moment, as the path stands now.
+  EncoderSample sample(Nanoseconds t) const;
 
   void request(const MotionRequest& request);
   void stop(const std::string& why);
@@ -52,6 +61,9 @@ class Machine {
   double celsius() const;
 
   const std::vector<EncoderScale>& scales() const { return scales_; }
+  const MachineScenario& settings() const { return settings_; }
+  /// Of the last move.
+  const std::string& label() const { return label_; }
   const State& truth() const { return truth_; }
   const Robot& robot() const { return *robot_; }
   const std::vector<Set>& sets() const { return sets_; }
@@ -76,7 +88,7 @@ class Machine {
   void pass_crossings(Nanoseconds until);
   void put_edge(Nanoseconds time, bool closed);
   void stick(Nanoseconds until);
-  EncoderSample sample(Nanoseconds t) const;
+  Nanoseconds period() const { return nanoseconds(settings_.encoder_period); }
 
   // sim/machine_contact.cc
   std::vector<Crossing> crossings(const MotionRequest& request, const Trajectory& path);
@@ -103,6 +115,7 @@ class Machine {
   Nanoseconds now_ = 0, sampled_ = 0, last_motion_ = 0;
   Trajectory path_;
   std::optional<MotionRequest> moving_;
+  std::string label_;
   std::vector<Crossing> ahead_;  // not yet reached on the path, in the order of s
   double contact_offset_ = 0;    // m, at which the touch in progress triggers
   int contact_set_ = -1;

@@ -47,6 +47,7 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   within("missed", machine.missed, 0, 0.5);
   within("temperature", machine.temperature, -40, 80);
   within("warming", machine.warming, -20, 20);
+  machine.trigger_pull = fields.text("trigger_pull", "");
   if (const Node* faults = fields.node("faults"))
     for (const Node& each : faults->items) machine.faults.push_back(read_fault(each, problems));
   fields.refuse_unknown();

@@ -9,6 +9,9 @@
 //   missed          0         0 to 0.5       share of the touches that trigger nothing
 //   temperature     20        -40 to 80      °C at the start
 //   warming         0         -20 to 20      °C per hour
+//   trigger_pull    none                     played in a process of its own with a trigger of
+//                                            kind gpio: file of gpio-sim that drives the line,
+//                                            /sys/devices/platform/DEVICE/CHIP/sim_gpioN/pull
 //   faults          []                       [{what: WHAT, at: S, for: S}]: what breaks, when
 //                                            (s from the start), for how long; WHAT is one of
 //     encoders        no sample comes
@@ -37,6 +40,7 @@ struct MachineScenario {
   int bounce = 0;
   double missed = 0;
   double temperature = 20, warming = 0;
+  std::string trigger_pull;
   std::vector<MachineFault> faults;
 };
 

@@ -19,6 +19,8 @@ double sigma_of(const Parameter& parameter, const Errors& errors) {
       return length ? errors.length : errors.angle;
     case Part::gear:
       return errors.gear;
+    case Part::effect:
+      return 0;
   }
   return 0;
 }

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "io/dds/names.h"
+#include "app/service/config_transports.h"
 #include "io/file.h"
 #include "io/robot_file.h"
 #include "io/yaml.h"
@@ -11,8 +11,8 @@ namespace selfcal {
 namespace {
 
 constexpr std::size_t kMostRobotBytes = 1 << 20;
-constexpr std::array<std::string_view, 5> kOwnKeys = {"touches", "surface", "within", "places",
-                                                      "way_out"};
+const std::vector<std::string_view> kOwnKeys = {"touches", "surface", "within", "places",
+                                                "way_out"};
 
 /// Reads the parts of a configuration, each into its place.
 class Reader {
@@ -25,8 +25,7 @@ class Reader {
     read_robot(fields);
     if (problems_.any()) return std::move(c_);
     read_identity(fields);
-    part(fields, "encoders", [&](Fields& f) { read_encoders(f); });
-    part(fields, "trigger", [&](Fields& f) { read_trigger(f); });
+    read_transports(fields, folder_, c_, problems_);
     c_.temperature_topic = fields.text("temperature", "");
     if (!fields.node("motion")) fields.fail("motion", "{home: [...], ...}");
     part(fields, "motion", [&](Fields& f) { read_motion(f); });
@@ -47,9 +46,7 @@ class Reader {
  private:
   template <class Read>
   void part(Fields& fields, std::string_view key, const Read& read) {
-    static const Node kEmpty = Node::map();
-    const Node* node = fields.node(key);
-    Fields inner(node ? *node : kEmpty, std::string(key), problems_);
+    Fields inner(entry_of(fields, key), std::string(key), problems_);
     read(inner);
     inner.refuse_unknown();
   }
@@ -77,22 +74,6 @@ class Reader {
                               : folder_ / "state";
     c_.target = number_within(fields, "target", c_.target, 1e-6, 1);
     c_.domain = fields.integer("domain", c_.domain, 0, 230);
-  }
-
-  void read_encoders(Fields& f) {
-    c_.joint_topic = f.text("topic", c_.joint_topic);
-    c_.joint_names = f.texts("joints");
-    if (c_.joint_names.empty())
-      for (const Joint& joint : c_.robot->joints()) c_.joint_names.push_back(joint.name);
-    if (c_.joint_names.size() != c_.robot->joints().size())
-      f.fail("joints", std::to_string(c_.robot->joints().size()) + " names");
-    c_.silence = number_within(f, "silence", c_.silence, 0.01, 60);
-  }
-
-  void read_trigger(Fields& f) {
-    c_.trigger_topic = f.text("topic", "selfcal/" + ros_name(c_.id) + "/trigger");
-    c_.touch.debounce = number_within(f, "debounce", c_.touch.debounce, 0, 0.1);
-    c_.touch.delay = number_within(f, "delay", c_.touch.delay, 0, 0.1);
   }
 
   void read_motion(Fields& f) {
@@ -201,11 +182,7 @@ class Reader {
   /// Reads the configuration's own keys and returns the rest, an entry of dataset.yaml.
   Node read_set(const std::string& name, const Node& node) {
     const std::string what = "set " + name;
-    Node entry = Node::map();
-    entry.place = node.place;
-    for (std::size_t i = 0; i < node.keys.size(); ++i)
-      if (std::ranges::find(kOwnKeys, node.keys[i]) == kOwnKeys.end())
-        entry.set(node.keys[i], node.items[i]);
+    const Node entry = without(node, kOwnKeys);
     c_.sets.push_back(make_set(name, entry, problems_));
     const std::shared_ptr<const Method> method = c_.sets.back().method;
     Fields f(node, what, problems_);
@@ -263,6 +240,7 @@ double LargestChange::of(const Parameter& parameter) const {
     case Part::link:
       return is_length ? length : angle;
     case Part::gear:
+    case Part::effect:
       return angle;
   }
   return 0;

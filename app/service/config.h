@@ -9,11 +9,14 @@
 //   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted (1 sigma)
 //   domain           0          0 to 230        of DDS
 //   encoders         {}                         where joint readings come from:
-//     topic          joint_states               sensor_msgs/JointState
-//     joints         frames' names              names in the message, in the robot's order
+//     kind           dds                        one of io/encoders.def; its own keys are listed at
+//                                               the head of io/encoders/KIND.cc
+//     joints         frames' names              names, in the robot's order, or a mapping by the
+//                                               frames' names where the kind says so
 //     silence        0.5        0.01 to 60 s    without a sample they count as lost
 //   trigger          {}                         where the touch comes from:
-//     topic          selfcal/ID/trigger         selfcal_msgs/StampedBool
+//     kind           dds                        one of io/triggers.def; its own keys are listed at
+//                                               the head of io/triggers/KIND.cc
 //     debounce       0.002      0 to 0.1 s      a level counts once it has lasted so long
 //     delay          0          0 to 0.1 s      known time from the contact to the edge
 //   temperature      none                       topic of a sensor_msgs/Temperature
@@ -73,7 +76,9 @@
 #include "app/service/transition.h"
 #include "constraints/place_fields.h"
 #include "constraints/touch_plan.h"
+#include "io/encoders.h"
 #include "io/result.h"
+#include "io/triggers.h"
 
 namespace selfcal {
 
@@ -109,7 +114,9 @@ struct Config {
   std::filesystem::path state;
   double target = 1e-3;
   int domain = 0;
-  std::string joint_topic = "joint_states", trigger_topic, temperature_topic;
+  EncoderKindPtr encoders;
+  TriggerKindPtr trigger;  ///< stamped by the same clock as the encoders
+  std::string temperature_topic;
   std::vector<std::string> joint_names;
   double silence = 0.5;  ///< s
   Speeds speeds;

@@ -15,6 +15,7 @@ void Debouncer::add(const Edge& edge, Nanoseconds heard) {
   if (!burst_ && edge.closed == level_) return;
   if (!burst_) {
     burst_ = edge.time;
+    timed_ = edge.timed;
     burst_heard_ = heard;
   }
   raw_ = edge.closed;
@@ -23,7 +24,7 @@ void Debouncer::add(const Edge& edge, Nanoseconds heard) {
 }
 
 void Debouncer::reconcile(bool closed, Nanoseconds now) {
-  if (!burst_ && closed != level_) add({now, closed}, now);
+  if (!burst_ && closed != level_) add({now, closed, false}, now);
 }
 
 std::optional<Edge> Debouncer::settled(Nanoseconds now) {
@@ -33,7 +34,7 @@ std::optional<Edge> Debouncer::settled(Nanoseconds now) {
     if (!chatters) return std::nullopt;
     raw_ = true;
   }
-  const Edge edge{*burst_, raw_};
+  const Edge edge{*burst_, raw_, timed_};
   burst_.reset();
   if (raw_ == level_) {
     ++glitches_;

@@ -20,7 +20,8 @@ class Debouncer {
   /// One edge, in the order of time, and when it was heard of; an edge to the level that already is
   /// says nothing. Quiet is counted from the hearing: stamps may come from another clock.
   void add(const Edge& edge, Nanoseconds heard);
-  /// The level as the port has it: where edges were lost it begins a burst, stamped now.
+  /// The level as the port has it: where edges were lost it begins a burst that is not
+  /// timed.
   void reconcile(bool closed, Nanoseconds now);
   /// The level that has held since, if it is a new one.
   std::optional<Edge> settled(Nanoseconds now);
@@ -30,6 +31,7 @@ class Debouncer {
   Nanoseconds quiet_;
   bool level_ = false, raw_ = false;
   std::optional<Nanoseconds> burst_;  ///< its first edge
+  bool timed_ = true;                 ///< as its first edge
   Nanoseconds last_ = 0, heard_ = 0;  ///< of the last edge: stamp, hearing
   Nanoseconds burst_heard_ = 0;
   std::uint64_t glitches_ = 0;

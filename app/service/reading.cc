@@ -48,6 +48,18 @@ std::optional<std::pair<EncoderSample, EncoderSample>> SampleHistory::around(Nan
   return std::pair{*std::prev(after), *after};
 }
 
+Nanoseconds SampleHistory::period() const {
+  constexpr std::size_t kLast = 33;
+  if (samples_.size() < 3) return 0;
+  std::vector<Nanoseconds> gaps;
+  for (std::size_t i = samples_.size() - std::min(kLast, samples_.size()); i + 1 < samples_.size();
+       ++i)
+    gaps.push_back(samples_[i + 1].time - samples_[i].time);
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::ranges::nth_element(gaps, middle);
+  return *middle;
+}
+
 std::optional<bool> SampleHistory::at_rest(const std::vector<EncoderScale>& scales, double speed,
                                            Nanoseconds span) const {
   if (samples_.empty()) return std::nullopt;

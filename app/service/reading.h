@@ -33,6 +33,8 @@ class SampleHistory {
   const EncoderSample& last() const { return samples_.back(); }
   std::uint64_t out_of_order() const { return out_of_order_; }
 
+  /// The usual time between samples: the median of the last ones; 0 with fewer than three.
+  Nanoseconds period() const;
   /// The two samples around a moment; nothing while the later one has not come or when the earlier
   /// one is gone.
   std::optional<std::pair<EncoderSample, EncoderSample>> around(Nanoseconds t) const;

@@ -1,7 +1,10 @@
 #include "app/service/ruling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
+#include <utility>
 
 #include "constraints/statistics.h"
 
@@ -43,14 +46,28 @@ std::pair<Change, Change> largest_changes(const LargestChange& limits, const Rob
   return {against_limit, against_sigma};
 }
 
+/// Rms of the check rows before and after, on the same rows: those that neither rejects.
+std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& before,
+                                               const std::vector<CheckRow>& after) {
+  double squares_before = 0, squares_after = 0, rows = 0;
+  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
+    if (before[i].rejected || after[i].rejected) continue;
+    squares_before += before[i].residual * before[i].residual;
+    squares_after += after[i].residual * after[i].residual;
+    ++rows;
+  }
+  if (rows == 0) return {0, 0};
+  return {std::sqrt(squares_before / rows), std::sqrt(squares_after / rows)};
+}
+
 }  // namespace
 
 Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solution& candidate,
                       const Solution& unchanged) {
   Ruling ruling;
   ruling.answer = std::string(to_string(candidate.verdict.answer));
-  ruling.check_before = unchanged.residual.check.rms_without_rejected;
-  ruling.check_after = candidate.residual.check.rms_without_rejected;
+  std::tie(ruling.check_before, ruling.check_after) =
+      rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
   if (candidate.verdict.answer != Answer::improved) {
     ruling.why = candidate.verdict.why;
     return ruling;
@@ -80,6 +97,15 @@ Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solut
                         std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
                         std::abs(sigma.change) / sigma.parameter->sigma);
   return ruling;
+}
+
+int parameters_identified(const Solution& solution) {
+  return static_cast<int>(
+      std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
+}
+
+int rows_put_aside(const Solution& solution) {
+  return static_cast<int>(std::ranges::count(solution.rejected, false, &Rejected::check));
 }
 
 CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p) {

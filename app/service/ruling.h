@@ -18,10 +18,17 @@ struct Ruling {
 
 /// Judges a candidate, identified from rows starting at `active`, against the active parameters;
 /// `unchanged` is what the same rows say with every parameter of the robot held at them. It is
-/// acceptable when its verdict is improved, its check residual (rows beyond the noise left out) is
-/// better by the margin, and no parameter changes by more than its limit.
+/// acceptable when its verdict is improved, its check residual (rows that either finds beyond the
+/// noise left out of both) is better by the margin, and no parameter changes by more than its
+/// limit.
 Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solution& candidate,
                       const Solution& unchanged);
+
+/// Parameters that the rows determine.
+int parameters_identified(const Solution& solution);
+/// Rows put aside, from which nothing was identified. Outliers among the check rows are named in
+/// the result, but count all the same.
+int rows_put_aside(const Solution& solution);
 
 /// Whether the active model explains the touches of a quick check.
 struct CheckRuling {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 namespace selfcal {
 namespace {
@@ -28,6 +29,13 @@ std::string hours(double value) {
 }
 
 }  // namespace
+
+int utc_offset(std::int64_t unix_ms) {
+  const std::time_t t = unix_ms / 1000;
+  std::tm local{};
+  localtime_r(&t, &local);
+  return static_cast<int>(local.tm_gmtoff);
+}
 
 std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                       int utc_offset_s) {

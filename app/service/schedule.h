@@ -35,6 +35,9 @@ struct Due {
   std::string why;
 };
 
+/// By how much local time is ahead of UTC (s), as the system has it.
+int utc_offset(std::int64_t unix_ms);
+
 /// What is due now, if anything. `utc_offset_s` is that of the local time.
 std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                        std::optional<double> temperature, int utc_offset_s);

@@ -32,21 +32,38 @@ class Service {
   const Situation& situation() const { return situation_; }
 
  private:
-  // service.cc
+  // service.cc: the turn
   void listen();
-  void check_self();
-  void check_rest();
-  void check_stop();
-  void check_schedule();
   void handle_events();
-  void handle_command(const CommandMessage& command);
-  void act(const Action& action);
   void put(Event event);
   void put(Event::What what, bool ok = true, std::string why = {});
   /// False, with a fault on its way, when the store has failed.
   template <class T>
   bool stored(const Result<T>& result);
   Nanoseconds longest_wait() const;
+
+  // service_checks.cc: what is looked at in every turn
+  void check_senses();
+  void begin_test();
+  void check_self();
+  std::string missing() const;
+  void check_rest();
+  void check_stop();
+  void check_schedule();
+
+  // service_commands.cc: what a person asks
+  void handle_command(const CommandMessage& command);
+  void answer(const Action& action);
+
+  // service_actions.cc: what the transition says
+  void act(const Action& action);
+
+  // service_motion.cc: what the robot is asked
+  void make_move(Action::Do what);
+  void move(MoveKind kind, const std::vector<double>& q, double speed);
+  void stop(const std::string& why);
+  double touch_speed(const StepRecord& step) const;
+  std::string label() const;
 
   // service_session.cc: from the plan to the last touch
   std::string config_hash() const;
@@ -56,11 +73,8 @@ class Service {
   void resume();
   bool open(Session session);
   void announce_plan();
+  int repeats() const;
   bool next_via_home(int step) const;
-  void move(MoveKind kind, const std::vector<double>& q, double speed);
-  double touch_speed(const StepRecord& step) const;
-  std::string label() const;
-  void stop(const std::string& why);
   void read_touch();
   void put_aside(const std::string& why);
   void keep(TouchRecord touch);
@@ -68,9 +82,15 @@ class Service {
 
   // service_result.cc: from the rows to the decision
   void analyse();
+  void join_base();
   void identify();
+  void give_up();
   void judge();
-  void keep_result(const ResultRecord& result, bool candidate);
+  ResultRecord new_result() const;
+  ResultRecord result_of_failure(const std::string& why) const;
+  ResultRecord result_of_check();
+  ResultRecord result_of_candidate() const;
+  void keep_result(const ResultRecord& result);
   void apply(const std::string& why);
   void reject();
   void roll_back();
@@ -82,14 +102,21 @@ class Service {
 
   // service_report.cc: what is told
   void report();
-  void report_health(bool in_any_case);
   void tell(const std::string& level, const std::string& text);
   void tell_progress(const TouchRecord* touch, const std::string& note);
   StatusMessage status() const;
-  std::vector<HealthMessage> health() const;
   void remember_use();
   void remember_held();
   void recall_use();
+
+  // service_health.cc: how well everything is
+  void report_health(bool in_any_case);
+  std::vector<HealthMessage> health() const;
+  HealthMessage health_of_service() const;
+  HealthMessage health_of_encoders() const;
+  HealthMessage health_of_trigger() const;
+  HealthMessage health_of_store() const;
+  HealthMessage health_of_calibration() const;
 
   Config config_;
   Ports ports_;

@@ -1,25 +1,17 @@
-// What is told: status on every change, progress after every touch, health once a second and at
-// once when something gets worse, events to the store and the log.
+// What is told: status on every change, progress after every touch, events to the store and the
+// log; and what is remembered over a restart.
 #include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 #include "app/service/service.h"
 
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kHealth = kSecond / 5;        // between two looks at what may have degraded
 constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the store
 constexpr Nanoseconds kRemember = 60 * kSecond;     // between two savings of the hours of motion
-
-std::string text(double value, const char* format = "%.4g") {
-  char out[32];
-  std::snprintf(out, sizeof out, format, value);
-  return out;
-}
 
 }  // namespace
 
@@ -54,11 +46,8 @@ StatusMessage Service::status() const {
   status.active = models_.name();
   status.active_since_ms = models_.since_ms();
   status.candidate = situation_.candidate;
-  const std::time_t t = status.unix_ms / 1000;
-  std::tm local{};
-  localtime_r(&t, &local);
   status.next_due_ms =
-      next_due(config_.schedule, since_, status.unix_ms, static_cast<int>(local.tm_gmtoff));
+      next_due(config_.schedule, since_, status.unix_ms, utc_offset(status.unix_ms));
   status.temperature = senses_.celsius().value_or(std::nan(""));
   return status;
 }
@@ -83,32 +72,20 @@ void Service::report() {
   if (now_ - last_remembered_ >= kRemember) remember_use();
 }
 
-void Service::report_health(bool in_any_case) {
-  if (!in_any_case && now_ - last_health_ < kHealth) return;
-  last_health_ = now_;
-  const std::vector<HealthMessage> lines = health();
-  std::string levels;
-  for (const HealthMessage& line : lines) levels += std::to_string(static_cast<int>(line.level));
-  if (in_any_case || levels != last_levels_) messenger_.publish(lines, config_.serial);
-  last_levels_ = levels;
-}
-
 void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
-  const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
-                                                            : config_.touch.repeats;
   ProgressMessage progress;
   progress.unix_ms = ports_.clock->unix_ms();
   progress.robot = config_.id;
   progress.session = session_.record.id;
   progress.kind = session_.record.kind;
   progress.planned = static_cast<std::uint32_t>(session_.plan.size());
-  const int next = next_step(session_, repeats, config_.limits.attempts);
+  const int next = next_step(session_, repeats(), config_.limits.attempts);
   progress.done = static_cast<std::uint32_t>(next);
   progress.put_aside =
-      static_cast<std::uint32_t>(steps_put_aside(session_, repeats, config_.limits.attempts));
+      static_cast<std::uint32_t>(steps_put_aside(session_, repeats(), config_.limits.attempts));
   const double each =
       touches_this_run_ > 0 ? seconds(now_ - collecting_since_) / touches_this_run_ : std::nan("");
-  progress.seconds_left = each * repeats * (progress.planned - progress.done);
+  progress.seconds_left = each * repeats() * (progress.planned - progress.done);
   progress.residual = std::nan("");
   progress.note = note;
   if (touch) {
@@ -124,65 +101,6 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
     }
   }
   messenger_.publish(progress);
-}
-
-std::vector<HealthMessage> Service::health() const {
-  std::vector<HealthMessage> lines;
-  const auto add = [&](const std::string& name, Health level, const std::string& message,
-                       std::vector<std::pair<std::string, std::string>> values = {}) {
-    lines.push_back({"selfcal: " + name, level, message, std::move(values)});
-  };
-  const bool fault = situation_.state == ServiceState::fault;
-  add("service",
-      fault                   ? Health::error
-      : situation_.unfinished ? Health::warn
-                              : Health::ok,
-      std::string(to_string(situation_.state)) + ": " + situation_.why,
-      {{"hardware", std::string(hardware_may(situation_.state, situation_.phase))},
-       {"session", std::to_string(situation_.session)}});
-  const bool alive = senses_.encoders_alive(now_);
-  add("encoders", alive ? Health::ok : Health::error, alive ? "readings come in" : "silent",
-      {{"rate_hz", text(senses_.rate())},
-       {"dropped", std::to_string(senses_.samples_dropped())},
-       {"out_of_order", std::to_string(senses_.samples().out_of_order())}});
-  const auto closed = senses_.closed();
-  const bool contact = situation_.state == ServiceState::collecting || situation_.unfinished;
-  add("trigger",
-      !closed               ? Health::error
-      : *closed && !contact ? Health::warn
-                            : Health::ok,
-      !closed   ? "level unknown"
-      : *closed ? "closed"
-                : "open",
-      {{"glitches", std::to_string(senses_.glitches())},
-       {"dropped", std::to_string(senses_.edges_dropped())}});
-  const auto bytes = store_.bytes();
-  add("store", !bytes || !damaged_.empty() ? Health::error : Health::ok,
-      !bytes             ? bytes.error().what
-      : damaged_.empty() ? "sound"
-                         : damaged_,
-      {{"size_mb", text(bytes ? static_cast<double>(*bytes) / 1e6 : 0)},
-       {"limit_mb", text(static_cast<double>(config_.store_bytes) / 1e6)}});
-  const bool unexplained = last_check_ && !last_check_->explained;
-  const bool wrong = !models_.refused().empty();
-  std::string message = models_.name() + " is active";
-  if (wrong) message = models_.refused();
-  if (situation_.candidate) message += "; a result waits: accept or reject";
-  if (unexplained) message += "; the last check was not explained";
-  add("calibration",
-      wrong                                                           ? Health::error
-      : unexplained || situation_.candidate || models_.session() == 0 ? Health::warn
-                                                                      : Health::ok,
-      message,
-      {{"age_h",
-        text(models_.since_ms() == 0
-                 ? 0
-                 : static_cast<double>(ports_.clock->unix_ms() - models_.since_ms()) / 3.6e6)},
-       {"check_p", last_check_ ? text(last_check_->p_value) : "none yet"},
-       {"check_rms_mm", last_check_ ? text(1e3 * last_check_->rms) : "none yet"},
-       {"motion_h", text(motion_hours_)},
-       {"temperature_c", text(senses_.celsius().value_or(std::nan("")))}});
-  return lines;
 }
 
 void Service::remember_use() {

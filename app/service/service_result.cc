@@ -28,11 +28,6 @@ Options held() {
   return options;
 }
 
-int identified(const Solution& solution) {
-  return static_cast<int>(
-      std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
-}
-
 }  // namespace
 
 void Service::analyse() {
@@ -46,13 +41,17 @@ void Service::analyse() {
     const std::string few = too_few(*data_);
     return put(Event::What::computed, few.empty(), few);
   }
-  Session base;
+  join_base();
+}
+
+/// A quick check is judged beside the session behind the active parameters.
+void Service::join_base() {
   const auto record = store_.session(models_.session());
   auto plan = store_.plan(models_.session());
   auto touches = store_.touches(models_.session());
   if (!record || !plan || !touches)
     return put(Event::What::computed, false, "the session behind the active parameters is gone");
-  base = {*record, std::move(*plan), std::move(*touches)};
+  const Session base{*record, std::move(*plan), std::move(*touches)};
   const auto meaning = read_meaning(base.record.config);
   if (!meaning) return put(Event::What::computed, false, meaning.error().what);
   base_ = std::make_shared<DataSet>(rows_of(base, *meaning));
@@ -72,6 +71,11 @@ void Service::identify() {
   };
 }
 
+void Service::give_up() {
+  computation_.give_up();
+  when_computed_ = {};
+}
+
 void Service::judge() {
   const bool check = session_.kind() == SessionKind::check;
   unchanged_ = std::make_shared<Solution>();
@@ -84,48 +88,64 @@ void Service::judge() {
     return std::string();
   });
   when_computed_ = [this, check](const std::string& failure) {
-    ResultRecord result;
-    result.session = session_.record.id;
-    result.unix_ms = ports_.clock->unix_ms();
-    result.touches = data_->rows.rows();
-    if (!failure.empty()) {
-      result.answer = "failed";
-      result.decision = "rejected";
-      result.why = failure;
-      return keep_result(result, false);
-    }
-    if (check) {
-      last_check_ = rule_on_check(*solution_, *unchanged_, config_.schedule.check_p);
-      const CheckRuling& ruling = *last_check_;
-      result.touches -= static_cast<int>(std::ranges::count(data_->rows.check, 0));
-      result.answer = ruling.explained ? "explained" : "not-explained";
-      result.decision = "none";
-      result.why = ruling.why;
-      result.p_value = ruling.p_value;
-      result.check_before = ruling.expected;
-      result.check_after = ruling.rms;
-      return keep_result(result, false);
-    }
-    const Ruling ruling =
-        rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
-    result.answer = ruling.answer;
-    result.decision = !ruling.acceptable         ? "rejected"
-                      : config_.accept.automatic ? "applying"
-                                                 : "candidate";
-    result.why = ruling.why;
-    result.p_value = solution_->verdict.p_value;
-    result.check_before = ruling.check_before;
-    result.check_after = ruling.check_after;
-    result.endpoint_sigma = solution_->endpoint.rms;
-    result.rejected = static_cast<int>(solution_->rejected.size());
-    result.identified = identified(*solution_);
-    result.json = to_json(*solution_, config_.robot->name(), models_.hash()).dump();
-    result.robot_text = robot_text(*models_.active(), solution_->values);
-    keep_result(result, ruling.acceptable);
+    const ResultRecord result = !failure.empty() ? result_of_failure(failure)
+                                : check          ? result_of_check()
+                                                 : result_of_candidate();
+    keep_result(result);
   };
 }
 
-void Service::keep_result(const ResultRecord& result, bool candidate) {
+ResultRecord Service::new_result() const {
+  ResultRecord result;
+  result.session = session_.record.id;
+  result.unix_ms = ports_.clock->unix_ms();
+  result.touches = data_->rows.rows();
+  return result;
+}
+
+ResultRecord Service::result_of_failure(const std::string& why) const {
+  ResultRecord result = new_result();
+  result.answer = "failed";
+  result.decision = "rejected";
+  result.why = why;
+  return result;
+}
+
+ResultRecord Service::result_of_check() {
+  last_check_ = rule_on_check(*solution_, *unchanged_, config_.schedule.check_p);
+  const CheckRuling& ruling = *last_check_;
+  ResultRecord result = new_result();
+  result.touches -= static_cast<int>(std::ranges::count(data_->rows.check, 0));
+  result.answer = ruling.explained ? "explained" : "not-explained";
+  result.decision = "none";
+  result.why = ruling.why;
+  result.p_value = ruling.p_value;
+  result.check_before = ruling.expected;
+  result.check_after = ruling.rms;
+  return result;
+}
+
+ResultRecord Service::result_of_candidate() const {
+  const Ruling ruling = rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
+  ResultRecord result = new_result();
+  result.answer = ruling.answer;
+  result.decision = !ruling.acceptable         ? "rejected"
+                    : config_.accept.automatic ? "applying"
+                                               : "candidate";
+  result.why = ruling.why;
+  result.p_value = solution_->verdict.p_value;
+  result.check_before = ruling.check_before;
+  result.check_after = ruling.check_after;
+  result.endpoint_sigma = solution_->endpoint.rms;
+  result.rejected = rows_put_aside(*solution_);
+  result.identified = parameters_identified(*solution_);
+  result.json = to_json(*solution_, config_.robot->name(), models_.hash()).dump();
+  result.robot_text = robot_text(*models_.active(), solution_->values);
+  return result;
+}
+
+void Service::keep_result(const ResultRecord& result) {
+  const bool candidate = result.decision == "applying" || result.decision == "candidate";
   const SlotRecord slot{result.session, result.unix_ms, models_.hash(), result.robot_text};
   if (!stored(store_.finish(result, candidate ? &slot : nullptr))) return;
   tell(candidate || result.answer == "explained" ? "info" : "warning",

@@ -7,12 +7,10 @@
 namespace selfcal {
 namespace {
 
+constexpr Nanoseconds kMostPeriods = 3;  // between the samples around an edge
+constexpr Nanoseconds kLeastGap = 4 * kMillisecond;
 constexpr Nanoseconds kLatestSample = kSecond / 5;  // after an edge, before it counts as lost
 constexpr double kNearPath = 0.05;                  // rad or m
-
-Eigen::VectorXd vector_of(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
 
 /// Distance from a straight joint path, largest joint.
 double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
@@ -20,6 +18,15 @@ double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
   const double length = way.squaredNorm();
   const double s = length > 0 ? std::clamp((q - from).dot(way) / length, 0.0, 1.0) : 0.0;
   return (q - from - s * way).cwiseAbs().maxCoeff();
+}
+
+/// The targets with `touches` in all, as evenly as they go; those that get none are left out.
+std::vector<TouchTarget> shared_out(std::vector<TouchTarget> targets, std::size_t touches) {
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    targets[i].touches =
+        static_cast<int>((i + 1) * touches / targets.size() - i * touches / targets.size());
+  std::erase_if(targets, [](const TouchTarget& target) { return target.touches == 0; });
+  return targets;
 }
 
 }  // namespace
@@ -36,7 +43,6 @@ bool Service::can_check() const {
 }
 
 void Service::begin_plan(const std::string& why) {
-  const bool check = situation_.kind == SessionKind::check;
   SessionRecord record;
   record.kind = std::string(to_string(situation_.kind));
   record.reason = why;
@@ -48,13 +54,10 @@ void Service::begin_plan(const std::string& why) {
   record.seed = sessions && !sessions->empty() ? sessions->front().id + 1 : 1;
   TouchPlanOptions options = config_.plan;
   options.seed = record.seed;
-  std::vector<TouchTarget> targets = config_.targets;
-  if (check)
-    for (std::size_t i = 0; i < targets.size(); ++i)
-      targets[i].touches =
-          static_cast<int>((i + 1) * config_.schedule.check_touches / targets.size() -
-                           i * config_.schedule.check_touches / targets.size());
-  std::erase_if(targets, [](const TouchTarget& target) { return target.touches == 0; });
+  const std::vector<TouchTarget> targets =
+      situation_.kind == SessionKind::check
+          ? shared_out(config_.targets, config_.schedule.check_touches)
+          : config_.targets;
   auto plan = std::make_shared<TouchPlan>();
   computation_.start([plan, robot = models_.active(), sets = config_.sets, targets, options,
                       obstacles = config_.obstacles](const Computation::Tell&) {
@@ -112,15 +115,19 @@ void Service::resume() {
   if (open({**record, std::move(*plan), std::move(*touches)})) announce_plan();
 }
 
+/// The touches of a quick check are made twice, so that a false trigger is no alarm.
+int Service::repeats() const {
+  return session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
+                                               : config_.touch.repeats;
+}
+
 void Service::announce_plan() {
-  const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
-                                                            : config_.touch.repeats;
   Event event;
   event.what = Event::What::planned;
   event.kind = session_.kind();
   event.session = session_.record.id;
   event.steps = static_cast<int>(session_.plan.size());
-  event.step = next_step(session_, repeats, config_.limits.attempts);
+  event.step = next_step(session_, repeats(), config_.limits.attempts);
   event.via_home = true;
   if (!senses_.encoders_alive(now_) || senses_.at_rest() != true)
     return put(Event::What::planned, false, "the robot does not stand still, or is silent");
@@ -154,53 +161,19 @@ bool Service::next_via_home(int step) const {
   return session_.plan[step].via_home || step > situation_.step + 1;
 }
 
-std::string Service::label() const {
-  int attempt = 0;
-  for (const TouchRecord& touch : session_.touches) attempt += touch.step == situation_.step;
-  return std::to_string(session_.record.id) + "/" + std::to_string(situation_.step) + "." +
-         std::to_string(attempt) + " " + session_.plan[situation_.step].set;
-}
-
-double Service::touch_speed(const StepRecord& step) const {
-  const Eigen::VectorXd from = vector_of(step.start), to = vector_of(step.end);
-  if (from.size() != to.size() || from.size() == 0) return config_.speeds.travel;
-  const double way = (endpoint(*models_.active(), to) - endpoint(*models_.active(), from)).norm();
-  if (way <= 0) return config_.speeds.travel;
-  return std::min(config_.speeds.travel,
-                  config_.speeds.touch / way * (to - from).cwiseAbs().maxCoeff());
-}
-
-void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
-  MotionRequest request;
-  request.id = ++motion_id_;
-  request.kind = kind;
-  request.label = label();
-  request.q = q;
-  request.speed = speed;
-  asked_ = q;
-  outstanding_ = true;
-  stopped_ = 0;
-  senses_.expect(request.id);
-  if (const auto sent = ports_.motion->request(request); !sent)
-    put(Event::What::broken, false, sent.error().what);
-}
-
-void Service::stop(const std::string& why) {
-  senses_.expect(0);
-  if (!outstanding_) return;  // what moves is not ours to stop
-  stopped_ = now_;
-  if (const auto sent = ports_.motion->stop(why); !sent) tell("error", sent.error().what);
-}
-
 void Service::read_touch() {
   const Nanoseconds edge = senses_.closing()->time;
+  if (!senses_.closing()->timed)
+    return put_aside("the trigger's edge got lost, and with it the moment of the touch");
   const auto around = senses_.samples().around(edge - nanoseconds(config_.touch.delay));
   if (!around) return put_aside("no encoder reading just before the edge");
   TouchRecord touch;
   touch.step = situation_.step;
   touch.edge = edge;
   std::tie(touch.before, touch.after) = *around;
-  if (touch.after.time - touch.before.time > kLatestSample)
+  // Across a gap the joints may have done anything: samples were lost, or a clock was set.
+  if (touch.after.time - touch.before.time >
+      std::max(kMostPeriods * senses_.samples().period(), kLeastGap))
     return put_aside("the encoder readings around the edge are too far apart");
   const Reading reading = reading_of(touch, meaning_);
   const TouchRuling ruling =
@@ -230,21 +203,18 @@ void Service::keep(TouchRecord touch) {
   session_.touches.push_back(touch);
   ++touches_this_run_;
   if (touch.outcome != TouchOutcome::taken) tell("warning", called + ": " + touch.why);
-  const int repeats = session_.kind() == SessionKind::check ? std::max(2, config_.touch.repeats)
-                                                            : config_.touch.repeats;
   Event event;
   event.what = Event::What::read;
   event.ok = touch.outcome == TouchOutcome::taken;
   event.why = touch.why;
-  event.step = next_step(session_, repeats, config_.limits.attempts);
+  event.step = next_step(session_, repeats(), config_.limits.attempts);
   event.via_home = next_via_home(event.step);
   put(std::move(event));
   tell_progress(&session_.touches.back(), touch.why);
 }
 
 void Service::abort(const std::string& why) {
-  computation_.give_up();
-  when_computed_ = {};
+  give_up();
   // While a session is being planned the store has none of it yet.
   const auto unfinished = store_.unfinished();
   if (!stored(unfinished)) return;

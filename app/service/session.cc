@@ -11,10 +11,6 @@ namespace {
 
 constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
 
-Eigen::VectorXd vector_of(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
-
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
 int set_index(const Meaning& meaning, const std::string& name) {
@@ -40,6 +36,11 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
 }
 
 }  // namespace
+
+Eigen::VectorXd vector_of(const std::vector<double>& readings) {
+  return Eigen::Map<const Eigen::VectorXd>(readings.data(),
+                                           static_cast<Eigen::Index>(readings.size()));
+}
 
 std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales) {
   Node node = config.description;

@@ -30,6 +30,9 @@ struct Meaning {
   std::vector<Set> sets;
 };
 
+/// Readings as the store and the ports have them, as a vector.
+Eigen::VectorXd vector_of(const std::vector<double>& readings);
+
 /// Text of the meaning of the touches that a session is going to make, and back.
 std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales);
 Result<Meaning> read_meaning(const std::string& text);

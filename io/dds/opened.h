@@ -16,12 +16,20 @@ class DdsOpening {
   template <class T>
   void open(DdsWriter<T>& writer, const std::string& topic, const DdsQos& qos,
             Wakeup* wakeup = nullptr) {
-    keep(writer, DdsWriter<T>::open(participant_, topic, qos, wakeup));
+    take(writer, DdsWriter<T>::open(participant_, topic, qos, wakeup));
   }
   template <class T>
   void open(DdsReader<T>& reader, const std::string& topic, const DdsQos& qos,
             Wakeup* wakeup = nullptr) {
-    keep(reader, DdsReader<T>::open(participant_, topic, qos, wakeup));
+    take(reader, DdsReader<T>::open(participant_, topic, qos, wakeup));
+  }
+  /// Moves what was opened elsewhere to its place, or keeps its failure.
+  template <class T>
+  void take(T& place, Result<T> opened) {
+    if (opened)
+      place = *std::move(opened);
+    else if (!failure_)
+      failure_ = std::move(opened).error();
   }
   /// What `make` returns, or the failure.
   template <class Make>
@@ -31,14 +39,6 @@ class DdsOpening {
   }
 
  private:
-  template <class Endpoint>
-  void keep(Endpoint& endpoint, Result<Endpoint> opened) {
-    if (opened)
-      endpoint = *std::move(opened);
-    else if (!failure_)
-      failure_ = std::move(opened).error();
-  }
-
   const DdsParticipant& participant_;
   std::optional<Failure> failure_;
 };

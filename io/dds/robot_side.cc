@@ -23,18 +23,14 @@ Result<std::unique_ptr<DdsRobotSide>> DdsRobotSide::open(const DdsParticipant& p
   DdsOpening opening(participant);
   opening.open(endpoints.replies, robot_topic(config.robot, "motion_reply"), kExchange, &wakeup);
   opening.open(endpoints.requests, robot_topic(config.robot, "motion_request"), kExchange, &wakeup);
-  opening.open(endpoints.joints, ros_topic(config.joint_states), kSensorWriter, &wakeup);
-  opening.open(endpoints.trigger, ros_topic(config.trigger), kSensorWriter, &wakeup);
   opening.open(endpoints.temperature, ros_topic(config.temperature), kSensorWriter, &wakeup);
-  return opening.finish([&] {
-    return std::unique_ptr<DdsRobotSide>(
-        new DdsRobotSide(std::move(config.joints), std::move(endpoints)));
-  });
-}
-
-DdsRobotSide::DdsRobotSide(std::vector<std::string> joints, Endpoints endpoints)
-    : joints_(std::move(joints)), dds_(std::move(endpoints)) {
-  for (const auto& joint : joints_) names_.push_back(borrowed::text(joint));
+  if (!config.joint_states.empty())
+    opening.take(endpoints.joints, DdsJointSender::open(participant, config.joint_states,
+                                                        std::move(config.joints), wakeup));
+  if (!config.trigger.empty())
+    opening.take(endpoints.trigger, DdsTriggerSender::open(participant, config.trigger, wakeup));
+  return opening.finish(
+      [&] { return std::unique_ptr<DdsRobotSide>(new DdsRobotSide(std::move(endpoints))); });
 }
 
 Result<void> DdsRobotSide::take(std::vector<RobotRequest>& out) {
@@ -53,21 +49,6 @@ Result<void> DdsRobotSide::take(std::vector<RobotRequest>& out) {
 
 Result<void> DdsRobotSide::reply(const MotionReply& reply) {
   return dds_.replies.write(borrow(reply));
-}
-
-Result<void> DdsRobotSide::publish_joints(Nanoseconds stamp, const std::vector<double>& q) {
-  const auto names = static_cast<std::uint32_t>(names_.size());
-  const auto positions = static_cast<std::uint32_t>(q.size());
-  return dds_.joints.write(
-      {.header_ = header(stamp),
-       .name_ = {names, names, names_.data(), false},
-       .position_ = {positions, positions, const_cast<double*>(q.data()), false},
-       .velocity_ = {},
-       .effort_ = {}});
-}
-
-Result<void> DdsRobotSide::publish_trigger(Nanoseconds stamp, bool closed) {
-  return dds_.trigger.write({.header_ = header(stamp), .data_ = closed});
 }
 
 Result<void> DdsRobotSide::publish_temperature(Nanoseconds stamp, double celsius) {

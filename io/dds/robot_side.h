@@ -1,5 +1,6 @@
-// A robot's side of the topics: takes requests for motion, sends replies, joint states, the
-// trigger's level and the temperature. For a robot's driver, or a pretend robot in its own process.
+// A robot's side of the topics: takes requests for motion, sends replies and the temperature; joint
+// states and the trigger's level too, where they have no bus of their own. For a robot's driver, or
+// a pretend robot in its own process.
 #pragma once
 
 #include <memory>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "io/dds/endpoint.h"
+#include "io/dds/senders.h"
 #include "io/ports.h"
 
 namespace selfcal {
@@ -14,7 +16,7 @@ namespace selfcal {
 struct DdsRobotConfig {
   std::string robot;                          ///< the robot's id
   std::vector<std::string> joints;            ///< names, by joint
-  std::string joint_states = "joint_states";  ///< names in ROS
+  std::string joint_states = "joint_states";  ///< names in ROS; empty: not sent here
   std::string trigger = "touch_trigger";
   std::string temperature = "temperature";
 };
@@ -38,29 +40,31 @@ class DdsRobotSide {
   Result<void> reply(const MotionReply& reply);
 
   /// Stamps (ns) are of one clock of the robot's choice, the same for joints and trigger. `q` (rad
-  /// or m) has as many values as there are joints.
-  Result<void> publish_joints(Nanoseconds stamp, const std::vector<double>& q);
+  /// or m) has as many values as there are joints. Only with topics for them.
+  Result<void> publish_joints(Nanoseconds stamp, const std::vector<double>& q) {
+    return dds_.joints->send(stamp, q);
+  }
   /// `stamp` is the moment the level changed; repeat both about ten times a second.
-  Result<void> publish_trigger(Nanoseconds stamp, bool closed);
+  Result<void> publish_trigger(Nanoseconds stamp, bool closed) {
+    return dds_.trigger->send(stamp, closed);
+  }
   Result<void> publish_temperature(Nanoseconds stamp, double celsius);
 
   /// Whether a service sends requests and hears the replies.
   bool connected() const { return dds_.requests.matched() > 0 && dds_.replies.matched() > 0; }
   /// Whether someone hears joint states and trigger.
-  bool heard() const { return dds_.joints.matched() > 0 && dds_.trigger.matched() > 0; }
+  bool heard() const { return dds_.joints->matched() > 0 && dds_.trigger->matched() > 0; }
 
  private:
   struct Endpoints {
     DdsReader<dds::MotionRequest> requests;
     DdsWriter<dds::MotionReply> replies;
-    DdsWriter<dds::JointState> joints;
-    DdsWriter<dds::StampedBool> trigger;
     DdsWriter<dds::Temperature> temperature;
+    std::unique_ptr<DdsJointSender> joints;
+    std::unique_ptr<DdsTriggerSender> trigger;
   };
-  DdsRobotSide(std::vector<std::string> joints, Endpoints endpoints);
+  explicit DdsRobotSide(Endpoints endpoints) : dds_(std::move(endpoints)) {}
 
-  std::vector<std::string> joints_;
-  std::vector<char*> names_;  ///< the same, as the messages take them
   Endpoints dds_;
 };
 

@@ -4,7 +4,8 @@
 // where the robot was at the moment of touch and must stay exact, so the offset is taken once,
 // from the arrival of the first joint state, and kept: all stamps share its error, the time that
 // the message was under way. Only when the sender's clock has stepped by more than a second is it
-// taken anew.
+// taken anew. Clocks of two computers drift apart by up to a tenth of a second in an hour, which no
+// touch notices: its edge and its samples share the offset. A drift of a second counts as a step.
 #pragma once
 
 #include <optional>
@@ -22,9 +23,6 @@ class TimeMapping {
   bool observe(Nanoseconds stamp, Nanoseconds arrived);
   /// A sender's stamp on our time base; nothing before the first observe().
   std::optional<Nanoseconds> ours(Nanoseconds stamp) const;
-  /// Takes the offset anew at the next observe(), for when nothing is being measured: clocks of two
-  /// computers drift apart by up to a tenth of a second in an hour.
-  void forget() { offset_.reset(); }
   /// How often the sender's clock has stepped.
   std::uint64_t steps() const { return steps_; }
 

@@ -13,17 +13,13 @@ Result<void> Store::add(const EventRecord& event) {
 }
 
 Result<std::vector<EventRecord>> Store::events(int newest) {
-  auto rows = sqlite::Statement::prepare(
-      database_, "SELECT id, unix_ms, level, text FROM event ORDER BY id DESC LIMIT ?1",
-      {std::int64_t{newest < 0 ? 0 : newest}});
-  if (!rows) return tl::unexpected(rows.error());
-  std::vector<EventRecord> events;
-  for (;;) {
-    const Result<bool> row = rows->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return events;
-    events.push_back({rows->integer(0), rows->integer(1), rows->text(2), rows->text(3)});
-  }
+  return sqlite::all(
+      sqlite::Statement::prepare(
+          database_, "SELECT id, unix_ms, level, text FROM event ORDER BY id DESC LIMIT ?1",
+          {std::int64_t{newest < 0 ? 0 : newest}}),
+      [](const sqlite::Statement& row) {
+        return EventRecord{row.integer(0), row.integer(1), row.text(2), row.text(3)};
+      });
 }
 
 Result<void> Store::remember(const std::string& name, const std::string& text) {

@@ -98,17 +98,10 @@ Result<std::optional<ResultRecord>> Store::result(std::int64_t session) {
 }
 
 Result<std::vector<ResultRecord>> Store::results(int newest) {
-  auto rows = sqlite::Statement::prepare(
-      database_, SELFCAL_FIGURES " FROM result ORDER BY session DESC LIMIT ?1",
-      {std::int64_t{newest < 0 ? 0 : newest}});
-  if (!rows) return tl::unexpected(rows.error());
-  std::vector<ResultRecord> results;
-  for (;;) {
-    const Result<bool> row = rows->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return results;
-    results.push_back(figures_of(*rows));
-  }
+  return sqlite::all(sqlite::Statement::prepare(
+                         database_, SELFCAL_FIGURES " FROM result ORDER BY session DESC LIMIT ?1",
+                         {std::int64_t{newest < 0 ? 0 : newest}}),
+                     figures_of);
 }
 
 }  // namespace selfcal

@@ -29,14 +29,7 @@ SessionRecord session_of(const sqlite::Statement& row) {
 }
 
 Result<std::vector<SessionRecord>> sessions_of(Result<sqlite::Statement> rows) {
-  if (!rows) return tl::unexpected(rows.error());
-  std::vector<SessionRecord> sessions;
-  for (;;) {
-    const Result<bool> row = rows->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return sessions;
-    sessions.push_back(session_of(*rows));
-  }
+  return sqlite::all(std::move(rows), session_of);
 }
 
 Result<std::int64_t> add_session(sqlite3* database, const SessionRecord& session,

@@ -5,8 +5,10 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "io/result.h"
 
@@ -48,6 +50,20 @@ class Statement {
   Result<void> bind(int parameter, const Value& value);
   sqlite3_stmt* statement_;
 };
+
+/// What `read(const Statement&)` makes of each row, in their order.
+template <class Read>
+auto all(Result<Statement> rows, Read read)
+    -> Result<std::vector<std::invoke_result_t<Read, const Statement&>>> {
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<std::invoke_result_t<Read, const Statement&>> made;
+  for (;;) {
+    const Result<bool> row = rows->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return made;
+    made.push_back(read(*rows));
+  }
+}
 
 /// Runs a statement to its end; its rows are dropped. Returns the number of rows changed.
 Result<std::int64_t> run(sqlite3* database, const char* sql, Values values = {});

@@ -54,7 +54,8 @@ class SerialRobot final : public Robot {
       : model_(std::move(model)),
         moving_(serial::moving_frames(model_)),
         parameters_(serial::parameters(model_)),
-        preference_(serial::preference(model_)) {
+        preference_(serial::preference(model_)),
+        mechanics_(serial::mechanics(model_)) {
     for (const int f : moving_) {
       const Frame& frame = model_.frames[f];
       joints_.push_back({frame.name,
@@ -94,7 +95,17 @@ class SerialRobot final : public Robot {
     for (int j = 0; j < joint_count(); ++j)
       for (int k = 0; k < joint_count(); ++k)
         if (coupling_(k, j) != 0)
-          J.col(j) += coupling_(k, j) * xi[gear_index(j)] * psi.col(variable_index(k));
+          J.col(j) += coupling_(k, j) * xi[gear_index(j)] * psi.col(variable_parameter(k));
+  }
+
+  const Mechanics& mechanics() const override { return mechanics_; }
+  std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
+    return serial::frame_poses(model_, q);
+  }
+  int variable_parameter(int joint) const override {
+    const int f = moving_[joint];
+    return serial::kFields * f +
+           (model_.frames[f].motion == Motion::revolute ? serial::kTheta : serial::kR);
   }
 
   Node describe(const Eigen::VectorXd& xi) const override {
@@ -120,15 +131,9 @@ class SerialRobot final : public Robot {
   int frame_count() const { return static_cast<int>(model_.frames.size()); }
   int joint_count() const { return static_cast<int>(moving_.size()); }
   int gear_index(int joint) const { return serial::kFields * frame_count() + joint; }
-  /// The parameter that the joint variable is added to.
-  int variable_index(int joint) const {
-    const int f = moving_[joint];
-    return serial::kFields * f +
-           (model_.frames[f].motion == Motion::revolute ? serial::kTheta : serial::kR);
-  }
-
   Lanes joint_variable(const ConfigurationBlock& block, const Eigen::VectorXd& xi, int k) const {
     Lanes sum = Lanes::Zero(kLanes);
+    if (block.added.rows() > 0) sum = block.added.col(k);
     for (int j = 0; j < joint_count(); ++j)
       if (coupling_(k, j) != 0) sum += coupling_(k, j) * xi[gear_index(j)] * block.q.col(j);
     return sum;
@@ -216,7 +221,7 @@ class SerialRobot final : public Robot {
         if (coupling_(k, j) != 0)
           gear +=
               coupling_(k, j) *
-              (psi.col(variable_index(k)).reshaped(kLanes, 6).array().colwise() * block.q.col(j));
+              (psi.col(variable_parameter(k)).reshaped(kLanes, 6).array().colwise() * block.q.col(j));
     }
   }
 
@@ -224,6 +229,7 @@ class SerialRobot final : public Robot {
   std::vector<int> moving_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
+  Mechanics mechanics_;
   std::vector<Joint> joints_;
   Eigen::MatrixXd coupling_;
 };

@@ -41,8 +41,11 @@ Model read(const Node& node, Problems& problems);
 /// The file content of `model`.
 Node write(const Model& model);
 
+/// The frames as links. Frames without mass count as massless.
+Mechanics mechanics(const Model& model);
+
 /// Joint torque (N m; N for a prismatic joint) that gravity exerts on each joint variable at `q`
-/// (readings), from the masses of the frames it carries. Frames without mass count as massless.
+/// (readings).
 Eigen::VectorXd gravity_torques(const Model& model, const Eigen::VectorXd& q);
 
 /// Pose of every frame in the world at readings `q`, with the model's own values.

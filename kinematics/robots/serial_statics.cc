@@ -1,6 +1,5 @@
-// Gravity on a serial robot: what a person checks a robot file by.
-//   torque_j = z_j . sum over carried masses of (c - O_j) x m g   (revolute)
-//   force_j  = z_j . sum over carried masses of m g               (prismatic)
+// Where the links of a serial robot are and what gravity does to them: what a person checks a robot
+// file by.
 #include <cstdio>
 
 #include "kinematics/robots/serial.h"
@@ -29,20 +28,23 @@ std::vector<Eigen::Isometry3d> frame_poses(const Model& model, const Eigen::Vect
   return poses;
 }
 
-Eigen::VectorXd gravity_torques(const Model& model, const Eigen::VectorXd& q) {
-  const std::vector<Eigen::Isometry3d> poses = frame_poses(model, q);
-  const std::vector<int> moving = moving_frames(model);
-  Eigen::VectorXd torques = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(moving.size()));
-  for (size_t j = 0; j < moving.size(); ++j) {
-    const Eigen::Vector3d z = poses[moving[j]].linear().col(2);
-    const Eigen::Vector3d O = poses[moving[j]].translation();
-    for (size_t f = moving[j]; f < model.frames.size(); ++f) {
-      const Eigen::Vector3d weight = model.frames[f].mass.value_or(0) * model.gravity;
-      const bool turns = model.frames[moving[j]].motion == Motion::revolute;
-      torques[j] +=
-          turns ? z.dot((poses[f] * model.frames[f].com - O).cross(weight)) : z.dot(weight);
-    }
+Mechanics mechanics(const Model& model) {
+  Mechanics mechanics{model.gravity, {}};
+  int joint = 0;
+  for (const Frame& frame : model.frames) {
+    const bool moves = frame.motion != Motion::fixed;
+    mechanics.links.push_back({frame.name, moves ? joint++ : -1, frame.motion == Motion::revolute,
+                               frame.mass, frame.com});
   }
+  return mechanics;
+}
+
+Eigen::VectorXd gravity_torques(const Model& model, const Eigen::VectorXd& q) {
+  const Mechanics links = mechanics(model);
+  const std::vector<Eigen::Isometry3d> poses = frame_poses(model, q);
+  Eigen::VectorXd torques(q.size());
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    torques[j] = joint_torque(links, poses, {}, static_cast<int>(j));
   return torques;
 }
 
@@ -57,9 +59,7 @@ std::vector<std::string> remarks(const Model& model) {
   std::snprintf(text, sizeof text, "gravity in %s's frame: %.3f %.3f %.3f m/s^2",
                 model.frames[moving.front()].name.c_str(), g.x(), g.y(), g.z());
   std::vector<std::string> lines{text};
-  double mass = 0;
-  for (const Frame& frame : model.frames) mass += frame.mass.value_or(0);
-  if (mass == 0) {
+  if (!mechanics(model).masses_known()) {
     lines.push_back("no masses given: static torques are unknown");
     return lines;
   }
@@ -67,7 +67,8 @@ std::vector<std::string> remarks(const Model& model) {
   lines.push_back("static torques with every joint in the middle of its limits:");
   for (size_t j = 0; j < moving.size(); ++j) {
     const Frame& frame = model.frames[moving[j]];
-    std::snprintf(text, sizeof text, "  %s %.2f %s", frame.name.c_str(), torques[j],
+    std::snprintf(text, sizeof text, "  %s %.2f %s", frame.name.c_str(),
+                  torques[j],
                   frame.motion == Motion::revolute ? "N m" : "N");
     lines.push_back(text);
   }

@@ -87,7 +87,7 @@ TEST(RankColumns, OfRealRowsAsksMoreOfAGearRatioThanOfAnAngle) {
   // third, a ratio too, to 5e-5.
   const Eigen::MatrixXd R = Eigen::Vector4d(2000, 2000, 20000, 1).asDiagonal();
   RankRule rule;
-  rule.ratio = {0, 1, 1, 0};
+  rule.least = {2e-3, 1e-4, 1e-4, 2e-3};
   EXPECT_THAT(statuses(rank_columns(R, {0, 1, 2}, 0, rule)),
               ElementsAre(Status::identified, Status::no_effect, Status::identified));
   rule.rows = kRows;  // the structural question knows no units

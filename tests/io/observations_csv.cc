@@ -94,11 +94,12 @@ TEST_F(ObservationsCsv, NamesRowAndColumnOfWhatIsNoNumber) {
             "observations.csv: row 1: column q2: expected a number, got nothing");
   for (const char* column : {"x", "qw", "distance", "alpha", "beta", "phi", "m1x", "m12z", "fx",
                              "tz", "dq2", "nx", "temperature", "time"}) {
-    std::string text = "set,q1,q2,x,y,z,qw,qx,qy,qz,nx,ny,nz,";
+    std::string text = "set,q1,q2,x,y,z,qw,qx,qy,qz,nx,ny,nz,fx,fy,fz,tx,ty,tz,dq1,dq2,";
     const bool in_vector = text.find("," + std::string(column) + ",") != std::string::npos;
     if (!in_vector) text += std::string(column) + ",";
     text += "part\ntable,0,0";
-    for (const char* each : {"x", "y", "z", "qw", "qx", "qy", "qz", "nx", "ny", "nz"}) {
+    for (const char* each : {"x", "y", "z", "qw", "qx", "qy", "qz", "nx", "ny", "nz", "fx", "fy",
+                             "fz", "tx", "ty", "tz", "dq1", "dq2"}) {
       text += each == std::string(column) ? ",inf" : ",";
     }
     text += in_vector ? ",\n" : ",nan,\n";

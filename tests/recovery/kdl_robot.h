@@ -25,6 +25,11 @@ class KdlRobot final : public Robot {
   Node describe(const Eigen::VectorXd& xi) const override { return model_.describe(xi); }
   std::string identity() const override { return model_.identity(); }
   std::vector<std::string> remarks() const override { return {}; }
+  const Mechanics& mechanics() const override { return model_.mechanics(); }
+  std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
+    return model_.link_poses(q);
+  }
+  int variable_parameter(int j) const override { return model_.variable_parameter(j); }
 
   void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
               PsiBlock* psi) const override {

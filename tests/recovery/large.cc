@@ -8,6 +8,7 @@
 #include "constraints/identification.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/session.h"
+#include "tests/support/end_position.h"
 
 namespace selfcal::recovery {
 namespace {

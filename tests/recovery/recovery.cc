@@ -10,6 +10,7 @@
 #include "tests/recovery/kdl_robot.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/session.h"
+#include "tests/support/end_position.h"
 
 namespace selfcal::recovery {
 namespace {

@@ -111,15 +111,4 @@ inline Exact without_priors(const Robot& robot, Eigen::VectorXd truth,
   return exact;
 }
 
-/// Position of the endpoint at readings q.
-inline Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& xi,
-                                const Eigen::VectorXd& q) {
-  ConfigurationBlock block;
-  block.q = q.transpose().replicate(kLanes, 1).array();
-  block.count = 1;
-  Locations X;
-  robot.locate(block, xi, Body::endpoint, X, nullptr);
-  return X.p(0);
-}
-
 }  // namespace selfcal::recovery

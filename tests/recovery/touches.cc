@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "constraints/endpoint_sigma.h"
 #include "constraints/identification.h"
 #include "io/robot_file.h"
 #include "io/yaml.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/session.h"
+#include "tests/support/end_position.h"
 
 namespace selfcal::recovery {
 namespace {
@@ -59,24 +59,6 @@ SetPart step_of_a(int rows) {
   Node gauge = entry({{"method", "plane"}});
   gauge.set("parallel_to", entry({{"set", "a"}, {"distance", "0.2"}, {"noise", "2e-6"}}));
   return {"gauge", gauge, rows};
-}
-
-/// Errors of the end position over 500 poses after the best rigid motion (Kabsch), in ascending
-/// order.
-std::vector<double> aligned_errors(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const Eigen::VectorXd& truth) {
-  const Eigen::MatrixXd q = random_poses(robot, nullptr, 500, 11);
-  Eigen::Matrix3Xd model(3, 500), real(3, 500);
-  for (Eigen::Index i = 0; i < 500; ++i) {
-    model.col(i) = endpoint(robot, xi, q.row(i));
-    real.col(i) = endpoint(robot, truth, q.row(i));
-  }
-  const Eigen::Isometry3d motion(Eigen::umeyama(model, real, false));
-  std::vector<double> errors;
-  for (Eigen::Index i = 0; i < 500; ++i)
-    errors.push_back((motion * model.col(i) - real.col(i)).norm());
-  std::sort(errors.begin(), errors.end());
-  return errors;
 }
 
 double root_mean_square(const std::vector<double>& errors) {

@@ -31,7 +31,7 @@ std::vector<Key> documented_keys() {
   std::ifstream file(std::filesystem::path(SELFCAL_SOURCE_DIR) / "app/service/config.h");
   static const std::regex kRow(R"(^//   (  )?([a-z_]+) +(.*)$)");
   static const std::regex kDefault(
-      R"(^((?:the robot's name|frames' names|\$STATE_DIRECTORY or state|selfcal/ID/trigger|[^ ]+)) *(.*)$)");
+      R"(^((?:the robot's name|frames' names|\$STATE_DIRECTORY or state|[^ ]+)) *(.*)$)");
   static const std::regex kLimit(R"(([a-z_]+) ([0-9.]+))");
   std::vector<Key> keys;
   std::string line, part;
@@ -66,9 +66,11 @@ const CellKeys kValues = {{"id", "cell-7"},
                           {"state", "kept"},
                           {"target", "2.0e-3"},
                           {"domain", "3"},
+                          {"encoders.kind", "dds"},
                           {"encoders.topic", "joints"},
                           {"encoders.joints", "[a, b, c, d, e, f]"},
                           {"encoders.silence", "0.25"},
+                          {"trigger.kind", "dds"},
                           {"trigger.topic", "probe"},
                           {"trigger.debounce", "0.001"},
                           {"trigger.delay", "0.0005"},
@@ -195,8 +197,8 @@ TEST(Config, HasTheDefaultsOfItsTable) {
   EXPECT_TRUE(config->resume && config->schedule.check_first);
   EXPECT_EQ(config->id, rx90().name());
   EXPECT_EQ(config->serial, config->id);
-  EXPECT_EQ(config->joint_topic, "joint_states");
-  EXPECT_EQ(config->trigger_topic, "selfcal/staubli_rx90/trigger");
+  EXPECT_EQ(config->encoders->source(), "topic joint_states");
+  EXPECT_EQ(config->trigger->source(), "topic selfcal/staubli_rx90/trigger");
   EXPECT_EQ(config->joint_names.size(), 6u);
 }
 
@@ -204,7 +206,8 @@ TEST(Config, PutsEveryValueInItsPlace) {
   const auto config = load_cell(kValues);
   ASSERT_TRUE(config) << config.error().what;
   EXPECT_EQ(config->id, "cell-7");
-  EXPECT_EQ(config->trigger_topic, "probe");
+  EXPECT_EQ(config->encoders->source(), "topic joints");
+  EXPECT_EQ(config->trigger->source(), "topic probe");
   EXPECT_EQ(config->plan.home[5], 0.1);
   EXPECT_EQ(config->plan.apart, 0.05);
   EXPECT_EQ(config->limits.settle, 4 * kSecond);

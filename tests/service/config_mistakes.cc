@@ -49,6 +49,24 @@ TEST(Config, RefusesListsOfTheWrongLength) {
   EXPECT_THAT(refusal({{"encoders.joints", "[a, b]"}}), HasSubstr("6 names"));
 }
 
+TEST(Config, NamesTheKindsItKnowsWhenItDoesNotKnowOne) {
+  EXPECT_THAT(refusal({{"encoders.kind", "ethercat"}}),
+              AllOf(HasSubstr("config.yaml:"), HasSubstr("'kind'"), HasSubstr("one of dds")));
+  EXPECT_THAT(refusal({{"trigger.kind", "telepathy"}}), HasSubstr("one of dds, gpio"));
+}
+
+TEST(Config, LetsAKindReadItsOwnKeysAndRefuseAnyOther) {
+  EXPECT_THAT(refusal({{"trigger.line", "probe"}}), HasSubstr("unknown key 'line'"));
+  EXPECT_THAT(refusal({{"trigger.kind", "gpio"}}), HasSubstr("'line'"));
+  EXPECT_THAT(refusal({{"trigger.kind", "gpio"}, {"trigger.line", "p"}, {"trigger.topic", "t"}}),
+              HasSubstr("unknown key 'topic'"));
+}
+
+TEST(Config, RefusesEncodersAndATriggerThatTwoClocksStamp) {
+  EXPECT_THAT(refusal({{"trigger.kind", "gpio"}, {"trigger.line", "probe"}}),
+              HasSubstr("a kind that the same clock stamps"));
+}
+
 TEST(Config, RefusesATimeOfDayThatIsNone) {
   for (const char* at : {"\"24:00\"", "\"2:60\"", "\"02:30h\"", "\"noon\"", "\"-1:30\""})
     EXPECT_THAT(refusal({{"schedule.at", at}}), HasSubstr("HH:MM")) << at;

@@ -43,6 +43,18 @@ TEST(Debouncer, CountsABurstThatEndsAtTheOldLevelAsAGlitch) {
   EXPECT_EQ(debouncer.settled(4 * kSecond)->time, 3 * kSecond) << "the glitch is forgotten";
 }
 
+TEST(Debouncer, PassesOnThatTheMomentOfATouchIsNotKnown) {
+  Debouncer debouncer(kQuiet);
+  debouncer.add({kSecond, true, false}, kSecond);
+  debouncer.add({kSecond + 50 * kMicrosecond, false}, kSecond);
+  debouncer.add({kSecond + 90 * kMicrosecond, true}, kSecond);
+  EXPECT_FALSE(debouncer.settled(kSecond + kQuiet)->timed);
+  debouncer.add({2 * kSecond, false}, 2 * kSecond);
+  EXPECT_TRUE(debouncer.settled(3 * kSecond)->timed);
+  debouncer.reconcile(true, 4 * kSecond);
+  EXPECT_FALSE(debouncer.settled(5 * kSecond)->timed) << "noticed, not felt";
+}
+
 TEST(Debouncer, IgnoresAnEdgeToTheLevelThatAlreadyIs) {
   Debouncer debouncer(kQuiet);
   debouncer.begin(true);

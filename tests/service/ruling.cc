@@ -22,8 +22,8 @@ struct Case {
   Solution candidate, unchanged;
   Case() {
     candidate.verdict = {Answer::improved, "better", 1e-6};
-    candidate.residual.check.rms_without_rejected = 1e-4;
-    unchanged.residual.check.rms_without_rejected = 2e-4;
+    candidate.residual.check_rows = {{1e-4, false}};
+    unchanged.residual.check_rows = {{2e-4, false}};
     for (const Parameter& parameter : rx90().parameters())
       candidate.parameters.push_back({parameter, parameter.value, 1e-5, Status::identified, {}});
   }
@@ -64,8 +64,17 @@ TEST(Ruling, RefusesWhatIsNotBetterByTheMargin) {
   EXPECT_THAT(one.rule().why, HasSubstr("explain the check rows as well"));
   one.accept.margin = 0.49;
   EXPECT_TRUE(one.rule().acceptable);
-  one.candidate.residual.check.rms_without_rejected = std::nan("");
+  one.candidate.residual.check_rows[0].residual = std::nan("");
   EXPECT_FALSE(one.rule().acceptable) << "what is not a number is not better";
+}
+
+TEST(Ruling, ComparesTheSameRowsBeforeAndAfter) {
+  Case one;
+  one.unchanged.residual.check_rows = {{2e-4, false}, {9e-3, true}, {2e-4, false}};
+  one.candidate.residual.check_rows = {{1e-4, false}, {1e-4, false}, {8e-3, true}};
+  const Ruling ruling = one.rule();
+  EXPECT_DOUBLE_EQ(ruling.check_before, 2e-4) << "without what either rejects";
+  EXPECT_DOUBLE_EQ(ruling.check_after, 1e-4);
 }
 
 TEST(Ruling, HasALimitOfItsOwnForEachPartOfTheMachine) {
@@ -95,6 +104,21 @@ TEST(Ruling, TakesALimitOfZeroAsNoChangeAtAll) {
   EXPECT_TRUE(one.rule().acceptable) << "nothing has changed";
   one.find(Part::link, Quantity::length).value += 1e-9;
   EXPECT_FALSE(one.rule().acceptable);
+}
+
+TEST(Ruling, CountsAsPutAsideOnlyRowsThatWereNotToIdentify) {
+  Case one;
+  one.candidate.rejected = {{3, "table", 4e-4, false, "outlier"},
+                            {7, "table", 3e-4, true, "outlier among the check rows"},
+                            {9, "wall", 2e-4, false, "outlier"}};
+  EXPECT_EQ(rows_put_aside(one.candidate), 2);
+}
+
+TEST(Ruling, CountsTheParametersThatAreIdentified) {
+  Case one;
+  one.candidate.parameters[0].status = Status::held;
+  one.candidate.parameters[1].status = Status::grouped;
+  EXPECT_EQ(parameters_identified(one.candidate), rx90().parameters().size() - 2);
 }
 
 // ---------------------------------------------------------------------- quick check

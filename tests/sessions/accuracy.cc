@@ -9,6 +9,7 @@
 
 #include "app/service/session.h"
 #include "tests/sessions/cell.h"
+#include "tests/support/end_position.h"
 
 namespace selfcal {
 namespace {
@@ -23,8 +24,7 @@ struct Outcome {
 /// One session from `start` to its result over DDS.
 ResultMessage calibrate(Cell& cell) {
   cell.start_service();
-  if (!cell.until([&] { return cell.in_state("idle"); })) return {};
-  EXPECT_TRUE(cell.command("start").accepted);
+  if (!cell.start_session()) return {};
   cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); });
   return cell.results.empty() ? ResultMessage{} : cell.results.back();
 }

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "constraints/endpoint_sigma.h"
 #include "io/clock.h"
 
 namespace selfcal {
@@ -139,33 +138,18 @@ CommandReplyMessage Cell::command(const std::string& verb) {
   return must(commander->send({DdsCommander::new_id(), verb, "test"}, 20 * kSecond));
 }
 
+bool Cell::start_session() {
+  if (!until([&] { return in_state("idle"); })) return false;
+  const CommandReplyMessage reply = command("start");
+  EXPECT_TRUE(reply.accepted) << reply.why;
+  return reply.accepted;
+}
+
 std::string Cell::log() const { return text_of(folder / "service.log"); }
 
 std::unique_ptr<Machine> Cell::machine() const {
   return must(load_machine(folder / (options.robot + "_cell.scenario.yaml"),
                            must(load_config(folder / "config.yaml"))));
-}
-
-std::vector<double> aligned_errors(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const Eigen::VectorXd& truth) {
-  const Eigen::MatrixXd q = random_poses(robot, nullptr, 500, 11);
-  Eigen::Matrix3Xd model(3, 500), real(3, 500);
-  const auto at = [&](const Eigen::VectorXd& parameters, Eigen::Index i) {
-    ConfigurationBlock block{q.row(i).replicate(kLanes, 1).array(), 1};
-    Locations X;
-    robot.locate(block, parameters, Body::endpoint, X, nullptr);
-    return X.p(0);
-  };
-  for (Eigen::Index i = 0; i < 500; ++i) {
-    model.col(i) = at(xi, i);
-    real.col(i) = at(truth, i);
-  }
-  const Eigen::Isometry3d motion(Eigen::umeyama(model, real, false));
-  std::vector<double> errors;
-  for (Eigen::Index i = 0; i < 500; ++i)
-    errors.push_back((motion * model.col(i) - real.col(i)).norm());
-  std::ranges::sort(errors);
-  return errors;
 }
 
 }  // namespace selfcal

@@ -52,6 +52,8 @@ class Cell {
   bool until(const std::function<bool()>& holds, Nanoseconds limit = 300 * kSecond);
   /// The reply to a command, or a failed test.
   CommandReplyMessage command(const std::string& verb);
+  /// Starts a session once the service is idle; false, and a failed test, when it does not begin.
+  bool start_session();
   bool in_state(const std::string& state) const {
     return !statuses.empty() && statuses.back().state == state;
   }
@@ -77,10 +79,5 @@ class Cell {
   std::unique_ptr<DdsMonitor> monitor_;
   std::unique_ptr<Running> service_, robot_;
 };
-
-/// Length of the end position's error (m), in ascending order, over 500 random poses after the
-/// best rigid motion of the base, which touches of unknown planes cannot place.
-std::vector<double> aligned_errors(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const Eigen::VectorXd& truth);
 
 }  // namespace selfcal

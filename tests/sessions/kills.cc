@@ -46,8 +46,7 @@ Answer answer_of(const ResultMessage& result) {
 /// robot.
 void run_to_result(Cell& cell, const std::string& preload = {}) {
   cell.start_service(preload);
-  cell.until([&] { return cell.in_state("idle"); });
-  EXPECT_TRUE(cell.command("start").accepted);
+  EXPECT_TRUE(cell.start_session());
   cell.until([&] { return !cell.results.empty(); });
 }
 
@@ -84,8 +83,7 @@ void kill_at_random(bool live, const std::string& preload, int kills, std::uint6
     ++sessions;
     if (live) cell.start_robot();
     cell.start_service(preload);
-    cell.until([&] { return cell.in_state("idle"); });
-    EXPECT_TRUE(cell.command("start").accepted);
+    EXPECT_TRUE(cell.start_session());
     cell.until([&] { return !cell.progress.empty() || !cell.results.empty(); });
     std::set<TouchKey> committed;
     while (cell.results.empty() && done < kills && !testing::Test::HasFailure()) {

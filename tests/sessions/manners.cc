@@ -15,13 +15,25 @@ CellOptions small() {
   return options;
 }
 
+CellOptions small_and_live() {
+  CellOptions options = small();
+  options.live = true;
+  return options;
+}
+
+/// Starts the robot, the service and a session, and waits until five touches are made.
+bool makes_five_touches(Cell& cell) {
+  cell.start_robot();
+  cell.start_service();
+  return cell.start_session() && cell.until([&] { return cell.progress.size() >= 5; });
+}
+
 TEST(Manners, ALateJoinerSeesTheLastResultAndAPersonDecides) {
   CellOptions options = small();
   options.automatic = false;
   Cell cell(options);
   cell.start_service();
-  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  ASSERT_TRUE(cell.command("start").accepted);
+  ASSERT_TRUE(cell.start_session());
   ASSERT_TRUE(cell.until([&] { return cell.in_state("awaiting-acceptance"); }));
   EXPECT_EQ(cell.results.back().decision, "candidate");
   EXPECT_EQ(cell.statuses.back().active, "factory") << "nothing is applied behind anyone's back";
@@ -48,14 +60,8 @@ TEST(Manners, ALateJoinerSeesTheLastResultAndAPersonDecides) {
 }
 
 TEST(Manners, AbortStopsTheRobotAndKeepsWhatWasCollected) {
-  CellOptions options = small();
-  options.live = true;
-  Cell cell(options);
-  cell.start_robot();
-  cell.start_service();
-  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  ASSERT_TRUE(cell.command("start").accepted);
-  ASSERT_TRUE(cell.until([&] { return cell.progress.size() >= 5; }));
+  Cell cell(small_and_live());
+  ASSERT_TRUE(makes_five_touches(cell));
   ASSERT_TRUE(cell.command("abort").accepted);
   ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
   const auto store = cell.store();
@@ -98,14 +104,8 @@ TEST(Manners, TwoRobotsInOneDomainDoNotMix) {
 }
 
 TEST(Manners, SaysThatTheRobotIsGoneAndGoesOnByCommandWhenItIsBack) {
-  CellOptions options = small();
-  options.live = true;
-  Cell cell(options);
-  cell.start_robot();
-  cell.start_service();
-  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  ASSERT_TRUE(cell.command("start").accepted);
-  ASSERT_TRUE(cell.until([&] { return cell.progress.size() >= 5; }));
+  Cell cell(small_and_live());
+  ASSERT_TRUE(makes_five_touches(cell));
   cell.kill_robot();
   ASSERT_TRUE(cell.until([&] { return cell.in_state("fault"); }));
   EXPECT_NE(cell.statuses.back().why.find("no encoder reading"), std::string::npos)
@@ -127,8 +127,7 @@ TEST(Manners, SaysThatTheRobotIsGoneAndGoesOnByCommandWhenItIsBack) {
 TEST(Manners, ChecksQuicklyAndCalibratesOnlyWhenTheActiveModelFails) {
   Cell cell(CellOptions{});
   cell.start_service();
-  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  ASSERT_TRUE(cell.command("start").accepted);
+  ASSERT_TRUE(cell.start_session());
   ASSERT_TRUE(cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); }));
   ASSERT_TRUE(cell.command("check").accepted);
   ASSERT_TRUE(cell.until([&] { return cell.results.size() >= 2 && cell.in_state("idle"); }));

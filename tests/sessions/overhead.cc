@@ -41,8 +41,7 @@ TEST(Overhead, StaysBelowFiveMillisecondsOfCpuATouch) {
   Cell cell(options);
   cell.start_robot();
   cell.start_service();
-  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  ASSERT_TRUE(cell.command("start").accepted);
+  ASSERT_TRUE(cell.start_session());
   const auto touches = [&] {
     return std::ranges::count_if(cell.progress, [](const auto& p) { return !p.set.empty(); });
   };
@@ -70,8 +69,7 @@ TEST(Overhead, KeepsToItsMemoryOverManySessions) {
   cell.start_service();
   double early = 0;
   for (int session = 1; session <= sessions; ++session) {
-    ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-    ASSERT_TRUE(cell.command("start").accepted);
+    ASSERT_TRUE(cell.start_session());
     ASSERT_TRUE(cell.until(
         [&] { return static_cast<int>(cell.results.size()) >= session && cell.in_state("idle"); }));
     if (session == (sessions + 3) / 4) early = megabytes(cell.service_pid(), "VmRSS");

@@ -1,0 +1,105 @@
+// What the service looks at in every turn: whether it is fit to work, whether the robot stands,
+// whether a session is due.
+#include "app/service/service.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
+constexpr Nanoseconds kStopAgain = kSecond / 2;       // until the robot stands
+constexpr const char* kTwoSenders = "two senders of encoder readings: are they of two robots?";
+
+/// `what`, and why if that is known.
+std::string because(const std::string& what, const std::string& why) {
+  return why.empty() ? what : what + ": " + why;
+}
+
+}  // namespace
+
+/// What a robot that may move cannot do without.
+void Service::check_senses() {
+  if (!may_move(situation_.state)) return;
+  const auto broken = [&](const std::string& why) { put(Event::What::broken, false, why); };
+  if (!senses_.encoders_alive(now_))
+    broken(because("no encoder reading for " + format_number(config_.silence) + " s",
+                   ports_.encoders->trouble()));
+  if (!senses_.closed()) broken(because("the trigger is gone", ports_.trigger->trouble()));
+  if (ports_.encoders->senders() > 1) broken(kTwoSenders);
+}
+
+/// What is still missing for the self-test to pass; empty when nothing is.
+std::string Service::missing() const {
+  const auto joints = static_cast<int>(config_.robot->joints().size());
+  if (!senses_.encoders_alive(now_) || !senses_.at_rest())
+    return because("no encoder readings come in", ports_.encoders->trouble());
+  if (ports_.encoders->senders() > 1) return kTwoSenders;
+  if (situation_.unfinished && !*senses_.at_rest()) return "the robot moves";
+  if (senses_.samples().last().joints != joints)
+    return "the encoders give " + std::to_string(senses_.samples().last().joints) +
+           " joints, the robot has " + std::to_string(joints);
+  const std::string trouble = ports_.trigger->trouble();
+  if (!senses_.closed()) return because("the trigger's level is not known", trouble);
+  if (!trouble.empty()) return trouble;
+  if (*senses_.closed() && !situation_.unfinished)
+    return "the trigger is closed while the robot stands: in contact, stuck, or inverted (`active` "
+           "of a GPIO line)";
+  return {};
+}
+
+void Service::begin_test() {
+  testing_ = true;
+  test_began_ = now_;
+}
+
+void Service::check_self() {
+  if (!testing_) return;
+  const std::string why = missing();
+  if (!why.empty() && now_ - test_began_ < config_.limits.self_test - kSecond) return;
+  testing_ = false;
+  Event event;
+  event.what = Event::What::self_tested;
+  event.ok = why.empty();
+  event.why = why;
+  event.resume = config_.resume && !situation_.tested && now_ - began_ < kResumeWithin;
+  put(std::move(event));
+}
+
+void Service::check_rest() {
+  if (situation_.state != ServiceState::collecting || situation_.phase != Phase::settle) return;
+  if (senses_.at_rest() != true || !senses_.closing()) return;
+  const Nanoseconds edge = senses_.closing()->time - nanoseconds(config_.touch.delay);
+  if (senses_.samples().last().time > edge) put(Event::What::at_rest);
+}
+
+/// A stop may be lost on the way, or come before the robot listens: it is said until it stands.
+void Service::check_stop() {
+  if (stopped_ == 0) return;
+  if (senses_.encoders_alive(now_) && senses_.at_rest() == true && now_ - stopped_ > kStopAgain) {
+    stopped_ = 0;
+    outstanding_ = false;
+    return;
+  }
+  if (now_ - stopped_ < kStopAgain || may_move(situation_.state)) return;
+  stop("until it stands");
+}
+
+void Service::check_schedule() {
+  if (situation_.state != ServiceState::idle || !config_.schedule.any()) return;
+  if (now_ - last_due_ < kSecond) return;
+  last_due_ = now_;
+  const std::int64_t unix_ms = ports_.clock->unix_ms();
+  // Before the first session, and after the clock was set back, the interval begins now.
+  if (since_.unix_ms == 0 || since_.unix_ms > unix_ms + 3'600'000) since_.unix_ms = unix_ms;
+  Since since = since_;
+  since.motion_hours = motion_hours_ - since_.motion_hours;
+  since.calibrated = can_check();
+  const auto next = due(config_.schedule, since, unix_ms, senses_.celsius(), utc_offset(unix_ms));
+  if (!next) return;
+  Event event;
+  event.what = Event::What::due;
+  event.kind = next->kind;
+  event.why = next->why;
+  put(std::move(event));
+}
+
+}  // namespace selfcal

@@ -1,0 +1,68 @@
+// What the robot is asked: moves of the touch in progress, and to stop.
+#include "app/service/service.h"
+
+namespace selfcal {
+
+/// The move of an action, for the touch in progress.
+void Service::make_move(Action::Do what) {
+  using Do = Action::Do;
+  const StepRecord& step = session_.plan[situation_.step];
+  const std::vector<double> home(config_.plan.home.begin(), config_.plan.home.end());
+  const double travel = config_.speeds.travel;
+  switch (what) {
+    case Do::go_home:
+      return move(MoveKind::travel, home, travel);
+    case Do::go_to_start:
+      return situation_.closed ? move(MoveKind::retract, step.start, touch_speed(step))
+                               : move(MoveKind::travel, step.start, travel);
+    case Do::go_touch:
+      return move(step.group.empty() ? MoveKind::touch : MoveKind::seat, step.end,
+                  touch_speed(step));
+    case Do::go_back:
+      return move(MoveKind::retract, step.start, 2 * touch_speed(step));
+    case Do::back_off:
+      return move(MoveKind::retract, reached_, travel / 4);
+    default:
+      return;
+  }
+}
+
+std::string Service::label() const {
+  int attempt = 0;
+  for (const TouchRecord& touch : session_.touches) attempt += touch.step == situation_.step;
+  return std::to_string(session_.record.id) + "/" + std::to_string(situation_.step) + "." +
+         std::to_string(attempt) + " " + session_.plan[situation_.step].set;
+}
+
+double Service::touch_speed(const StepRecord& step) const {
+  const Eigen::VectorXd from = vector_of(step.start), to = vector_of(step.end);
+  if (from.size() != to.size() || from.size() == 0) return config_.speeds.travel;
+  const double way = (endpoint(*models_.active(), to) - endpoint(*models_.active(), from)).norm();
+  if (way <= 0) return config_.speeds.travel;
+  return std::min(config_.speeds.travel,
+                  config_.speeds.touch / way * (to - from).cwiseAbs().maxCoeff());
+}
+
+void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
+  MotionRequest request;
+  request.id = ++motion_id_;
+  request.kind = kind;
+  request.label = label();
+  request.q = q;
+  request.speed = speed;
+  asked_ = q;
+  outstanding_ = true;
+  stopped_ = 0;
+  senses_.expect(request.id);
+  if (const auto sent = ports_.motion->request(request); !sent)
+    put(Event::What::broken, false, sent.error().what);
+}
+
+void Service::stop(const std::string& why) {
+  senses_.expect(0);
+  if (!outstanding_) return;  // what moves is not ours to stop
+  stopped_ = now_;
+  if (const auto sent = ports_.motion->stop(why); !sent) tell("error", sent.error().what);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,135 @@
+// Touch by touch: approach → touch → settle → retract, and the contacts that were not looked for.
+#include "app/service/transition_step.h"
+
+namespace selfcal {
+
+void TransitionStep::planned() {
+  if (s_.state != ServiceState::planning) return;
+  if (!event_.ok) return fault(event_.why);
+  s_.session = event_.session;
+  s_.kind = event_.kind;
+  s_.step = event_.step;
+  s_.steps = event_.steps;
+  s_.lost_in_a_row = 0;
+  s_.unfinished = false;
+  if (s_.step >= s_.steps) return analyse();
+  if (s_.closed && event_.via_home && !event_.back_off)
+    return fault("the trigger is closed away from any touch: move the robot out by hand");
+  enter(ServiceState::collecting, s_.why);
+  s_.felt = false;
+  if (!event_.back_off) return approach(event_.via_home);
+  s_.next_step = s_.step;
+  s_.attempt = s_.failures = 0;
+  s_.stray = true;
+  back_off();
+}
+
+void TransitionStep::approach(bool via_home) {
+  s_.attempt = s_.failures = 0;
+  s_.stray = false;
+  s_.next_step = s_.step;
+  s_.via_home = via_home;
+  enter(Phase::approach);
+  act(via_home ? Do::go_home : Do::go_to_start);
+}
+
+void TransitionStep::touch() {
+  s_.stray = false;
+  enter(Phase::touch);
+  act(Do::go_touch);
+}
+
+void TransitionStep::closed() {
+  s_.closed = true;
+  if (s_.state != ServiceState::collecting) return;
+  if (s_.phase == Phase::touch) {
+    s_.felt = true;
+    act(Do::stop, "touched");
+    enter(Phase::settle);
+  } else if (s_.phase == Phase::approach) {
+    act(Do::stop, "the trigger closed on the way");
+    s_.stray = true;
+    enter(Phase::settle);
+  }
+}
+
+void TransitionStep::opened() {
+  s_.closed = false;
+  back_out();
+}
+
+void TransitionStep::moved() {
+  if (s_.state != ServiceState::collecting) return;
+  if (s_.phase == Phase::approach && s_.closed)
+    return fault("the trigger is closed before " + touch_name() + ": it is stuck");
+  if (s_.phase == Phase::approach && s_.via_home) {
+    s_.via_home = false;
+    enter(Phase::approach);
+    return act(Do::go_to_start);
+  }
+  if (s_.phase == Phase::approach) return touch();
+  if (s_.phase == Phase::touch) return act(Do::put_aside, "no touch up to the end of the search");
+  if (s_.phase != Phase::retract) return;
+  s_.out = true;
+  back_out();
+}
+
+void TransitionStep::at_rest() {
+  if (s_.state != ServiceState::collecting || s_.phase != Phase::settle) return;
+  if (!s_.stray) return act(Do::read);
+  act(Do::tell, "the trigger closed on the way to " + touch_name());
+  back_off();
+}
+
+/// To where the last move began.
+void TransitionStep::back_off() {
+  s_.out = false;
+  enter(Phase::retract);
+  act(Do::back_off);
+}
+
+/// Out of the contact once the retract has ended and the trigger is open.
+void TransitionStep::back_out() {
+  if (s_.state != ServiceState::collecting || s_.phase != Phase::retract || !s_.out) return;
+  if (s_.closed) return;  // the time limit tells when it is stuck
+  if (s_.stray) return backed_off();
+  if (s_.next_step == s_.step) return touch();
+  s_.step = s_.next_step;
+  if (s_.step >= s_.steps) return analyse();
+  approach(s_.next_via_home);
+}
+
+/// Out of a contact that was not looked for.
+void TransitionStep::backed_off() {
+  s_.stray = false;
+  if (++s_.failures >= limits_.attempts)
+    return fault("the trigger closes again and again on the way to " + touch_name() +
+                 ": something stands in the way");
+  s_.via_home = true;
+  enter(Phase::approach);
+  act(Do::go_home);
+}
+
+void TransitionStep::read() {
+  if (s_.state != ServiceState::collecting) return;
+  ++s_.attempt;
+  s_.next_step = event_.step;
+  s_.next_via_home = event_.via_home;
+  s_.out = false;
+  if (event_.ok)
+    s_.lost_in_a_row = 0;
+  else if (s_.next_step != s_.step && !s_.felt)
+    return fault("no touch has been felt: is the probe connected? The first: " + event_.why);
+  else if (s_.next_step != s_.step && ++s_.lost_in_a_row >= limits_.most_failures)
+    return fault(std::to_string(s_.lost_in_a_row) +
+                 " touches in a row gave nothing; the last: " + event_.why);
+  enter(Phase::retract);
+  act(Do::go_back);
+}
+
+void TransitionStep::refused() {
+  if (s_.state != ServiceState::collecting) return;
+  fault("motion to " + touch_name() + " was refused: " + event_.why);
+}
+
+}  // namespace selfcal

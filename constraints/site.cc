@@ -1,0 +1,92 @@
+#include "constraints/site.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+std::vector<Eigen::Vector3d> tips(const Robot& robot, const DataSet& data, int set) {
+  std::vector<Eigen::Vector3d> points;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (data.rows.set[row] == set)
+      points.push_back(robot.link_poses(data.rows.q.row(row).transpose()).back().translation());
+  return points;
+}
+
+/// Direction in which the points spread least.
+Eigen::Vector3d thin_direction(const std::vector<Eigen::Vector3d>& points,
+                               const Eigen::Vector3d& centre) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) spread += (p - centre) * (p - centre).transpose();
+  const Symmetric eigen = symmetric_eigen(spread);
+  const Eigen::Vector3d n = eigen.vectors.col(0);
+  return n.dot(centre) > 0 ? Eigen::Vector3d(-n) : n;  // towards the robot
+}
+
+SiteSet describe(const Robot& robot, const DataSet& data, int set) {
+  SiteSet site;
+  site.name = data.sets[set].name;
+  const std::string_view method = data.sets[set].method->name();
+  site.touch = method == "plane" || method == "plane-normal";
+  const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
+  if (points.empty()) return site;
+  for (const Eigen::Vector3d& p : points) site.centre += p / static_cast<double>(points.size());
+  if (!site.touch) return site;
+  for (int row = 0; row < data.rows.rows() && data.rows.normal.rows() > 0; ++row)
+    if (data.rows.set[row] == set && data.rows.normal.row(row).allFinite())
+      site.normal += data.rows.normal.row(row).transpose();
+  site.normal = site.normal.norm() > 1e-6 ? Eigen::Vector3d(site.normal.normalized())
+                                          : thin_direction(points, site.centre);
+  return site;
+}
+
+/// The thermometer's record, ascending in time.
+void take_record(const Observations& rows, Site& site) {
+  if (rows.time.size() == 0) return;
+  std::vector<int> order;
+  for (int row = 0; row < rows.rows(); ++row)
+    if (std::isfinite(rows.time[row])) order.push_back(row);
+  if (order.empty()) return;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return rows.time[a] < rows.time[b]; });
+  site.begin = rows.time[order.front()];
+  site.end = rows.time[order.back()];
+  for (const int row : order)
+    if (rows.temperature.size() > 0 && std::isfinite(rows.temperature[row])) {
+      site.times.push_back(rows.time[row]);
+      site.temperatures.push_back(rows.temperature[row]);
+    }
+}
+
+}  // namespace
+
+Site site_of(const Robot& robot, const DataSet& data) {
+  Site site;
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
+    site.sets.push_back(describe(robot, data, s));
+  take_record(data.rows, site);
+  site.loads = data.rows.wrench.size() > 0 && !data.rows.wrench.array().isNaN().all();
+  site.velocities = data.rows.velocity.size() > 0 && !data.rows.velocity.array().isNaN().all();
+  site.speeds = site.velocities && data.speeds;
+  return site;
+}
+
+Conditions conditions(const Observations& data, const std::vector<int>& rows) {
+  Conditions at;
+  const auto pick = [&](const Eigen::MatrixXd& column) {
+    return column.rows() > 0 ? Eigen::MatrixXd(column(rows, Eigen::all)) : Eigen::MatrixXd();
+  };
+  at.wrench = pick(data.wrench);
+  at.velocity = pick(data.velocity);
+  at.normal = pick(data.normal);
+  if (data.temperature.size() > 0) at.temperature = data.temperature(rows);
+  if (data.time.size() > 0) at.time = data.time(rows);
+  for (const int row : rows) at.set.push_back(data.set[row]);
+  return at;
+}
+
+}  // namespace selfcal

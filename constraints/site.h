@@ -1,0 +1,13 @@
+// Where and when the rows of a data set were taken, as effects ask for it.
+#pragma once
+
+#include "constraints/data_set.h"
+#include "kinematics/effect.h"
+
+namespace selfcal {
+
+/// `robot` gives the places of the rows by its own values. The direction that a set's normal points
+/// in is taken from its rows or, where these have none, from the side that the robot is on.
+Site site_of(const Robot& robot, const DataSet& data);
+
+}  // namespace selfcal

@@ -1,0 +1,68 @@
+// Encoders on a CAN bus, as CONFIG.yaml describes them.
+//
+//   key              default    range            meaning
+//   interface        required                    "can0"
+//   sync             see below                   the frame at which all joints take their
+//   positions:
+//     id             0x80       a CAN id
+//     extended       false
+//     send_period    none       0.0005 to 1 s    the service itself sends SYNC; else it is silent
+//   cycle            see below  1e-4 to 1 s      without sync: from a joint's frame to its next
+//   window           0.005      1e-4 to 1 s      with sync: a joint's frame comes within it
+//                    1.6 cycle  1 to 10 cycles   without: most between two frames of a joint
+//   delay            0          0 to 0.1 s       from the taking of a position to the stamp
+//   dbc              none                        file with the messages and signals named below
+//   joints           required                    NAME: {where its count stands, one of:
+//     id             a CAN id                    0x181 or 385, with
+//       extended     false                       29 bits
+//       byte         0          0 to 63          first byte, and
+//       length       4          1 to 8           bytes; or
+//       bit          none       0 to 511         first bit as DBC files have it, and
+//       bits         none       1 to 64
+//       signed       true
+//       endian       little     little, big
+//     cia402                                     {node: 1 to 127, tpdo: 1 to 4 (1), byte: 0 to 4
+//     (0)}:
+//                                                position actual value 0x6064 in a TPDO at its
+//                                                predefined id
+//     message, signal                            names in the DBC file, with
+//       unit         required   deg, rad, m, mm, counts of the physical value
+//                                                and what a count means:
+//     counts_per_turn required  above 0          unless the DBC's unit says it
+//     gear           1          above 0          turns of the counter for one of the joint
+//     pitch          none       above 0 (m)      way of one turn behind the gear; a linear joint
+//     zero           0          whole counts     reading of the joint's zero
+//     sign           1          1, -1
+//     wraps_at       none       2 to 2^48 counts the counter begins anew there: turns are counted
+//     on speed          10         1e-3 to 1e4      rad/s or m/s: a faster count is a jump fd false
+//     FD frames
+//   }
+//
+// Without `sync` there must be `cycle`; but joints by `cia402` are taken with SYNC 0x80 unless
+// `cycle` is there.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/can/map.h"
+#include "io/can/timing.h"
+#include "kinematics/description.h"
+
+namespace selfcal {
+
+struct CanSettings {
+  std::string interface;
+  CanMap map;
+  CanTiming timing;
+  double sync_send_period = 0;   ///< s; 0: nothing is ever written to the bus
+  int receive_buffer = 1 << 20;  ///< bytes asked for; the kernel gives what it may
+};
+
+/// Reads the mapping; `joints` are the names in the order of the samples, 1 to kMostJoints, and
+/// `folder` the one that a DBC file's name is relative to. What is wrong goes to `problems`.
+CanSettings read_can_settings(const Node& node, const std::vector<std::string>& joints,
+                              const std::filesystem::path& folder, Problems& problems);
+
+}  // namespace selfcal

@@ -1,0 +1,228 @@
+// X = X_geometry(q + A v) carried along by the twist B v = (shift, turn) at the tip T of the model:
+//   p += shift + turn x (p - p_T),   R = exp(turn) R
+// A, B and p_T are taken at the model's own values and do not follow xi. So Psi has, exactly,
+//   (p' + turn x p', exp(turn) w')
+// of each column (p', w') of the geometry's Psi where the joints then are, the same of J A for the
+// effects' parameters, and there, for a column (b, w) of B and the left Jacobian Jl of SO(3), also
+//   (b + w x (p - p_T), Jl(turn) w).
+#include "kinematics/corrected_robot.h"
+
+#include <cmath>
+#include <limits>
+
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kLooseness = 10;  ///< prior sigma over the largest usual size
+
+class CorrectedRobot final : public Robot {
+ public:
+  CorrectedRobot(std::shared_ptr<const Robot> geometry,
+                 std::vector<std::unique_ptr<Effect>> effects)
+      : geometry_(std::move(geometry)),
+        effects_(std::move(effects)),
+        parameters_(geometry_->parameters()),
+        preference_(geometry_->preference()) {
+    for (const auto& effect : effects_)
+      for (const EffectParameter& p : effect->parameters()) {
+        const std::string place = effect->at().empty() ? "robot" : effect->at();
+        Parameter parameter{place + "." + p.name, place, p.name, Quantity::other, Part::effect};
+        parameter.value = p.value;
+        parameter.tolerance = kLooseness * p.usual_most;
+        parameter.free = false;
+        parameter.other_unit = p.unit;
+        preference_.push_back(static_cast<int>(parameters_.size()));
+        parameters_.push_back(std::move(parameter));
+      }
+  }
+
+  const std::shared_ptr<const Robot>& geometry() const { return geometry_; }
+  const std::vector<std::unique_ptr<Effect>>& effects() const { return effects_; }
+
+  std::string_view kind() const override { return geometry_->kind(); }
+  const std::string& name() const override { return geometry_->name(); }
+  const std::vector<Joint>& joints() const override { return geometry_->joints(); }
+  const std::vector<Parameter>& parameters() const override { return parameters_; }
+  const std::vector<int>& preference() const override { return preference_; }
+  const Mechanics& mechanics() const override { return geometry_->mechanics(); }
+  std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
+    return geometry_->link_poses(q);
+  }
+  int variable_parameter(int j) const override { return geometry_->variable_parameter(j); }
+  std::string identity() const override { return geometry_->identity(); }
+  std::vector<std::string> remarks() const override { return geometry_->remarks(); }
+
+  void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
+              PsiBlock* psi) const override {
+    const std::vector<Deviation> deviations = deviations_of(block);
+    const Eigen::VectorXd own = xi.head(geometry_parameters());
+    const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
+    ConfigurationBlock moved = block;
+    moved.added.setZero(kLanes, block.q.cols());
+    for (int lane = 0; lane < kLanes; ++lane)
+      moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();
+    PsiBlock inner;
+    geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
+    if (psi) fill(deviations, v, X, inner, *psi);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Eigen::Matrix<double, 6, 1> twist = deviations[lane].by.tip * v;
+      if (twist.isZero(0)) continue;
+      const Eigen::Vector3d turn = twist.tail<3>();
+      const Eigen::Matrix3d R = exp_rotation(turn) * X.R(lane);
+      X.position.row(lane) +=
+          (twist.head<3>() + turn.cross(X.p(lane) - deviations[lane].tip)).transpose().array();
+      X.rotation.row(lane) = R.reshaped().transpose().array();
+    }
+  }
+
+  void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
+                      Eigen::MatrixXd& J) const override {
+    geometry_->joint_jacobian(xi.head(geometry_parameters()), psi.leftCols(geometry_parameters()),
+                              J);
+  }
+
+  Node describe(const Eigen::VectorXd& xi) const override {
+    Node node = geometry_->describe(xi.head(geometry_parameters()));
+    Node list = Node::list();
+    Eigen::Index at = geometry_parameters();
+    for (const auto& effect : effects_) {
+      const auto count = static_cast<Eigen::Index>(effect->parameters().size());
+      list.items.push_back(effect->describe(xi.segment(at, count)));
+      at += count;
+    }
+    node.set("effects", std::move(list));
+    return node;
+  }
+
+ private:
+  /// Of one lane: the influence of all effects side by side, and the tip that B is about.
+  struct Deviation {
+    Influence by;
+    Eigen::Vector3d tip;
+  };
+
+  Eigen::Index geometry_parameters() const {
+    return static_cast<Eigen::Index>(geometry_->parameters().size());
+  }
+
+  Circumstances circumstances(const ConfigurationBlock& block, int lane) const {
+    const Conditions& c = block.conditions;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    Circumstances at;
+    at.mechanics = &mechanics();
+    at.q = block.q.row(lane).matrix().transpose();
+    at.poses = link_poses(at.q);
+    if (c.wrench.rows() > 0 && c.wrench.row(lane).allFinite()) {
+      const Eigen::Matrix3d R = at.poses.back().linear();
+      at.wrench.force = R * c.wrench.row(lane).head<3>().transpose();
+      at.wrench.moment = R * c.wrench.row(lane).tail<3>().transpose();
+    }
+    const auto n = static_cast<int>(joints().size());
+    at.torque.resize(n);
+    for (int j = 0; j < n; ++j) at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
+    at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
+                                        : Eigen::VectorXd::Constant(n, unknown);
+    at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;
+    at.time = c.time.size() > 0 ? c.time[lane] : unknown;
+    at.normal = c.normal.rows() > 0 ? Eigen::Vector3d(c.normal.row(lane).transpose())
+                                    : Eigen::Vector3d::Constant(unknown);
+    at.set = c.set.empty() ? -1 : c.set[static_cast<size_t>(lane)];
+    return at;
+  }
+
+  Deviation deviation(const Circumstances& at) const {
+    const auto n = static_cast<Eigen::Index>(joints().size());
+    const auto count = static_cast<Eigen::Index>(parameters_.size()) - geometry_parameters();
+    Deviation all{{Eigen::MatrixXd::Zero(n, count), Eigen::MatrixXd::Zero(6, count)},
+                  at.poses.back().translation()};
+    Eigen::Index column = 0;
+    for (const auto& effect : effects_) {
+      const auto own = static_cast<Eigen::Index>(effect->parameters().size());
+      Influence part{Eigen::MatrixXd::Zero(n, own), Eigen::MatrixXd::Zero(6, own)};
+      effect->influence(at, part);
+      all.by.joints.middleCols(column, own) = part.joints;
+      all.by.tip.middleCols(column, own) = part.tip;
+      column += own;
+    }
+    return all;
+  }
+
+  /// By lane; lanes past the block's count share the last one's.
+  std::vector<Deviation> deviations_of(const ConfigurationBlock& block) const {
+    std::vector<Deviation> all;
+    for (int lane = 0; lane < kLanes; ++lane)
+      all.push_back(lane < std::max(block.count, 1) ? deviation(circumstances(block, lane))
+                                                    : all.back());
+    return all;
+  }
+
+  /// `X` is where the geometry alone puts the body, `inner` its Psi.
+  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& v, const Locations& X,
+            const PsiBlock& inner, PsiBlock& psi) const {
+    const Eigen::Index own = geometry_parameters(), n = static_cast<Eigen::Index>(joints().size());
+    psi.resize(6 * kLanes, static_cast<Eigen::Index>(parameters_.size()));
+    psi.leftCols(own) = inner;
+    Eigen::MatrixXd J(6, n);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Influence& by = deviations[lane].by;
+      for (Eigen::Index j = 0; j < n; ++j)
+        for (int c = 0; c < 6; ++c)
+          J(c, j) = inner(c * kLanes + lane, variable_parameter(static_cast<int>(j)));
+      Eigen::MatrixXd columns = J * by.joints;
+      const Eigen::Vector3d turn = by.tip.bottomRows<3>() * v;
+      if (!turn.isZero(0)) {
+        carry(turn, columns);
+        Eigen::MatrixXd geometry(6, own);
+        for (int c = 0; c < 6; ++c) geometry.row(c) = inner.row(c * kLanes + lane);
+        carry(turn, geometry);
+        for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane).head(own) = geometry.row(c);
+      }
+      const Eigen::Matrix3d arm = skew(X.p(lane) - deviations[lane].tip);
+      columns.topRows<3>() += by.tip.topRows<3>() - arm * by.tip.bottomRows<3>();
+      columns.bottomRows<3>() += left_jacobian_inverse(turn).inverse() * by.tip.bottomRows<3>();
+      for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane).tail(v.size()) = columns.row(c);
+    }
+  }
+
+  /// What columns (shift, turn) of a body become when the body is carried along by `turn`.
+  static void carry(const Eigen::Vector3d& turn, Eigen::MatrixXd& columns) {
+    columns.topRows<3>() += (skew(turn) * columns.topRows<3>()).eval();
+    columns.bottomRows<3>() = (exp_rotation(turn) * columns.bottomRows<3>()).eval();
+  }
+
+  std::shared_ptr<const Robot> geometry_;
+  std::vector<std::unique_ptr<Effect>> effects_;
+  std::vector<Parameter> parameters_;
+  std::vector<int> preference_;
+};
+
+}  // namespace
+
+std::unique_ptr<Robot> correct(std::shared_ptr<const Robot> robot, const std::vector<Node>& entries,
+                               const Site& site, Problems& problems) {
+  robot = geometry_of(std::move(robot));
+  std::vector<std::unique_ptr<Effect>> effects;
+  for (const Node& entry : entries) {
+    auto effect = make_effect(entry, *robot, site, problems);
+    if (!effect) return nullptr;
+    effects.push_back(std::move(effect));
+  }
+  if (problems.any()) return nullptr;
+  return std::make_unique<CorrectedRobot>(std::move(robot), std::move(effects));
+}
+
+std::vector<const Effect*> effects_of(const Robot& robot) {
+  std::vector<const Effect*> list;
+  if (const auto* corrected = dynamic_cast<const CorrectedRobot*>(&robot))
+    for (const auto& effect : corrected->effects()) list.push_back(effect.get());
+  return list;
+}
+
+std::shared_ptr<const Robot> geometry_of(std::shared_ptr<const Robot> robot) {
+  const auto* corrected = dynamic_cast<const CorrectedRobot*>(robot.get());
+  return corrected ? corrected->geometry() : robot;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,103 @@
+// What every effect shares: made from its entry, written back to it.
+#include "kinematics/effect.h"
+
+#include <numeric>
+
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+#define X(identifier) std::unique_ptr<Effect> make_##identifier(const EffectPlan& plan);
+#include "kinematics/effects.def"
+#undef X
+
+namespace {
+
+struct Family {
+  std::string_view name;
+  std::unique_ptr<Effect> (*make)(const EffectPlan&);
+};
+
+constexpr Family kFamilies[] = {
+#define X(identifier) {#identifier, make_##identifier},
+#include "kinematics/effects.def"
+#undef X
+};
+
+}  // namespace
+
+int Site::find(std::string_view set) const {
+  for (size_t s = 0; s < sets.size(); ++s)
+    if (sets[s].name == set) return static_cast<int>(s);
+  return -1;
+}
+
+double Site::mean_temperature() const {
+  if (temperatures.empty()) return 20;
+  return std::accumulate(temperatures.begin(), temperatures.end(), 0.0) /
+         static_cast<double>(temperatures.size());
+}
+
+Node Effect::describe(const Eigen::VectorXd& v) const {
+  Node node = Node::map();
+  node.set("effect", Node::of(std::string(name_)));
+  if (!at_.empty()) node.set("at", Node::of(at_));
+  describe_shape(node);
+  for (size_t i = 0; i < parameters_.size(); ++i)
+    node.set(parameters_[i].name, Node::of(v[static_cast<Eigen::Index>(i)]));
+  return node;
+}
+
+int EffectPlan::joint() const {
+  const std::string at = fields.text("at");
+  const std::vector<Joint>& joints = robot.joints();
+  std::string known;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].name == at) return static_cast<int>(j);
+    known += (known.empty() ? "" : ", ") + joints[j].name;
+  }
+  fields.fail("at", "a joint of the robot: " + known);
+  return 0;
+}
+
+int EffectPlan::set() const {
+  const int set = site.find(fields.text("at"));
+  if (set < 0 && !site.sets.empty()) fields.fail("at", "a set of the data set");
+  return set;
+}
+
+void EffectPlan::expect_place(std::string_view place) const {
+  if (fields.text("at", std::string(place)) != place)
+    fields.fail("at", place.empty() ? "nothing: it acts on the whole robot" : std::string(place));
+}
+
+std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const Site& site,
+                                    Problems& problems) {
+  Fields fields(node, "effect", problems);
+  const std::string name = fields.text("effect");
+  std::string known;
+  for (const Family& family : kFamilies) {
+    known += (known.empty() ? "" : ", ") + std::string(family.name);
+    if (family.name != name) continue;
+    const size_t before = problems.list.size();
+    std::unique_ptr<Effect> effect = family.make({fields, robot, site});
+    if (problems.list.size() > before) return nullptr;
+    effect->name_ = name;
+    effect->at_ = fields.text("at", "");
+    if (effect->at_.empty() && name != "thermal_expansion")
+      effect->at_ = effect->of_machine() ? "base" : "probe";
+    for (EffectParameter& p : effect->parameters_) p.value = fields.number(p.name, 0.0);
+    fields.refuse_unknown();
+    return problems.list.size() > before ? nullptr : std::move(effect);
+  }
+  fields.fail("effect", "one of " + known);
+  return nullptr;
+}
+
+std::vector<std::string_view> effect_names() {
+  std::vector<std::string_view> names;
+  for (const Family& family : kFamilies) names.push_back(family.name);
+  return names;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,121 @@
+// A non-geometric effect: what the geometry of a robot leaves out.
+//
+// It adds to the joint variables and to the location of the tip,
+//   joint variables += A v,   location of the tip += B v   (twist in the world frame, at the tip)
+// where v are the effect's own parameters and A, B (its influence) follow from the circumstances of
+// a configuration: load, direction of motion, temperature, time, touched surface. What is not
+// linear (a moment, a wave number, a time constant) is the effect's shape, given and not estimated
+// by the identification. A and B are taken at the nominal geometry: the difference is of second
+// order in errors that are small, and derivatives stay exact.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinematics/description.h"
+#include "kinematics/mechanics.h"
+
+namespace selfcal {
+
+class Robot;
+
+/// One configuration and what else held when its row was taken. What is not known is NaN.
+struct Circumstances {
+  const Mechanics* mechanics = nullptr;
+  Eigen::VectorXd q;                     ///< readings (rad or m)
+  std::vector<Eigen::Isometry3d> poses;  ///< of the links, world, nominal
+  Load wrench;                       ///< on the tool, world axes, at the tip; zero when not known
+  Eigen::VectorXd torque;            ///< by joint, of gravity and wrench (N m, N)
+  Eigen::VectorXd velocity;          ///< by joint, just before the reading (rad/s, m/s)
+  double temperature = 0, time = 0;  ///< C, s
+  Eigen::Vector3d normal;            ///< outward, of the touched surface, world, unit
+  int set = -1;                      ///< of the data set; -1 outside one
+};
+
+/// d(joint variables) and d(location of the tip) to each of the effect's parameters.
+struct Influence {
+  Eigen::MatrixXd joints;  ///< joints x parameters
+  Eigen::MatrixXd tip;     ///< 6 x parameters: shift (m), then rotation vector, world
+};
+
+/// One surface or target of a data set, as far as effects at it ask.
+struct SiteSet {
+  std::string name;
+  bool touch = false;                                ///< a surface was touched
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
+};
+
+/// Where and when the rows were taken; empty for a robot outside a data set.
+struct Site {
+  std::vector<SiteSet> sets;
+  std::vector<double> times, temperatures;  ///< s ascending, C: the record of the thermometer
+  double begin = 0, end = 0;                ///< s, of the rows
+  bool loads = false;                       ///< rows carry wrenches
+  bool velocities = false, speeds = false;  ///< rows carry dq; and it is more than a sign
+
+  int find(std::string_view set) const;  ///< -1 when there is none
+  double mean_temperature() const;       ///< 20 C without a record
+};
+
+struct EffectParameter {
+  std::string name;  ///< within its place: "c"
+  std::string unit;
+  double usual_least = 0, usual_most = 0;  ///< of its magnitude
+  double value = 0;
+};
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  std::string_view name() const { return name_; }
+  /// A joint's frame, a set, "probe", "base"; empty for the whole robot.
+  const std::string& at() const { return at_; }
+  const std::vector<EffectParameter>& parameters() const { return parameters_; }
+  /// The entry of a robot file with parameters `v`.
+  Node describe(const Eigen::VectorXd& v) const;
+  /// True when the robot itself deviates, false when only its measurement does.
+  virtual bool of_machine() const { return true; }
+  /// What rows must have so that it can be seen: "temperatures that change".
+  virtual std::string needs() const = 0;
+  /// `into` is zero and of the right size.
+  virtual void influence(const Circumstances& at, Influence& into) const = 0;
+
+ protected:
+  friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const Site&, Problems&);
+  /// What describe() adds beside effect, at and the parameters.
+  virtual void describe_shape(Node&) const {}
+
+  std::string at_;
+  std::vector<EffectParameter> parameters_;
+
+ private:
+  std::string name_;
+};
+
+/// What an effect is made from.
+struct EffectPlan {
+  Fields& fields;
+  const Robot& robot;
+  const Site& site;
+
+  /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
+  int joint() const;
+  /// Index of the set called `at`; -1 outside a data set. Notes a problem when the site lacks it.
+  int set() const;
+  /// Notes a problem unless `at` is `place`, or missing.
+  void expect_place(std::string_view place) const;
+};
+
+/// The effect that an entry of a robot file's `effects` describes:
+/// {effect: joint_compliance, at: j2, c: 2.1e-6}. Null after a problem.
+std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const Site& site,
+                                    Problems& problems);
+/// The effects that make_effect knows.
+std::vector<std::string_view> effect_names();
+
+}  // namespace selfcal

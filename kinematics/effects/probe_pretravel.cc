@@ -1,0 +1,39 @@
+// Pretravel of the probe: the stylus gives way before the trigger fires,
+//   pretravel = p0 + sin(phi) (p1 + p3 cos(3 psi))
+// phi the angle between the surface's normal and the stylus (z of the last frame), psi the azimuth
+// of the normal about it, counted from x. The tip that fired lies that deep in the surface, so the
+// contact was at the tip plus the pretravel along the outward normal. p0, p1, p3: m.
+#include <cmath>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+class ProbePretravel final : public Effect {
+ public:
+  ProbePretravel() {
+    for (const char* name : {"p0", "p1", "p3"}) parameters_.push_back({name, "m", 1e-6, 1e-4});
+  }
+
+  bool of_machine() const override { return false; }
+  std::string needs() const override { return "touches at different angles to the stylus"; }
+
+  void influence(const Circumstances& at, Influence& into) const override {
+    if (!at.normal.allFinite()) return;
+    const Eigen::Vector3d n = at.poses.back().linear().transpose() * at.normal;
+    const double sine = std::hypot(n.x(), n.y()), psi = std::atan2(n.y(), n.x());
+    const double share[] = {1, sine, sine * std::cos(3 * psi)};
+    for (int i = 0; i < 3; ++i) into.tip.col(i).head<3>() = share[i] * at.normal;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_probe_pretravel(const EffectPlan& plan) {
+  plan.expect_place("probe");
+  return std::make_unique<ProbePretravel>();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,78 @@
+// Thermal expansion: every length of the moving links grows by alpha (T - T0),
+//   delta p_tip = alpha (T - T0) sum over their frames of (d_k X_k + r_k Z_k),
+// the vector from the foot of the first moving frame (the last base frame's origin) to the origin
+// of the last one; fixed frames in between belong to the links. T lags behind the thermometer,
+// `lag` dT/dt = T_measured - T (s; 0: at once); `reference` is T0 (C, default the mean of the
+// record). alpha: 1/K.
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+/// The first-order lag of a record that is linear between its samples, begun in balance.
+std::vector<double> lagged(const std::vector<double>& t, const std::vector<double>& T, double lag) {
+  std::vector<double> out(T);
+  for (size_t i = 1; lag > 0 && i < t.size(); ++i) {
+    const double dt = t[i] - t[i - 1];
+    const double slope = dt > 0 ? (T[i] - T[i - 1]) / dt : 0;
+    out[i] = T[i] - slope * lag + (out[i - 1] - T[i - 1] + slope * lag) * std::exp(-dt / lag);
+  }
+  return out;
+}
+
+class ThermalExpansion final : public Effect {
+ public:
+  explicit ThermalExpansion(const EffectPlan& plan) {
+    parameters_ = {{"alpha", "1/K", 5e-6, 3e-5}};
+    lag_ = plan.fields.number("lag", 0.0);
+    if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
+    times_ = plan.site.times;
+    temperatures_ = lagged(times_, plan.site.temperatures, lag_);
+    reference_ = plan.fields.number("reference", plan.site.mean_temperature());
+  }
+
+  std::string needs() const override { return "temperatures that change"; }
+
+  void influence(const Circumstances& at, Influence& into) const override {
+    const double T = temperature(at);
+    if (std::isnan(T)) return;
+    const int first = at.mechanics->link_of(0);
+    const int last = at.mechanics->link_of(static_cast<int>(at.q.size()) - 1);
+    Eigen::Vector3d grown = at.poses[last].translation();
+    if (first > 0) grown -= at.poses[first - 1].translation();
+    into.tip.col(0).head<3>() = (T - reference_) * grown;
+  }
+
+ private:
+  double temperature(const Circumstances& at) const {
+    if (lag_ == 0 || times_.size() < 2 || std::isnan(at.time)) return at.temperature;
+    const auto after = std::lower_bound(times_.begin(), times_.end(), at.time);
+    if (after == times_.begin()) return temperatures_.front();
+    if (after == times_.end()) return temperatures_.back();
+    const auto i = static_cast<size_t>(after - times_.begin());
+    const double dt = times_[i] - times_[i - 1];
+    const double share = dt > 0 ? (at.time - times_[i - 1]) / dt : 1;
+    return temperatures_[i - 1] + share * (temperatures_[i] - temperatures_[i - 1]);
+  }
+
+  void describe_shape(Node& node) const override {
+    node.set("lag", Node::of(lag_));
+    node.set("reference", Node::of(reference_));
+  }
+
+  double lag_ = 0, reference_ = 20;
+  std::vector<double> times_, temperatures_;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_thermal_expansion(const EffectPlan& plan) {
+  plan.expect_place("");
+  return std::make_unique<ThermalExpansion>(plan);
+}
+
+}  // namespace selfcal

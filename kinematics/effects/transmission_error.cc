@@ -1,0 +1,63 @@
+// Transmission error: periodic in the joint's angle,
+//   delta q = sum over waves k of sinK sin(k q) + cosK cos(k q)
+// with k waves a turn (`waves`: 1 is eccentricity, 2 ovality or a flexspline, others meshing).
+// q: the joint's reading (rad; of a prismatic joint 2 pi q / m). sinK, cosK: rad (m).
+#include <cmath>
+#include <numbers>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+class TransmissionError final : public Effect {
+ public:
+  TransmissionError(const EffectPlan& plan, int joint) : joint_(joint) {
+    const bool turns = plan.robot.joints()[joint].quantity == Quantity::angle;
+    scale_ = turns ? 1 : 2 * std::numbers::pi;
+    const Node* node = plan.fields.node("waves");
+    if (!node)
+      waves_ = {1};
+    else if (node->kind == Node::Kind::text)
+      waves_ = {plan.fields.positive("waves", 1)};
+    else
+      for (const Node& item : node->items)
+        if (const auto k = parse_number(item.text); k && *k > 0)
+          waves_.push_back(*k);
+        else
+          plan.fields.fail("waves", "a positive number of waves a turn, or a list of them");
+    if (waves_.empty()) plan.fields.fail("waves", "at least one number of waves a turn");
+    for (const double k : waves_)
+      for (const char* function : {"sin", "cos"})
+        parameters_.push_back({function + format_number(k), turns ? "rad" : "m", 2.4e-5, 4.4e-4});
+  }
+
+  std::string needs() const override { return "angles spread over the joint's turn"; }
+
+  void influence(const Circumstances& at, Influence& into) const override {
+    for (size_t i = 0; i < waves_.size(); ++i) {
+      const double angle = waves_[i] * scale_ * at.q[joint_];
+      into.joints(joint_, 2 * static_cast<Eigen::Index>(i)) = std::sin(angle);
+      into.joints(joint_, 2 * static_cast<Eigen::Index>(i) + 1) = std::cos(angle);
+    }
+  }
+
+ private:
+  void describe_shape(Node& node) const override {
+    node.set("waves", Node::of(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                          waves_.data(), static_cast<Eigen::Index>(waves_.size())))));
+  }
+
+  int joint_;
+  double scale_ = 1;
+  std::vector<double> waves_;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_transmission_error(const EffectPlan& plan) {
+  return std::make_unique<TransmissionError>(plan, plan.joint());
+}
+
+}  // namespace selfcal

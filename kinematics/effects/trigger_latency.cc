@@ -1,0 +1,33 @@
+// Latency of the trigger: the joints are read `delay` (s) after the touch, so that they stood at
+//   delta q = -delay dq
+// when it happened. dq: rad/s, of the approach.
+#include <cmath>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+class TriggerLatency final : public Effect {
+ public:
+  TriggerLatency() { parameters_ = {{"delay", "s", 2e-4, 8e-3}}; }
+
+  bool of_machine() const override { return false; }
+  std::string needs() const override { return "touches with velocities dq, at different speeds"; }
+
+  void influence(const Circumstances& at, Influence& into) const override {
+    if (at.normal.allFinite() && at.velocity.allFinite()) into.joints.col(0) = -at.velocity;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_trigger_latency(const EffectPlan& plan) {
+  plan.expect_place("probe");
+  if (plan.site.velocities && !plan.site.speeds)
+    plan.fields.fail("effect", "one that signs of dq tell: a latency needs velocities");
+  return std::make_unique<TriggerLatency>();
+}
+
+}  // namespace selfcal

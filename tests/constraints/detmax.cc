@@ -1,0 +1,97 @@
+// The exchange algorithm against determinants computed as they are defined.
+#include "constraints/detmax.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "constraints/observability.h"
+
+namespace selfcal {
+namespace {
+
+std::vector<Eigen::MatrixXd> random_candidates(int count, int k, int m, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::MatrixXd> candidates(count, Eigen::MatrixXd(k, m));
+  for (Eigen::MatrixXd& w : candidates)
+    for (Eigen::Index c = 0; c < m; ++c)  // columns of very different units
+      for (Eigen::Index r = 0; r < k; ++r) w(r, c) = normal(random) * std::pow(10.0, c % 5 - 2);
+  return candidates;
+}
+
+double o1_of(const std::vector<Eigen::MatrixXd>& candidates, const std::vector<int>& chosen) {
+  const Eigen::Index k = candidates.front().rows();
+  Eigen::MatrixXd W(k * static_cast<Eigen::Index>(chosen.size()), candidates.front().cols());
+  for (size_t i = 0; i < chosen.size(); ++i)
+    W.middleRows(k * static_cast<Eigen::Index>(i), k) = candidates[chosen[i]];
+  return observability(W, static_cast<int>(chosen.size())).o1;
+}
+
+TEST(Detmax, StopsWhereNoExchangeOfTheBestAddedForTheWorstRemovedIsLeft) {
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 10; ++i) {
+    const auto candidates = random_candidates(60, 3, 9, random);
+    const Exchange found = detmax(candidates, 12, random);
+    ASSERT_EQ(found.chosen.size(), 12u);
+    EXPECT_TRUE(std::is_sorted(found.chosen.begin(), found.chosen.end()));
+    EXPECT_EQ(std::adjacent_find(found.chosen.begin(), found.chosen.end()), found.chosen.end());
+    EXPECT_NEAR(found.o1, o1_of(candidates, found.chosen), 1e-12 * found.o1);
+    // By the definition: O1 of every set with one more, then of every one with one less of that.
+    std::vector<int> more;
+    double best = 0;
+    for (int c = 0; c < 60; ++c) {
+      if (std::binary_search(found.chosen.begin(), found.chosen.end(), c)) continue;
+      std::vector<int> with = found.chosen;
+      with.push_back(c);
+      if (const double o1 = o1_of(candidates, with); o1 > best) {
+        best = o1;
+        more = with;
+      }
+    }
+    for (size_t out = 0; out < more.size(); ++out) {
+      std::vector<int> less = more;
+      less.erase(less.begin() + static_cast<std::ptrdiff_t>(out));
+      EXPECT_LE(o1_of(candidates, less), found.o1 * (1 + 1e-9));
+    }
+  }
+}
+
+TEST(Detmax, SeesMoreThanAnyOfAHundredRandomChoices) {
+  std::mt19937_64 random(6);
+  const auto candidates = random_candidates(200, 1, 8, random);
+  const Exchange found = detmax(candidates, 20, random);
+  EXPECT_GT(found.exchanges, 5);
+  std::vector<int> order(200);
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = 0; i < 100; ++i) {
+    std::shuffle(order.begin(), order.end(), random);
+    EXPECT_GT(found.o1, o1_of(candidates, {order.begin(), order.begin() + 20}));
+  }
+}
+
+TEST(Detmax, FindsItsWayOutOfAStartThatDoesNotSeeEverything) {
+  // Two candidates of 300 alone see the last parameter: hardly any start of ten has one.
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 10; ++i) {
+    auto candidates = random_candidates(300, 1, 6, random);
+    for (int c = 0; c < 300; ++c)
+      if (c != 17 && c != 170) candidates[c](0, 5) = 0;
+    const Exchange found = detmax(candidates, 10, random);
+    EXPECT_THAT(found.chosen, testing::AnyOf(testing::Contains(17), testing::Contains(170)));
+    EXPECT_GT(found.o1, 0);
+  }
+}
+
+TEST(Detmax, TakesAllWhereAllAreAskedFor) {
+  std::mt19937_64 random(8);
+  const auto candidates = random_candidates(5, 2, 4, random);
+  const Exchange found = detmax(candidates, 5, random);
+  EXPECT_THAT(found.chosen, testing::ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_EQ(found.exchanges, 0);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,96 @@
+// What belongs to a touch, by numbers worked by hand: the probe and the surface.
+#include "tests/effects/by_hand.h"
+
+namespace selfcal {
+namespace {
+
+TEST(ProbePretravelByHand, DependsOnTheAngleToTheStylusAndOnTheSideOfIt) {
+  // The stylus is z. Normals at 30 degrees to it, sin 30 = 0.5, from azimuth psi:
+  //   psi = 0:   5 + 0.5 (10 + 4 cos 0)   = 12 um
+  //   psi = 60:  5 + 0.5 (10 + 4 cos 180) =  8 um
+  //   psi = 30:  5 + 0.5 (10 + 4 cos 90)  = 10 um
+  // and along the stylus itself 5 um. The contact lies that far out along the normal.
+  const std::string probe = "[{effect: probe_pretravel, p0: 5.0e-6, p1: 1.0e-5, p3: 4.0e-6}]";
+  Held held;
+  for (const auto& [phi, psi, pretravel] :
+       {std::tuple(30.0, 0.0, 12e-6), std::tuple(30.0, 60.0, 8e-6), std::tuple(30.0, 30.0, 10e-6),
+        std::tuple(0.0, 0.0, 5e-6), std::tuple(150.0, 0.0, 12e-6)}) {
+    const double sine = std::sin(phi * kDegree);
+    held.normal = {sine * std::cos(psi * kDegree), sine * std::sin(psi * kDegree),
+                   std::cos(phi * kDegree)};
+    const Eigen::Vector3d shift = moved(kTurntable, probe, held).p;
+    EXPECT_LT((shift - pretravel * held.normal).norm(), 1e-15) << phi << " " << psi;
+  }
+  // The azimuth turns with the tool: a quarter turn of the joint makes psi = 0 of psi = 90.
+  held.q = numbers({90 * kDegree});
+  held.normal = {0, 0.5, std::cos(30 * kDegree)};
+  EXPECT_LT((moved(kTurntable, probe, held).p - 12e-6 * held.normal).norm(), 1e-15);
+  held.normal.setConstant(kUnknown);  // nothing was touched
+  expect_near(moved(kTurntable, probe, held).p, 0, 0, 0, 0);
+}
+
+/// A table whose middle is at (0.8, -0.1, 0): the tip at (1, 0, 0) has u = 0.2, v = 0.1 m there. Of
+/// a vertical normal u is the world's x and v = n x u its y.
+Site table() {
+  Site site;
+  site.sets = {{"other", true, {0, 0, 0}, {0, 0, 1}}, {"table", true, {0.8, -0.1, 0}, {0, 0, 2}}};
+  return site;
+}
+
+TEST(PlaneFormErrorByHand, TakesTheHeightOfTheSurfaceOff) {
+  // h = 1e-3 x 0.04 + 2e-3 x 0.02 + 3e-3 x 0.01 = 40 + 40 + 30 = 110 um above the plane: the tip
+  // that rests on it is 110 um too high.
+  const std::string warped =
+      "[{effect: plane_form_error, at: table, a: 1.0e-3, b: 2.0e-3, c: 3.0e-3}]";
+  Held held;
+  held.set = 1;
+  expect_near(moved(kTurntable, warped, held, table()).p, 0, 0, -110e-6, 1e-15);
+  held.set = 0;  // another surface
+  expect_near(moved(kTurntable, warped, held, table()).p, 0, 0, 0, 0);
+}
+
+TEST(FixtureShiftByHand, LiftsAndTiltsTheSurfaceFromItsMomentOn) {
+  // Shift 100 um out; 100 urad about u = x lift a point at v = 0.1 m by 10 um; 100 urad about v = y
+  // lower a point at u = 0.2 m by 20 um: 90 um in all.
+  Held held;
+  held.set = 1;
+  held.time = 500;
+  for (const auto& [entry, height] :
+       {std::pair("shift: 1.0e-4", 100e-6), std::pair("tilt_u: 1.0e-4", 10e-6),
+        std::pair("tilt_v: 1.0e-4", -20e-6),
+        std::pair("shift: 1.0e-4, tilt_u: 1.0e-4, tilt_v: 1.0e-4", 90e-6)}) {
+    const std::string moving =
+        "[{effect: fixture_shift, at: table, moment: 500, " + std::string(entry) + "}]";
+    held.time = 500;
+    expect_near(moved(kTurntable, moving, held, table()).p, 0, 0, -height, 1e-15);
+    held.time = 499.9;
+    expect_near(moved(kTurntable, moving, held, table()).p, 0, 0, 0, 0);
+  }
+}
+
+TEST(FixtureShiftByHand, GoesAlongTheNormalOfAWall) {
+  // Of a wall whose outward normal n is -x, u is the world's y, the first axis across it, and
+  // v = n x u = -z. It stands 100 um further out, towards -x; that is taken off: 100 um along +x.
+  Site site = table();
+  site.sets[1].normal = {-1, 0, 0};
+  Held held;
+  held.set = 1;
+  held.time = 1;
+  expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, shift: 1.0e-4}]",
+                    held, site)
+                  .p,
+              100e-6, 0, 0, 1e-15);
+  // From the middle the tip lies at (0.2, 0.1, 0): u = 0.1 m, v = 0. So 100 urad about u do
+  // nothing, and about v they lower the surface by 10 um, to +x; taken off: 10 um along -x.
+  expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, tilt_u: 1.0e-4}]",
+                    held, site)
+                  .p,
+              0, 0, 0, 1e-15);
+  expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, tilt_v: 1.0e-4}]",
+                    held, site)
+                  .p,
+              -10e-6, 0, 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,126 @@
+// Every effect in the shapes that its entry may have, on random robots with masses, at a place and
+// a time where something of everything holds.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kinematics/corrected_robot.h"
+#include "tests/kinematics/parsed_robot.h"
+#include "tests/kinematics/random_robot.h"
+
+namespace selfcal {
+
+/// JOINT and OTHER in the entry stand for two joints of the robot.
+struct EffectCase {
+  const char* title;
+  const char* entry;
+};
+
+inline std::vector<EffectCase> effect_cases() {
+  return {
+      {"JointCompliance", "effect: joint_compliance, at: JOINT"},
+      {"JointComplianceByLumps", "effect: joint_compliance, at: JOINT, lumps: true"},
+      {"LinkCompliance", "effect: link_compliance, at: JOINT"},
+      {"TransmissionError", "effect: transmission_error, at: JOINT"},
+      {"TransmissionErrorOfManyWaves",
+       "effect: transmission_error, at: JOINT, waves: [1, 2, 12.5]"},
+      {"Backlash", "effect: backlash, at: JOINT"},
+      {"BacklashByLoad", "effect: backlash, at: JOINT, by: load"},
+      {"JointCoupling", "effect: joint_coupling, at: JOINT, from: OTHER"},
+      {"ThermalExpansion", "effect: thermal_expansion"},
+      {"ThermalExpansionThatLags", "effect: thermal_expansion, lag: 600, reference: 21"},
+      {"BaseDrift", "effect: base_drift, at: base"},
+      {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
+      {"ZeroShift", "effect: zero_shift, at: JOINT, moment: 1000"},
+      {"ProbePretravel", "effect: probe_pretravel, at: probe"},
+      {"TriggerLatency", "effect: trigger_latency"},
+      {"PlaneFormError", "effect: plane_form_error, at: table"},
+      {"FixtureShift", "effect: fixture_shift, at: table, moment: 1000"},
+  };
+}
+
+inline std::string title_of(const testing::TestParamInfo<EffectCase>& info) {
+  return info.param.title;
+}
+
+/// The entry as a line of flow style, with the joints put in.
+inline std::string entry_text(const EffectCase& each, const std::string& joint,
+                              const std::string& other) {
+  std::string text = each.entry;
+  if (const size_t at = text.find("OTHER"); at != text.npos) text.replace(at, 5, other);
+  if (const size_t at = text.find("JOINT"); at != text.npos) text.replace(at, 5, joint);
+  return text;
+}
+
+/// Sets "table" (touched) and "tracker"; an hour in which it grows warm.
+inline Site random_site(std::mt19937_64& random) {
+  Site site;
+  site.sets = {{"table", true, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
+               {"tracker", false, {}, {}}};
+  for (double t = 0; t <= 3600; t += 60) {
+    site.times.push_back(t);
+    site.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));
+  }
+  site.end = 3600;
+  site.loads = site.velocities = site.speeds = true;
+  return site;
+}
+
+inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, double most,
+                                     std::mt19937_64& random) {
+  Eigen::MatrixXd M(rows, columns);
+  for (double& m : M.reshaped()) m = uniform(random, -most, most);
+  return M;
+}
+
+inline ConfigurationBlock with_conditions(ConfigurationBlock block, std::mt19937_64& random) {
+  Conditions& at = block.conditions;
+  at.wrench = random_matrix(kLanes, 6, 100, random);
+  at.velocity = random_matrix(kLanes, block.q.cols(), 0.5, random);
+  at.normal = random_matrix(kLanes, 3, 1, random).rowwise().normalized();
+  at.temperature = random_matrix(kLanes, 1, 5, random).array() + 20;
+  at.time = random_matrix(kLanes, 1, 1700, random).array() + 1800;
+  for (int lane = 0; lane < kLanes; ++lane) at.set.push_back(lane % 2);
+  return block;
+}
+
+/// A random robot of weight with one effect, whose parameters are not zero.
+struct EffectInstance {
+  std::shared_ptr<const Robot> geometry;
+  Site site;
+  std::unique_ptr<Robot> robot;
+  Eigen::VectorXd xi;
+  ConfigurationBlock block;
+
+  Eigen::Index own() const { return static_cast<Eigen::Index>(geometry->parameters().size()); }
+};
+
+inline std::shared_ptr<const Robot> heavy_robot(std::mt19937_64& random) {
+  const RandomRobot made = random_robot(random);
+  Node node = robot_node(made.frames, made.coupling);
+  for (size_t k = 0; k < node.keys.size(); ++k)
+    for (Node& frame : node.items[k].items) {
+      if (node.keys[k] != "frames") continue;
+      frame.set("mass", Node::of(uniform(random, 1, 20)));
+      frame.set("com", Node::of(Eigen::VectorXd(random_matrix(3, 1, 0.3, random))));
+    }
+  return robot_of(node);
+}
+
+inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& random) {
+  EffectInstance made{heavy_robot(random), random_site(random), {}, {}, {}};
+  const std::vector<Joint>& joints = made.geometry->joints();
+  const auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
+  const std::string text = entry_text(each, joints[pick].name, joints[pick + 1].name);
+  Problems problems;
+  made.robot = correct(made.geometry, {parsed("{" + text + "}")}, made.site, problems);
+  for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
+  made.xi = values(*made.robot);
+  for (Eigen::Index i = made.own(); i < made.xi.size(); ++i)
+    made.xi[i] = made.robot->parameters()[i].tolerance / 10 * uniform(random, -1, 1);
+  made.block = with_conditions(random_block(*made.geometry, random), random);
+  return made;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,184 @@
+// Effects in a robot file: there and back, what they say of themselves, what is refused at which
+// line.
+#include "io/robot_file.h"
+#include "tests/effects/effect_case.h"
+
+namespace selfcal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class EffectFile : public testing::TestWithParam<EffectCase> {};
+
+bool same_locations(const Robot& a, const Robot& b, const ConfigurationBlock& block) {
+  Locations X, Y;
+  a.locate(block, values(a), Body::endpoint, X, nullptr);
+  b.locate(block, values(b), Body::endpoint, Y, nullptr);
+  // A normal that is made a unit vector once more may differ in its last bit.
+  return (X.position - Y.position).abs().maxCoeff() < 1e-15 &&
+         (X.rotation - Y.rotation).abs().maxCoeff() < 1e-15;
+}
+
+TEST_P(EffectFile, ComesBackWithTheSameParametersAndActsTheSame) {
+  std::mt19937_64 random(91);
+  for (int i = 0; i < 6; ++i) {
+    const EffectInstance at = random_instance(GetParam(), random);
+    const std::string text = robot_text(*at.robot, at.xi);
+    const auto back = robot_of(parsed(text));
+    ASSERT_NE(back, nullptr) << text;
+    EXPECT_EQ(values(*back), at.xi) << text;
+    EXPECT_EQ(robot_text(*back, at.xi), text);
+    const auto once = effects_of(*at.robot), again = effects_of(*back);
+    ASSERT_EQ(again.size(), 1u);
+    EXPECT_EQ(again[0]->name(), once[0]->name());
+    EXPECT_EQ(again[0]->at(), once[0]->at());
+    // At the site of its data set it acts there as it did.
+    Problems problems;
+    const auto there = correct(geometry_of(robot_of(parsed(text))),
+                               parsed(text).find("effects")->items, at.site, problems);
+    ASSERT_NE(there, nullptr) << problems.list.front();
+    Locations X, Y;
+    at.robot->locate(at.block, at.xi, Body::endpoint, X, nullptr);
+    there->locate(at.block, values(*there), Body::endpoint, Y, nullptr);
+    EXPECT_LT((X.position - Y.position).abs().maxCoeff(), 1e-15);
+    EXPECT_LT((X.rotation - Y.rotation).abs().maxCoeff(), 1e-15);
+    // And the file that was read acts like the file that it writes.
+    EXPECT_TRUE(same_locations(*back, *robot_of(parsed(robot_text(*back, at.xi))), at.block));
+  }
+}
+
+TEST_P(EffectFile, LeavesTheModelsHashAlone) {
+  std::mt19937_64 random(92);
+  const EffectInstance at = random_instance(GetParam(), random);
+  const std::string hash = model_hash(*at.geometry);
+  EXPECT_EQ(model_hash(*at.robot), hash);
+  EXPECT_EQ(model_hash(*robot_of(parsed(robot_text(*at.robot, at.xi)))), hash);
+}
+
+TEST_P(EffectFile, HasParametersWithUnitsThatAreFixedUnlessFreed) {
+  std::mt19937_64 random(93);
+  const EffectInstance at = random_instance(GetParam(), random);
+  const Effect& effect = *effects_of(*at.robot)[0];
+  EXPECT_FALSE(effect.needs().empty());
+  ASSERT_EQ(effect.parameters().size(), static_cast<size_t>(at.xi.size() - at.own()));
+  ASSERT_FALSE(effect.parameters().empty());
+  const std::string place = effect.at().empty() ? "robot" : effect.at();
+  for (size_t i = 0; i < effect.parameters().size(); ++i) {
+    const EffectParameter& own = effect.parameters()[i];
+    EXPECT_FALSE(own.unit.empty());
+    EXPECT_GT(own.usual_least, 0);
+    EXPECT_GT(own.usual_most, own.usual_least);
+    const Parameter& p = at.robot->parameters()[static_cast<size_t>(at.own()) + i];
+    EXPECT_EQ(p.name, place + "." + own.name);
+    EXPECT_EQ(p.unit(), own.unit);
+    EXPECT_EQ(p.part, Part::effect);
+    EXPECT_EQ(p.nominal, 0);
+    EXPECT_DOUBLE_EQ(p.tolerance, 10 * own.usual_most);
+    EXPECT_FALSE(p.free);
+    EXPECT_EQ(find_parameter(*at.robot, p.name), static_cast<int>(at.own()) + static_cast<int>(i));
+  }
+}
+
+const char* const kArm =
+    "robot: arm\nkind: serial\nframes:\n"
+    "  - {name: base, joint: fixed, r: 0.5}\n"
+    "  - {name: j1, joint: revolute, d: 0.3, mass: 10}\n"
+    "  - {name: j2, joint: revolute, alpha: 1.5, d: 0.4, mass: 5}\n"
+    "  - {name: j3, joint: prismatic, alpha: 1.5, mass: 2}\n"
+    "effects:\n";  // the first effect stands on line 9
+
+/// First problem of the arm with these effects, one a line.
+std::string refusal(const std::string& entries) {
+  Problems problems;
+  const auto robot = make_robot(parsed(kArm + entries), problems);
+  EXPECT_EQ(robot, nullptr);
+  return problems.any() ? problems.list.front() : "accepted";
+}
+
+TEST_P(EffectFile, IsRefusedForAnUnknownKey) {
+  std::string entry = entry_text(GetParam(), "j2", "j1");
+  if (entry.find("table") != entry.npos) entry += ", normal: [0, 0, 1]";
+  EXPECT_THAT(refusal("  - {effect: backlash, at: j1}\n  - {" + entry + ", colour: red}\n"),
+              AllOf(StartsWith("arm.yaml:10: "), HasSubstr("'colour'")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, EffectFile, testing::ValuesIn(effect_cases()), title_of);
+
+TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"{effect: joint_complience, at: j2}", "joint_compliance, link_compliance"},
+      {"{at: j2}", "effect"},
+      {"{effect: joint_compliance}", "'at'"},
+      {"{effect: joint_compliance, at: j9}", "j1, j2, j3"},
+      {"{effect: joint_compliance, at: base}", "j1, j2, j3"},
+      {"{effect: joint_compliance, at: j2, c: soft}", "'c'"},
+      {"{effect: joint_compliance, at: j2, lumps: maybe}", "lumps"},
+      {"{effect: link_compliance, at: j2, bend_z: 1}", "bend_z"},
+      {"{effect: transmission_error, at: j1, waves: [1, 0]}", "waves"},
+      {"{effect: transmission_error, at: j1, waves: []}", "waves"},
+      {"{effect: transmission_error, at: j1, waves: -1}", "waves"},
+      {"{effect: backlash, at: j1, by: luck}", "motion or load"},
+      {"{effect: joint_coupling, at: j1}", "from"},
+      {"{effect: joint_coupling, at: j1, from: j1}", "another joint"},
+      {"{effect: joint_coupling, at: j1, from: base}", "another joint"},
+      {"{effect: thermal_expansion, at: j2}", "the whole robot"},
+      {"{effect: thermal_expansion, lag: -1}", "lag"},
+      {"{effect: base_drift, at: j1}", "base"},
+      {"{effect: base_drift, settle: -5}", "settle"},
+      {"{effect: zero_shift, at: j1}", "moment"},
+      {"{effect: probe_pretravel, at: j1}", "probe"},
+      {"{effect: trigger_latency, at: base}", "probe"},
+      {"{effect: plane_form_error, at: table}", "normal"},
+      {"{effect: plane_form_error, at: table, normal: [0, 0, 0]}", "normal"},
+      {"{effect: fixture_shift, at: table, normal: [0, 0, 1]}", "moment"},
+      {"{effect: fixture_shift, at: table, moment: 1, normal: [0, 1]}", "normal"},
+  };
+  for (const auto& [entry, expected] : cases)
+    EXPECT_THAT(refusal("  - " + std::string(entry) + "\n"),
+                AllOf(StartsWith("arm.yaml:9: "), HasSubstr(expected)))
+        << entry;
+}
+
+TEST(EffectsOfAFile, AreRefusedWhenTwoParametersWouldHaveOneName) {
+  EXPECT_THAT(refusal("  - {effect: backlash, at: j1}\n  - {effect: backlash, at: j1, by: load}\n"),
+              AllOf(StartsWith("arm.yaml:"), HasSubstr("j1.play"), HasSubstr("twice")));
+}
+
+TEST(EffectsOfAFile, AreRefusedWhenTheyAreNoList) {
+  EXPECT_THAT(refusal("  effect: backlash\n  at: j1\n"),
+              AllOf(StartsWith("arm.yaml:"), HasSubstr("list of effects")));
+}
+
+TEST(TriggerLatency, IsRefusedWhereOnlySignsOfVelocitiesAreKnown) {
+  Site site;
+  site.velocities = true;
+  Problems problems;
+  const auto entry = parsed("{effect: trigger_latency}");
+  EXPECT_EQ(
+      correct(robot_of(with_frames("  - {name: j1, joint: revolute}\n")), {entry}, site, problems),
+      nullptr);
+  ASSERT_TRUE(problems.any());
+  EXPECT_THAT(problems.list.front(), HasSubstr("velocities"));
+}
+
+TEST(JointCompliance, OfARobotWithoutMassesComesBackAsItWasLoadedOrLumped) {
+  const auto arm = std::shared_ptr<const Robot>(
+      robot_of(with_frames("  - {name: j1, joint: revolute, alpha: 1.5}\n"
+                           "  - {name: tool, joint: fixed, d: 1}\n")));
+  Site loaded, unloaded;
+  loaded.loads = true;
+  for (const Site& site : {loaded, unloaded}) {
+    Problems problems;
+    const auto robot = correct(arm, {parsed("{effect: joint_compliance, at: j1}")}, site, problems);
+    ASSERT_NE(robot, nullptr);
+    const auto back = robot_of(robot->describe(values(*robot)));
+    ASSERT_NE(back, nullptr);
+    EXPECT_EQ(back->parameters().size(), robot->parameters().size());
+    EXPECT_EQ(back->parameters().back().name, site.loads ? "j1.c" : "j1.y_j1");
+  }
+}
+
+}  // namespace
+}  // namespace selfcal

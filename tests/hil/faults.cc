@@ -1,0 +1,251 @@
+// Every fault of the bus and of the line, injected once into a running session: the state that the
+// service goes to, what its diagnostics say, and that nothing collected is lost.
+#include <gmock/gmock.h>
+#include <linux/can/error.h>
+#include <signal.h>
+#include <time.h>
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "io/clock.h"
+#include "tests/hil/bus_cell.h"
+#include "tests/hil/meddler.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr canid_t kSync = 0x80, kSecondJoint = 0x182, kThirdJoint = 0x183;
+
+void pause(Nanoseconds length) { Wakeup().wait(length); }
+
+can_frame error_frame(canid_t classes) {
+  can_frame frame{};
+  frame.can_id = CAN_ERR_FLAG | classes;
+  frame.len = CAN_ERR_DLC;
+  return frame;
+}
+
+void step_wall_clock(Nanoseconds by) {
+  const Nanoseconds t = realtime_now() + by;
+  const timespec wall = {t / kSecond, t % kSecond};
+  ASSERT_EQ(clock_settime(CLOCK_REALTIME, &wall), 0) << "needs root";
+}
+
+/// A fault, how it is ended, and what the service is to say of it.
+struct Fault {
+  const char* name;
+  std::function<void()> inject, heal;
+  const char* state;       ///< "fault", or "collecting" where it goes on
+  const char* diagnostic;  ///< in one of its lines; empty where the counters alone tell
+};
+
+/// In a session that has been planned and goes on as long as there are faults to inject.
+class Faults : public InTheMachine {
+ protected:
+  void SetUp() override {
+    InTheMachine::SetUp();
+    if (IsSkipped()) return;
+    meddler = std::make_unique<Meddler>(wires);
+    CellOptions options = small_session();
+    options.touches = 12;
+    options.id = "faulty";
+    cell = std::make_unique<BusCell>(options, wires, meddler->robot());
+    slow_down();
+    cell->start_bus_robot();
+    cell->start_service();
+    ASSERT_TRUE(cell->start_session()) << cell->robot_log();
+    collect();
+  }
+
+  /// A hundred samples a second are enough here, and leave the processor to the service.
+  void slow_down() const {
+    const auto path = cell->folder / "rx90_cell.scenario.yaml";
+    std::stringstream text;
+    text << std::ifstream(path).rdbuf();
+    std::string scenario = text.str();
+    const std::string was = "encoder_period: 0.002";
+    scenario.replace(scenario.find(was), was.size(), "encoder_period: 0.01");
+    std::ofstream(path) << scenario;
+  }
+
+  /// Waits for two more touches.
+  void collect() {
+    const std::size_t done = cell->progress.size();
+    ASSERT_TRUE(cell->until([&] { return cell->progress.size() >= done + 2; }, 1800 * kSecond));
+  }
+  /// Starts again after a fault, once the service has found all well.
+  void go_on() {
+    ASSERT_TRUE(cell->until([&] { return cell->in_state("idle"); }, 120 * kSecond))
+        << "is in " << cell->statuses.back().state << ": " << cell->statuses.back().why;
+    ASSERT_TRUE(cell->start_session());
+    collect();
+  }
+  std::string text_of_health() const {
+    std::string text;
+    if (cell->health.empty()) return text;
+    for (const HealthMessage& line : cell->health.back().lines) {
+      text += line.name + " (" + std::to_string(static_cast<int>(line.level)) + ") " + line.message;
+      for (const auto& [key, value] : line.values) text += " " + key + "=" + value;
+      text += "\n";
+    }
+    return text;
+  }
+  std::vector<Nanoseconds> taken() const {
+    std::vector<Nanoseconds> edges;
+    for (const TouchRecord& touch : must(cell->store()->touches(cell->statuses.back().session)))
+      if (touch.outcome == TouchOutcome::taken) edges.push_back(touch.edge);
+    return edges;
+  }
+  void show(const Fault& fault, const std::string& line) {
+    std::printf("| %-22s | %-10s | %-100s | %-100s |\n", fault.name,
+                cell->statuses.back().state.c_str(), cell->statuses.back().why.c_str(),
+                line.c_str());
+    std::fflush(stdout);
+  }
+
+  void go_through(const Fault& fault);
+
+  std::unique_ptr<Meddler> meddler;
+  std::unique_ptr<BusCell> cell;
+};
+
+void Faults::go_through(const Fault& fault) {
+  SCOPED_TRACE(fault.name);
+  const std::vector<Nanoseconds> before = taken();
+  cell->listen();
+  cell->health.clear();
+  fault.inject();
+  std::string line;
+  const bool noticed = cell->until(
+      [&] {
+        for (const HealthReport& report : cell->health)
+          for (const HealthMessage& each : report.lines)
+            if (each.message.find(fault.diagnostic) != std::string::npos) line = each.message;
+        return !line.empty() && cell->in_state(fault.state);
+      },
+      60 * kSecond);
+  EXPECT_TRUE(noticed) << text_of_health() << cell->statuses.back().why;
+  show(fault, line);
+  fault.heal();
+  // A service that goes on may still come to a fault of what the healing leaves behind.
+  if (std::string(fault.state) == "fault")
+    go_on();
+  else
+    collect();
+  const std::vector<Nanoseconds> after = taken();
+  ASSERT_GE(after.size(), before.size());
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin())) << "a touch is lost";
+}
+
+TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
+  const auto nothing = [](const can_frame&, const PutFrame&) {};
+  const auto through = [](const can_frame& frame, const PutFrame& put) { put(frame, 0); };
+  const auto honest = [&] { meddler->honest(); };
+  const auto command = [](const std::string& text) { ASSERT_EQ(std::system(text.c_str()), 0); };
+  const auto rule = [&](canid_t id, FrameRule of_it) {
+    meddler->frames([=](const can_frame& frame, const PutFrame& put) {
+      (frame.can_id == id ? of_it : FrameRule(through))(frame, put);
+    });
+  };
+  const std::vector<Fault> faults = {
+      {"interface down and up", [&] { command("ip link set vcan0 down"); },
+       [&] { command("ip link set vcan0 up"); }, "fault", "the interface is down"},
+      {"bus off and restart",
+       [&] {
+         meddler->frames(nothing);
+         meddler->put(error_frame(CAN_ERR_BUSOFF));
+       },
+       [&] {
+         meddler->put(error_frame(CAN_ERR_RESTARTED));
+         honest();
+       },
+       "fault", "the controller is off the bus"},
+      {"error frames",
+       [&] {
+         for (int i = 0; i < 200; ++i) {
+           meddler->put(error_frame(CAN_ERR_PROT | CAN_ERR_BUSERROR));
+           pause(5 * kMillisecond);
+         }
+       },
+       honest, "collecting", "errors on the bus"},
+      {"a joint missing", [&] { rule(kThirdJoint, nothing); }, honest, "fault",
+       "frames are missing (j3"},
+      {"a joint late",
+       [&] {
+         rule(kThirdJoint,
+              [](const can_frame& frame, const PutFrame& put) { put(frame, 7 * kMillisecond); });
+       },
+       honest, "fault", "frames come late (j3"},
+      {"frames before SYNC",
+       [&] {
+         rule(kSync,
+              [](const can_frame& frame, const PutFrame& put) { put(frame, 3 * kMillisecond); });
+       },
+       honest, "fault", "frames "},
+      {"a counter that jumps",
+       [&] {
+         rule(kSecondJoint, [](const can_frame& frame, const PutFrame& put) {
+           can_frame changed = frame;
+           changed.data[3] = static_cast<__u8>(changed.data[3] ^ (monotonic_now() / kSecond % 2));
+           put(changed, 0);
+         });
+       },
+       honest, "collecting", "a counter jumped"},
+      {"a second sender",
+       [&] {
+         rule(kSecondJoint, [](const can_frame& frame, const PutFrame& put) {
+           can_frame other = frame;
+           other.data[1] = static_cast<__u8>(other.data[1] + 1);
+           put(frame, 0);
+           put(other, kMillisecond);
+         });
+       },
+       honest, "fault", "a second sender"},
+      {"overrun of the queue",
+       [&] {
+         ::kill(cell->service_pid(), SIGSTOP);
+         for (int i = 0; i < 20'000; ++i) {
+           can_frame frame{};
+           frame.can_id = kSync;
+           meddler->put(frame);
+         }
+         ::kill(cell->service_pid(), SIGCONT);
+       },
+       honest, "collecting", "frames were lost in the queue"},
+      {"trigger chatters",
+       [&] {
+         for (int i = 0; i < 200; ++i) {
+           meddler->drive(i % 2 == 0);
+           pause(7 * kMillisecond);
+         }
+       },
+       honest, "fault", "chatters"},
+      {"trigger stuck closed", [&] { meddler->level([](bool) { return true; }); }, honest, "fault",
+       "the trigger"},
+      {"trigger stuck open", [&] { meddler->level([](bool) { return false; }); }, honest,
+       "collecting", ""},
+      {"trigger inverted", [&] { meddler->level([](bool closed) { return !closed; }); }, honest,
+       "fault", "the trigger"},
+      {"more edges than 16",
+       [&] {
+         for (int i = 0; i < 500; ++i) meddler->drive(i % 2 == 0);
+       },
+       honest, "collecting", ""},
+      {"wall clock + 1 h", [&] { step_wall_clock(3600 * kSecond); }, honest, "collecting", ""},
+      {"wall clock - 1 h", [&] { step_wall_clock(-3600 * kSecond); }, honest, "collecting", ""},
+  };
+  for (const Fault& fault : faults) {
+    go_through(fault);
+    if (HasFatalFailure()) return;
+  }
+  cell->listen();
+  std::printf("%s", text_of_health().c_str());
+}
+
+}  // namespace
+}  // namespace selfcal
