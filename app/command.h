@@ -20,8 +20,10 @@ enum ExitStatus : int {
 
 /// Adds a subcommand whose callback puts its exit status into `status`.
 void add_identify(CLI::App& app, int& status);
+void add_diagnose(CLI::App& app, int& status);
 void add_identifiable(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
+void add_trial(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);

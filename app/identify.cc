@@ -6,10 +6,13 @@
 #include "app/command.h"
 #include "app/progress_line.h"
 #include "app/summary.h"
+#include "constraints/site.h"
+#include "diagnosis/shapes.h"
 #include "io/data_set_file.h"
 #include "io/file.h"
 #include "io/robot_file.h"
 #include "io/solution_json.h"
+#include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 struct Arguments {
   std::string data_set, out;
   Options options;
+  std::vector<std::string> effects;
   bool json = false;
 };
 
@@ -38,19 +42,39 @@ Result<void> write(const Arguments& arguments, const Robot& robot, const Solutio
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }
 
+/// The robot of a data set with the effects that are asked for, or why not.
+tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
+    std::shared_ptr<const Robot> robot, const DataSet& data, const Arguments& arguments) {
+  if (arguments.effects.empty()) return robot;
+  const ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
+  if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
+  Problems problems;
+  const auto geometry = geometry_of(robot);
+  std::shared_ptr<const Robot> corrected =
+      correct(geometry, chosen.entries, site_of(*geometry, data), problems);
+  if (!corrected) return tl::unexpected(problems.list.front());
+  return corrected;
+}
+
 int identify_command(const Arguments& arguments) {
-  const auto loaded = load_data_set(arguments.data_set);
+  auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
   for (const std::string& notice : loaded->notices)
     std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
-  const Robot& robot = *loaded->robot;
-  if (const std::string name = unknown_name(robot, arguments.options); !name.empty())
+  const auto model = with_effects(std::move(loaded->robot), loaded->data, arguments);
+  if (!model) return wrong_usage(model.error());
+  const Robot& robot = **model;
+  Options options = arguments.options;
+  if (!arguments.effects.empty())
+    for (const Parameter& p : robot.parameters())
+      if (p.part == Part::effect) options.free.push_back(p.name);
+  if (const std::string name = unknown_name(robot, options); !name.empty())
     return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
                        "'; names are like theta2, K3 or j2.theta, * stands for any text");
   Solution solution;
   {
     ProgressLine line;
-    solution = identify(robot, loaded->data, arguments.options,
+    solution = identify(robot, loaded->data, options,
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
   const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
@@ -74,6 +98,8 @@ void add_identify(CLI::App& app, int& status) {
   command->add_option("--fix", arguments->options.fix,
                       "Parameters held at the model's value (theta2, j2.theta, d*)");
   command->add_option("--free", arguments->options.free, "Parameters freed (K3, K*)");
+  command->add_option("--effects", arguments->effects,
+                      "Effects identified with it: EFFECT or EFFECT@PLACE (joint_compliance@j2)");
   command->add_option("--out", arguments->out, "Folder for result.json and calibrated.robot.yaml");
   command->add_flag("--json", arguments->json, "Print result.json alone on standard output");
   command->callback([arguments, &status] { status = identify_command(*arguments); });

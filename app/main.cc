@@ -17,7 +17,9 @@ int run(int argc, char** argv) {
       "3 bad input, 4 device or disk, 5 a bug.");
   int status = kDone;
   add_identify(app, status);
+  add_diagnose(app, status);
   add_simulate(app, status);
+  add_trial(app, status);
   add_identifiable(app, status);
   add_robot(app, status);
   add_serve(app, status);

@@ -11,10 +11,13 @@ _selfcal() {
     return
   fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable simulate robot serve monitor command history --help --version" ;;
-    *:identify) words="--fix --free --out --json --help" ;;
+    1:*) words="identify identifiable diagnose trial simulate robot serve monitor command history --help --version" ;;
+    *:identify) words="--fix --free --effects --out --json --help" ;;
+    *:diagnose) words="--sim --since --next --out --json --help" ;;
+    2:trial) words="seal run score --help" ;;
+    *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --count --seed --json --help" ;;
-    *:simulate) words="--out --live --truth --help" ;;
+    *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check --help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --help" ;;
@@ -23,7 +26,7 @@ _selfcal() {
     *:history) words="--newest --events --export --json --help" ;;
     *) words="--help" ;;
   esac
-  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|command) ]]; then
+  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|command|trial) ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$cur")

@@ -163,7 +163,8 @@ TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
 TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
   const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
   const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
-  for (const std::string command : {"identify", "identifiable", "simulate", "robot check"}) {
+  for (const std::string command : {"identify", "identifiable", "diagnose", "trial seal",
+                                    "trial run", "trial score", "simulate", "robot check"}) {
     std::istringstream help(selfcal_run(command + " --help").out);
     EXPECT_NE(manual.find("selfcal " + command), std::string::npos) << command;
     std::string word;

@@ -1,0 +1,133 @@
+// selfcal diagnose DATASET: where the gap lies, which effect causes it, how far it closes.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "app/command.h"
+#include "app/diagnosis_json.h"
+#include "app/diagnosis_summary.h"
+#include "app/progress_line.h"
+#include "diagnosis/compare.h"
+#include "diagnosis/diagnosis.h"
+#include "io/data_set_file.h"
+#include "io/file.h"
+#include "io/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+struct Arguments {
+  std::string data_set, since, simulated, next, out;
+  bool json = false;
+};
+
+Result<void> write(const Arguments& arguments, const Diagnosis& diagnosis,
+                   const std::string& json) {
+  const std::filesystem::path out(arguments.out);
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) return device_failed(arguments.out + ": cannot create the folder: " + error.message());
+  if (auto done = write_file_atomically(out / "diagnosis.json", json + "\n"); !done) return done;
+  return write_file_atomically(out / "corrected.robot.yaml",
+                               robot_text(*diagnosis.model, diagnosis.values));
+}
+
+std::function<void(std::string_view, double)> shown_on(ProgressLine& line) {
+  return [&line](std::string_view stage, double share) { line.show(stage, share); };
+}
+
+/// What the robot has and its simulation lacks, or the other way round.
+std::string against_simulation(const Diagnosis& real, const Diagnosis& simulated) {
+  const auto has = [](const Diagnosis& diagnosis, const std::string& effect) {
+    return std::ranges::any_of(diagnosis.candidates, [&](const CauseResult& each) {
+      return each.effect == effect && each.probability > 0.5;
+    });
+  };
+  std::string text;
+  for (const CauseResult& each : real.candidates)
+    if (each.effect != "none" && each.probability > 0.5 && !has(simulated, each.effect))
+      text += (text.empty() ? "the robot has, and its simulation lacks: " : ", ") + each.effect;
+  std::string less;
+  for (const CauseResult& each : simulated.candidates)
+    if (each.effect != "none" && each.probability > 0.5 && !has(real, each.effect))
+      less +=
+          (less.empty() ? "the simulation has, and the robot does not show: " : ", ") + each.effect;
+  if (text.empty() && less.empty())
+    return "the robot and its simulation show the same causes beyond geometry";
+  return text + (text.empty() || less.empty() ? "" : "; ") + less;
+}
+
+/// The rows that the next steps ask for, as a table that a person or a program takes over.
+std::string next_table(const Diagnosis& diagnosis) {
+  std::string text = "what,separates,probability_after\n";
+  for (const NextStep& step : diagnosis.next) {
+    std::string causes;
+    for (const std::string& each : step.separates) causes += (causes.empty() ? "" : " ") + each;
+    text += "\"" + step.what + "\"," + causes + "," + format_number(step.probability_after) + "\n";
+  }
+  return text;
+}
+
+int diagnose_command(const Arguments& arguments) {
+  auto loaded = load_data_set(arguments.data_set);
+  if (!loaded) return tell(loaded.error());
+  for (const std::string& notice : loaded->notices)
+    std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
+  const std::shared_ptr<const Robot> robot = std::move(loaded->robot);
+  Diagnosis diagnosis;
+  {
+    ProgressLine line;
+    diagnosis = diagnose(robot, loaded->data, {}, shown_on(line));
+    if (!arguments.simulated.empty()) {
+      auto simulated = load_data_set(arguments.simulated);
+      if (!simulated) return tell(simulated.error());
+      diagnosis.warnings.push_back(against_simulation(
+          diagnosis, diagnose(std::move(simulated->robot), simulated->data, {}, shown_on(line))));
+    }
+  }
+  nlohmann::ordered_json whole = to_json(diagnosis);
+  std::string changed;
+  if (!arguments.since.empty()) {
+    auto before = load_data_set(arguments.since);
+    if (!before) return tell(before.error());
+    const Comparison comparison = compare(robot, before->data, loaded->data);
+    if (!comparison.problem.empty()) return wrong_usage("--since: " + comparison.problem);
+    whole["since"] = to_json(comparison);
+    changed = "Since " + before->name + ": " + comparison.why + "\n";
+  }
+  const std::string json = whole.dump(1);
+  if (!arguments.next.empty())
+    if (const auto written = write_file_atomically(arguments.next, next_table(diagnosis)); !written)
+      return tell(written.error());
+  if (!arguments.out.empty())
+    if (const auto written = write(arguments, diagnosis, json); !written)
+      return tell(written.error());
+  if (arguments.json)
+    std::printf("%s\n", json.c_str());
+  else
+    std::fputs((summary(diagnosis) + changed).c_str(), stdout);
+  return kDone;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "Where the gap between model and machine lies, what causes it, how far it closes");
+  command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
+  command->add_option("--sim", arguments->simulated,
+                      "Data set of a simulator: what the robot has and it lacks");
+  command->add_option("--since", arguments->since,
+                      "Earlier data set of the same robot: what changed");
+  command->add_option("--next", arguments->next, "File for the rows to measure next");
+  command->add_option("--out", arguments->out,
+                      "Folder for diagnosis.json and corrected.robot.yaml");
+  command->add_flag("--json", arguments->json, "Print diagnosis.json alone on standard output");
+  command->callback([arguments, &status] { status = diagnose_command(*arguments); });
+}
+
+}  // namespace selfcal

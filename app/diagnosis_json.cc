@@ -1,0 +1,124 @@
+// One function for each part of diagnosis.json, in the order of the file.
+#include "app/diagnosis_json.h"
+
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+template <class List, class Convert>
+Json array_of(const List& list, Convert convert) {
+  Json array = Json::array();
+  for (const auto& each : list) array.push_back(convert(each));
+  return array;
+}
+
+Json of_gap(const Gap& gap) {
+  const auto known = [&](double number) { return gap.rows > 0 ? finite(number) : Json(nullptr); };
+  Json json = Json::object({{"rms_nominal", known(gap.rms_nominal)},
+                            {"rms_before", known(gap.rms_before)},
+                            {"rms_after", known(gap.rms_after)},
+                            {"max_before", known(gap.max_before)},
+                            {"max_after", known(gap.max_after)},
+                            {"noise_floor", known(gap.noise_floor)}});
+  json["closed_fraction"] = gap.closed_fraction ? finite(*gap.closed_fraction) : Json(nullptr);
+  json["closed_interval"] =
+      gap.closed_fraction ? Json::array({gap.closed_least, gap.closed_most}) : Json(nullptr);
+  json["judged_on"] = gap.judged_on;
+  json["rows"] = gap.rows;
+  return json;
+}
+
+Json of_value(const NamedValue& p) {
+  return Json::object({{"name", p.name},
+                       {"value", finite(p.value)},
+                       {"sigma", finite(p.sigma)},
+                       {"unit", p.unit},
+                       {"usual", {p.usual_least, p.usual_most}}});
+}
+
+Json of_candidate(const CauseResult& cause, double p_value) {
+  return Json::object({{"effect", cause.effect},
+                       {"where", cause.where},
+                       {"probability", finite(cause.probability)},
+                       {"p_value", finite(p_value)},
+                       {"rms_after", cause.rms_after > 0 ? finite(cause.rms_after) : Json(nullptr)},
+                       {"survival", finite(cause.survival)},
+                       {"visible", finite(cause.visible)},
+                       {"parameters", array_of(cause.parameters, of_value)},
+                       {"confounded_with", cause.confounded_with}});
+}
+
+Json of_where(const Where& where) {
+  Json joints = Json::object(), sets = Json::object();
+  for (const Share& each : where.by_joint) joints[each.name] = finite(each.share);
+  for (const Share& each : where.by_set) sets[each.name] = finite(each.share);
+  Json json = Json::object({{"by_joint", std::move(joints)}, {"by_set", std::move(sets)}});
+  json["by_region"] = array_of(where.by_region, [](const Region& r) {
+    return Json::object({{"center", {r.centre.x(), r.centre.y(), r.centre.z()}},
+                         {"radius", finite(r.radius)},
+                         {"share", finite(r.share)}});
+  });
+  json["by_time"] = array_of(where.by_time, [](const Interval& i) {
+    return Json::object({{"from", i.from}, {"to", i.to}, {"share", finite(i.share)}});
+  });
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const Comparison& comparison) {
+  Json json = Json::object({{"why", comparison.why},
+                            {"none", finite(comparison.none)},
+                            {"unknown", finite(comparison.unknown)}});
+  json["changes"] = array_of(comparison.changes, [](const Change& each) {
+    return Json::object({{"effect", each.effect},
+                         {"where", each.where},
+                         {"probability", finite(each.probability)},
+                         {"values", array_of(each.values, of_value)}});
+  });
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
+  Json json = Json::object();
+  json["gap"] = of_gap(diagnosis.gap);
+  json["verdict"] = Json::object({{"effect", diagnosis.verdict.effect},
+                                  {"where", diagnosis.verdict.where},
+                                  {"probability", finite(diagnosis.verdict.probability)},
+                                  {"p_value", finite(diagnosis.p_value)},
+                                  {"why", diagnosis.why}});
+  json["candidates"] = array_of(diagnosis.candidates, [&](const CauseResult& each) {
+    return of_candidate(each, diagnosis.p_value);
+  });
+  json["where"] = of_where(diagnosis.where);
+  json["detectable"] = array_of(diagnosis.detectable, [](const Detectable& each) {
+    return Json::object({{"effect", each.effect},
+                         {"where", each.where},
+                         {"smallest", finite(each.smallest)},
+                         {"unit", each.unit}});
+  });
+  json["untestable"] = array_of(diagnosis.untestable, [](const Untestable& each) {
+    return Json::object({{"effect", each.effect}, {"where", each.at}, {"why", each.why}});
+  });
+  json["next"] = array_of(diagnosis.next, [](const NextStep& each) {
+    return Json::object({{"what", each.what},
+                         {"separates", each.separates},
+                         {"probability_after", finite(each.probability_after)}});
+  });
+  json["rejected"] = array_of(diagnosis.rejected, [](const Rejected& each) {
+    return Json::object({{"row", each.row},
+                         {"set", each.set},
+                         {"part", each.check ? "check" : "fit"},
+                         {"residual", finite(each.residual)},
+                         {"why", each.why}});
+  });
+  json["warnings"] = diagnosis.warnings;
+  return json;
+}
+
+}  // namespace selfcal

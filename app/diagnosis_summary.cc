@@ -1,0 +1,84 @@
+// First the verdict in a sentence, then the gap, the causes, where it lies, what to do next.
+#include "app/diagnosis_summary.h"
+
+#include <cmath>
+
+#include "app/words.h"
+
+namespace selfcal {
+namespace {
+
+constexpr size_t kMostListed = 6;
+
+std::string places(const std::vector<std::string>& where) {
+  std::string text;
+  for (size_t i = 0; i < where.size(); ++i)
+    text += (i == 0 ? " at " : i + 1 == where.size() ? " and " : ", ") + where[i];
+  return text;
+}
+
+std::string spaced(std::string effect) {
+  for (char& c : effect)
+    if (c == '_') c = ' ';
+  return effect;
+}
+
+std::string gap_line(const Gap& gap) {
+  if (gap.rows == 0) return "No rows are kept aside: how far the gap closes was not judged.\n";
+  std::string text = printed("Gap: %.4g mm with the maker's figures, %.4g mm calibrated",
+                             1e3 * gap.rms_nominal, 1e3 * gap.rms_before);
+  text += printed(", %.4g mm with the named effects; noise %.4g mm (rms, %d rows kept aside)\n",
+                  1e3 * gap.rms_after, 1e3 * gap.noise_floor, gap.rows);
+  if (gap.closed_fraction)
+    text += printed("     %.0f %% of what calibration leaves is closed (%.0f to %.0f %%)\n",
+                    100 * *gap.closed_fraction, 100 * gap.closed_least, 100 * gap.closed_most);
+  return text;
+}
+
+std::string cause_lines(const std::vector<CauseResult>& causes) {
+  std::string text = "\n  probability  cause\n";
+  for (size_t i = 0; i < causes.size() && i < kMostListed; ++i) {
+    const CauseResult& each = causes[i];
+    if (i > 2 && each.probability < 0.02) break;
+    text += printed("  %9.3f    ", each.probability) + spaced(each.effect) + places(each.where);
+    if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
+    text += "\n";
+    for (size_t p = 0; p < each.parameters.size() && each.probability > 0.5 && p < kMostListed;
+         ++p) {
+      const NamedValue& v = each.parameters[p];
+      text += printed("                 %s = %.3g ± %.1g %s (usual %.1g to %.1g)\n", v.name.c_str(),
+                      v.value, v.sigma, v.unit.c_str(), v.usual_least, v.usual_most);
+    }
+  }
+  return text;
+}
+
+template <class Shares>
+std::string share_line(const char* title, const Shares& shares) {
+  std::string text;
+  for (const auto& each : shares)
+    if (each.share > 0.02) text += printed("  %s %.0f %%", each.name.c_str(), 100 * each.share);
+  return text.empty() ? "" : std::string("  ") + title + text + "\n";
+}
+
+}  // namespace
+
+std::string summary(const Diagnosis& diagnosis) {
+  std::string text = diagnosis.why + "\n" + gap_line(diagnosis.gap);
+  text += cause_lines(diagnosis.candidates);
+  const std::string where = share_line("by joint:", diagnosis.where.by_joint) +
+                            share_line("by set:  ", diagnosis.where.by_set);
+  if (!where.empty()) text += "\nWhere what calibration leaves lies:\n" + where;
+  if (!diagnosis.next.empty()) {
+    text += "\nNext:\n";
+    for (const NextStep& step : diagnosis.next)
+      text += "  " + step.what + printed(" (then %.0f %% sure)\n", 100 * step.probability_after);
+  }
+  if (!diagnosis.rejected.empty())
+    text += printed("\n%d rows put aside as false (diagnosis.json names them)\n",
+                    static_cast<int>(diagnosis.rejected.size()));
+  for (const std::string& warning : diagnosis.warnings) text += "note: " + warning + "\n";
+  return text;
+}
+
+}  // namespace selfcal

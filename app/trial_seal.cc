@@ -1,0 +1,170 @@
+// selfcal trial seal: data sets in a folder, their truth beside them, the truth's SHA-256
+// published.
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/command.h"
+#include "app/progress_line.h"
+#include "app/trial.h"
+#include "io/data_set_file.h"
+#include "io/data_set_writer.h"
+#include "io/file.h"
+#include "io/robot_file.h"
+#include "sim/trial_machine.h"
+
+namespace selfcal {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json truth_json(const TrialLedger& truth) {
+  Json where = Json::object();
+  for (const auto& [effect, places] : truth.where) where[effect] = places;
+  const auto text = [](const std::string& each) { return each.empty() ? Json() : Json(each); };
+  return {{"effect", truth.effect},
+          {"second", text(truth.second)},
+          {"where", where},
+          {"r", truth.r},
+          {"measure", truth.measure},
+          {"noise", truth.noise},
+          {"rows", truth.rows},
+          {"physics", text(truth.physics)},
+          {"told_closed", truth.told_closed ? Json(*truth.told_closed) : Json()}};
+}
+
+Node description(const MadeTrial& trial) {
+  Node sets = Node::map();
+  for (const Set& set : trial.data.sets) {
+    Node entry = Node::map();
+    entry.set("method", Node::of(std::string(set.method->name())));
+    if (set.noise > 0) entry.set("noise", Node::of(set.noise));
+    sets.set(set.name, std::move(entry));
+  }
+  Node node = Node::map();
+  node.set("robot", Node::of(std::string("arm.robot.yaml")));
+  node.set("observations", Node::of(std::string("observations.csv")));
+  node.set("sets", std::move(sets));
+  return node;
+}
+
+std::string name_of(int number) {
+  std::string digits = std::to_string(number);
+  if (digits.size() < 3) digits.insert(0, 3 - digits.size(), '0');
+  return "t" + digits;
+}
+
+/// Publishes the truth's fingerprint beside the truth.
+Result<void> seal(const fs::path& out, const std::string& truth) {
+  if (auto done = write_file_atomically(out / kTruthFile, truth); !done) return done;
+  const std::string hash = sha256_hex(truth);
+  if (auto done = write_file_atomically(out / kTruthHash, hash + "\n"); !done) return done;
+  std::printf("%s\n", hash.c_str());
+  return {};
+}
+
+/// A folder that holds a truth is not overwritten: its answers would be judged by another one.
+Result<void> check_unsealed(const fs::path& out) {
+  std::error_code error;
+  if (fs::exists(out / kTruthFile, error))
+    return bad_input((out / kTruthFile).string() + ": is sealed already: choose a new folder");
+  fs::create_directories(out, error);
+  if (error) return device_failed(out.string() + ": cannot create the folder: " + error.message());
+  return {};
+}
+
+/// Fills in what the arguments ask for; false when `rows` or `measure` make no sense.
+bool read_options(const SealArguments& arguments, TrialRequest& request) {
+  if (!arguments.rows.empty() &&
+      (std::sscanf(arguments.rows.c_str(), "%d-%d", &request.least_rows, &request.most_rows) != 2 ||
+       request.least_rows < 60 || request.most_rows < request.least_rows))
+    return false;
+  if (!arguments.measure.empty()) request.touches = arguments.measure == "planes";
+  request.seed = arguments.seed;
+  return true;
+}
+
+Result<Json> make_one(const TrialRequest& request, const fs::path& folder) {
+  const MadeTrial trial = make_trial(request);
+  if (!trial.unreached.empty()) return bad_input(folder.string() + ": " + trial.unreached);
+  const NewDataSet written{description(trial), "arm.robot.yaml",
+                           robot_text(*trial.robot, values(*trial.robot)), &trial.data};
+  if (auto done = write_data_set(folder, written); !done) return tl::unexpected(done.error());
+  return truth_json(trial.truth);
+}
+
+int make_trials(const SealArguments& arguments) {
+  TrialRequest request;
+  if (!read_options(arguments, request))
+    return wrong_usage("--rows: expected LEAST-MOST of at least 60, like 120-400");
+  if (!arguments.robot.empty()) {
+    auto robot = load_robot(arguments.robot);
+    if (!robot) return tell(robot.error());
+    if (!(*robot)->mechanics().masses_known())
+      return wrong_usage(arguments.robot + ": trials need the masses of the links");
+    request.robot = std::move(*robot);
+  }
+  const fs::path out(arguments.out);
+  if (const auto free = check_unsealed(out); !free) return tell(free.error());
+  Json truths = Json::object();
+  {
+    ProgressLine progress;
+    for (request.number = 0; request.number < arguments.make; ++request.number) {
+      progress.show("making trials", static_cast<double>(request.number) / arguments.make);
+      const std::string name = name_of(request.number);
+      auto truth = make_one(request, out / name);
+      if (!truth) return tell(truth.error());
+      truths[name] = std::move(*truth);
+    }
+  }
+  const auto sealed = seal(out, truths.dump(1) + "\n");
+  return sealed ? kDone : tell(sealed.error());
+}
+
+/// Copies the data set at `from` whole; it must read in its new place.
+Result<void> take_one(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (fs::exists(to, error)) return bad_input(to.string() + ": is there already");
+  fs::copy(from, to, fs::copy_options::recursive, error);
+  if (error) return device_failed(to.string() + ": cannot copy: " + error.message());
+  const auto loaded = load_data_set(to);
+  if (!loaded) return tl::unexpected(loaded.error());
+  return {};
+}
+
+int take_trials(const SealArguments& arguments) {
+  const auto truth = read_file(arguments.truth, kMostTrialBytes);
+  if (!truth) return tell(truth.error());
+  const auto truths = parse_truths(*truth, arguments.truth);
+  if (!truths) return tell(truths.error());
+  const fs::path out(arguments.out);
+  if (const auto free = check_unsealed(out); !free) return tell(free.error());
+  std::set<std::string> taken;
+  for (const std::string& each : arguments.data_sets) {
+    const fs::path from = fs::path(each).lexically_normal();
+    const std::string name = (from.has_filename() ? from : from.parent_path()).filename().string();
+    if (!truths->contains(name))
+      return wrong_usage(arguments.truth + ": says nothing of the data set " + name);
+    if (const auto done = take_one(from, out / name); !done) return tell(done.error());
+    taken.insert(name);
+  }
+  for (const auto& [name, each] : *truths)
+    if (!taken.contains(name))
+      return wrong_usage(arguments.truth + ": names " + name + ", which was not given");
+  const auto sealed = seal(out, *truth);
+  return sealed ? kDone : tell(sealed.error());
+}
+
+}  // namespace
+
+int seal_trials(const SealArguments& arguments) {
+  const bool make = arguments.make > 0, take = !arguments.data_sets.empty();
+  if (make == take) return wrong_usage("give --make N, or data sets with --truth FILE");
+  if (take && arguments.truth.empty())
+    return wrong_usage("data sets that are given need --truth FILE");
+  return make ? make_trials(arguments) : take_trials(arguments);
+}
+
+}  // namespace selfcal

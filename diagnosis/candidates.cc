@@ -1,0 +1,193 @@
+#include "diagnosis/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "kinematics/corrected_robot.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kMoments = 24;    ///< at which a step may have happened
+constexpr int kMostWaves = 40;  ///< a turn
+constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
+
+Node entry(std::string_view effect, const std::string& at) {
+  Node node = Node::map();
+  node.set("effect", Node::of(std::string(effect)));
+  if (!at.empty()) node.set("at", Node::of(at));
+  return node;
+}
+
+template <class Value>
+Node with(Node node, const char* key, Value value) {
+  node.set(key, Node::of(value));
+  return node;
+}
+
+Node with_waves(Node node, const std::vector<double>& waves) {
+  node.set("waves", Node::of(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                        waves.data(), static_cast<Eigen::Index>(waves.size())))));
+  return node;
+}
+
+bool spreads(const Eigen::VectorXd& column, double least) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double v : column)
+    if (std::isfinite(v)) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  return high - low > least;
+}
+
+class Maker {
+ public:
+  Maker(const Robot& robot, const DataSet& data, const Site& site)
+      : robot_(robot), data_(data), site_(site) {}
+
+  Candidates run() {
+    for (const Joint& joint : robot_.joints()) of_joint(joint);
+    of_time();
+    of_touch();
+    spread_priors();
+    return std::move(all_);
+  }
+
+ private:
+  /// One shape of a cause; the entries after the first one take up its errors.
+  void add(std::vector<Node> entries) {
+    Candidate candidate;
+    candidate.effect = entries.front().find("effect")->text;
+    const Node* at = entries.front().find("at");
+    candidate.at = at ? at->text : "";
+    Problems problems;
+    for (size_t i = 0; i < entries.size(); ++i) {
+      const auto effect = make_effect(entries[i], robot_, site_, problems);
+      for (size_t k = 0; effect && k < effect->parameters().size(); ++k)
+        (i == 0 ? candidate.main : candidate.slack).push_back(parameters_++);
+      all_.entries.push_back(entries[i]);
+    }
+    candidate.entries = std::move(entries);
+    all_.list.push_back(std::move(candidate));
+  }
+
+  void cannot(std::string_view effect, const std::string& at, const std::string& why) {
+    all_.untestable.push_back({std::string(effect), at, why});
+  }
+
+  void of_joint(const Joint& joint) {
+    const std::string& at = joint.name;
+    const bool loads = robot_.mechanics().gravity.norm() > 0 || site_.loads;
+    if (loads && (robot_.mechanics().masses_known() || site_.loads)) {
+      const Node stiff = entry("joint_compliance", at);
+      add({stiff});
+      add({stiff, with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      add({entry("link_compliance", at)});
+    } else if (loads) {
+      add({with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      cannot("link_compliance", at, "the robot file gives no masses and the rows no loads");
+    }
+    for (int k = 1; k <= kMostWaves; ++k)
+      add({with_waves(entry("transmission_error", at), {1.0 * k})});
+    add({with_waves(entry("transmission_error", at), {1, 2})});
+    if (site_.velocities)
+      add({entry("backlash", at)});
+    else
+      cannot("backlash", at, "the rows carry no dq: the side of approach is not known");
+    if (robot_.mechanics().masses_known() || site_.loads)
+      add({with(entry("backlash", at), "by", std::string("load"))});
+    for (const Joint& other : robot_.joints())
+      if (other.name != at) add({with(entry("joint_coupling", at), "from", other.name)});
+    for (const double moment : moments(-1)) add({with(entry("zero_shift", at), "moment", moment)});
+    if (moments(-1).empty()) cannot("zero_shift", at, "the rows carry no time");
+  }
+
+  void of_time() {
+    if (site_.end > site_.begin) {
+      const double span = site_.end - site_.begin;
+      add({entry("base_drift", "base")});
+      for (const double share : {0.15, 0.5})
+        add({with(entry("base_drift", "base"), "settle", share * span)});
+    } else {
+      cannot("base_drift", "base", "the rows carry no time");
+    }
+    if (data_.rows.temperature.size() == 0 || !spreads(data_.rows.temperature, 0.2))
+      return cannot("thermal_expansion", "", "the rows carry no temperatures that change");
+    add({entry("thermal_expansion", "")});
+    for (const double share : {0.125, 0.25, 0.5, 1.0})
+      if (site_.end > site_.begin)
+        add({with(entry("thermal_expansion", ""), "lag", share * (site_.end - site_.begin))});
+  }
+
+  void of_touch() {
+    const bool touches = std::any_of(site_.sets.begin(), site_.sets.end(),
+                                     [](const SiteSet& set) { return set.touch; });
+    if (!touches) return;
+    if (data_.rows.normal.rows() > 0)
+      add({entry("probe_pretravel", "probe")});
+    else
+      cannot("probe_pretravel", "probe", "the rows carry no normals");
+    if (site_.speeds && data_.rows.normal.rows() > 0)
+      add({entry("trigger_latency", "probe")});
+    else
+      cannot("trigger_latency", "probe", "the rows carry no approach velocities");
+    for (size_t s = 0; s < site_.sets.size(); ++s) {
+      if (!site_.sets[s].touch || rows_of(static_cast<int>(s)) < kFewestRows) continue;
+      add({entry("plane_form_error", site_.sets[s].name)});
+      if (data_.rows.normal.rows() == 0) continue;
+      for (const double moment : moments(static_cast<int>(s)))
+        add({with(entry("fixture_shift", site_.sets[s].name), "moment", moment)});
+    }
+  }
+
+  int rows_of(int set) const {
+    return static_cast<int>(std::count(data_.rows.set.begin(), data_.rows.set.end(), set));
+  }
+
+  /// Between the rows of a set (-1: of all), as many rows from one to the next.
+  std::vector<double> moments(int set) const {
+    std::set<double> times;
+    for (int row = 0; row < data_.rows.rows() && data_.rows.time.size() > 0; ++row)
+      if ((set < 0 || data_.rows.set[row] == set) && std::isfinite(data_.rows.time[row]))
+        times.insert(data_.rows.time[row]);
+    const std::vector<double> t(times.begin(), times.end());
+    std::vector<double> list;
+    const auto n = static_cast<double>(t.size());
+    for (int i = 1; i <= kMoments && n >= 8; ++i) {
+      const auto at = static_cast<size_t>(std::lround(n * i / (kMoments + 1)));
+      if (at == 0 || at >= t.size()) continue;
+      const double moment = (t[at - 1] + t[at]) / 2;
+      if (list.empty() || moment > list.back()) list.push_back(moment);
+    }
+    return list;
+  }
+
+  void spread_priors() {
+    for (Candidate& each : all_.list) {
+      std::set<std::string> places;
+      int shapes = 0;
+      for (const Candidate& other : all_.list) {
+        if (other.effect != each.effect) continue;
+        places.insert(other.at);
+        shapes += other.at == each.at;
+      }
+      each.log_prior = -std::log(static_cast<double>(places.size())) - std::log(shapes);
+    }
+  }
+
+  const Robot& robot_;
+  const DataSet& data_;
+  const Site& site_;
+  Candidates all_;
+  int parameters_ = 0;
+};
+
+}  // namespace
+
+Candidates candidates(const Robot& robot, const DataSet& data, const Site& site) {
+  return Maker(robot, data, site).run();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,203 @@
+#include "diagnosis/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+constexpr double kListed = 0.005;     ///< least probability that is told
+constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
+constexpr double kAlsoThere = 0.5;    ///< of the cause's own: further places
+
+class Teller {
+ public:
+  Teller(const View& view, const Bench& bench, const Posterior& posterior)
+      : view_(view), bench_(bench), posterior_(posterior) {}
+
+  std::vector<CauseResult> causes() const {
+    std::vector<CauseResult> list;
+    for (const auto& [family, probability] : posterior_.family) {
+      if (probability < kListed) continue;
+      CauseResult cause;
+      cause.effect = family;
+      cause.probability = std::min(probability, 1.0);
+      cause.where = places(family, probability);
+      describe(cause);
+      confound(cause);
+      list.push_back(std::move(cause));
+    }
+    list.push_back({.effect = "none", .probability = posterior_.none});
+    list.push_back({.effect = "unknown", .probability = std::min(posterior_.unknown, 1.0)});
+    std::sort(list.begin(), list.end(),
+              [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    return list;
+  }
+
+ private:
+  const Candidate& candidate(int c) const { return view_.candidates().list[c]; }
+
+  bool holds(const Hypothesis& h, const std::string& effect, const std::string& at) const {
+    return std::any_of(h.candidates.begin(), h.candidates.end(), [&](int c) {
+      return candidate(c).effect == effect && (at.empty() || candidate(c).at == at);
+    });
+  }
+
+  std::vector<std::string> places(const std::string& family, double probability) const {
+    std::vector<std::pair<double, std::string>> ranked;
+    for (const auto& [cause, p] : posterior_.cause)
+      if (cause.first == family && !cause.second.empty()) ranked.emplace_back(-p, cause.second);
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::string> list;
+    for (const auto& [p, at] : ranked)
+      if (list.empty() || -p > kAlsoThere * probability) list.push_back(at);
+    return list;
+  }
+
+  /// Size and parameters, from the most probable hypothesis that has the cause.
+  void describe(CauseResult& cause) const {
+    const std::string at = cause.where.empty() ? "" : cause.where.front();
+    const auto found =
+        std::find_if(posterior_.hypotheses.begin(), posterior_.hypotheses.end(),
+                     [&](const Hypothesis& h) { return holds(h, cause.effect, at); });
+    if (found == posterior_.hypotheses.end()) return;
+    const Workbench::Estimate estimate =
+        bench_.workbench(found->structure).estimate(bench_.terms(*found));
+    const Eigen::MatrixXd& G = bench_.workbench(0).gram();
+    Eigen::Index first = 0;
+    double squares = 0;
+    for (const int c : found->candidates) {
+      const Block& block = bench_.block(c);
+      const auto size = static_cast<Eigen::Index>(block.columns.size());
+      if (candidate(c).effect == cause.effect) {
+        const Eigen::VectorXd v = estimate.mean.segment(first, size);
+        squares += v.dot(G(block.columns, block.columns) * v);
+        cause.survival = std::max(cause.survival, bench_.survival(c));
+        add_parameters(c, estimate, first, cause);
+      }
+      first += size;
+    }
+    const double noise = bench_.noise_variance(found->structure) * estimate.variance;
+    cause.visible =
+        std::sqrt(squares / bench_.workbench(0).freedom() * bench_.noise_variance(0) / noise);
+  }
+
+  void add_parameters(int c, const Workbench::Estimate& estimate, Eigen::Index first,
+                      CauseResult& cause) const {
+    Node entry = candidate(c).entries.front();
+    for (size_t k = 0; k < candidate(c).main.size(); ++k) {
+      const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
+      const Eigen::Index i = first + static_cast<Eigen::Index>(k);
+      cause.parameters.push_back(
+          {label(candidate(c).at.empty() ? "robot" : candidate(c).at, "") + "." + p.name, p.unit,
+           estimate.mean[i], std::sqrt(estimate.variance * estimate.covariance(i, i)),
+           p.usual_least, p.usual_most});
+      entry.set(p.name, Node::of(estimate.mean[i]));
+    }
+    cause.entries.push_back(std::move(entry));
+  }
+
+  /// Other families that are probable where this one is not: the rows cannot tell them apart.
+  void confound(CauseResult& cause) const {
+    std::map<Cause, double> instead;
+    double with = 0;
+    for (const Hypothesis& h : posterior_.hypotheses) {
+      const double p = std::exp(h.log_weight);
+      if (holds(h, cause.effect, "")) {
+        with += p;
+        continue;
+      }
+      for (const int c : h.candidates) instead[{candidate(c).effect, candidate(c).at}] += p;
+      if (bench_.structure(h.structure).kind > 0 && h.candidates.empty())
+        instead[{"unknown", ""}] += p;
+    }
+    for (const auto& [other, p] : instead)
+      if (p > kConfounded * with) cause.confounded_with.push_back(label(other.first, other.second));
+  }
+
+  const View& view_;
+  const Bench& bench_;
+  const Posterior& posterior_;
+};
+
+/// What all causes more probable than not explain of the squares, and what is left beyond the
+/// noise; both as the geometry alone sees them.
+struct Shares {
+  double explained = 0, left = 0;
+};
+Shares shares(const View& view, const Bench& bench, const Posterior& posterior) {
+  const Hypothesis* best = &posterior.hypotheses.front();
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (bench.structure(h.structure).kind > 0) {
+      best = &h;
+      break;
+    }
+  (void)view;
+  const Workbench& plain = bench.workbench(0);
+  const double after = plain.given(bench.terms(*best)).total() * bench.noise_variance(0);
+  const double before = plain.total() * bench.noise_variance(0);
+  const double noise = bench.workbench(best->structure).estimate(bench.terms(*best)).variance *
+                       bench.noise_variance(best->structure) * plain.freedom();
+  return {before - after, after - noise};
+}
+
+}  // namespace
+
+std::string verdict_in_words(const Diagnosis& diagnosis) {
+  const CauseResult& verdict = diagnosis.verdict;
+  char text[200];
+  if (verdict.effect == "none") {
+    std::snprintf(
+        text, sizeof text,
+        "no cause is named: noise alone explains what calibration leaves (as much is found "
+        "in %.2g of resampled rows)",
+        diagnosis.p_value);
+    return text;
+  }
+  if (verdict.effect == "unknown")
+    return "there is structure that no known effect explains: look at the machine, or repeat some "
+           "configurations to be sure of the noise";
+  std::string words = verdict.effect;
+  for (size_t i = 0; i < verdict.where.size(); ++i)
+    words += (i == 0 ? " at " : " and ") + verdict.where[i];
+  std::snprintf(text, sizeof text, " causes the gap (probability %.2f, p %.2g)",
+                verdict.probability, diagnosis.p_value);
+  words += text;
+  if (!verdict.confounded_with.empty()) {
+    words += "; these rows cannot tell it from";
+    for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
+      words += (i == 0 ? " " : ", ") + verdict.confounded_with[i];
+  }
+  return words;
+}
+
+std::string label(const std::string& effect, const std::string& at) {
+  return at.empty() ? effect : effect + "@" + at;
+}
+
+std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
+                                       const Posterior& posterior) {
+  return Teller(view, bench, posterior).causes();
+}
+
+CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
+                        const std::vector<CauseResult>& causes, const DiagnosisOptions& options) {
+  const CauseResult unknown{.effect = "unknown", .probability = posterior.unknown};
+  if (posterior.none >= options.name_below_none)
+    return {.effect = "none", .probability = posterior.none};
+  const auto rank = [](const CauseResult& each) {
+    return each.probability > 0.5 ? 1 + each.visible : each.probability;
+  };
+  const CauseResult* best = nullptr;
+  for (const CauseResult& each : causes)
+    if (each.effect != "none" && each.effect != "unknown" && (!best || rank(each) > rank(*best)))
+      best = &each;
+  if (!best) return unknown;
+  if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : *best;
+  if (best->probability < 0.5) return unknown;
+  const Shares part = shares(view, bench, posterior);
+  return part.left > part.explained ? unknown : *best;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,24 @@
+// From the posterior of hypotheses to the causes that a person is told.
+#pragma once
+
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/view.h"
+
+namespace selfcal {
+
+/// Every cause with its probability, most probable first, `none` and `unknown` among them.
+std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
+                                       const Posterior& posterior);
+
+/// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
+/// than not the largest; `unknown` where more is left than all of these explain.
+CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
+                        const std::vector<CauseResult>& causes, const DiagnosisOptions& options);
+
+/// The verdict in a sentence or two.
+std::string verdict_in_words(const Diagnosis& diagnosis);
+
+/// "joint_compliance@j2", or the effect alone.
+std::string label(const std::string& effect, const std::string& at);
+
+}  // namespace selfcal

@@ -1,0 +1,36 @@
+// Two data sets of one robot: what changed from the first to the second.
+//
+// Both are explained by one geometry, and each thing that may have changed (a joint's zero, the
+// base, the probe, a surface) gets columns of its own on the rows of the second. Which of them are
+// needed is weighed as causes are. A zero that shifted between two sessions is seen here, where it
+// is invisible within either.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis.h"
+
+namespace selfcal {
+
+struct Change {
+  std::string effect;  ///< "zero_shift", "fixture_shift", "base_moved", "probe_changed"
+  std::string where;   ///< a joint, a set, "base", "probe"
+  double probability = 0;
+  std::vector<NamedValue> values;  ///< second minus first
+};
+
+struct Comparison {
+  double none = 1, unknown = 0;  ///< probability that nothing did, that something else did
+  std::vector<Change> changes;   ///< most probable first
+  std::string why;               ///< in a sentence
+  std::string problem;           ///< why they cannot be compared; empty otherwise
+};
+
+/// `before` and `after` are of one robot (the same names and count of joints). Sets of one name are
+/// one surface or instrument.
+Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
+                   const DataSet& after, const DiagnosisOptions& options = {});
+
+}  // namespace selfcal

@@ -1,0 +1,102 @@
+// The gap between a model and a machine: where it lies, which effect causes it, how far it closes.
+//
+// Only `fit` rows identify and choose; `check` rows judge how far the gap closes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "constraints/identification.h"
+#include "diagnosis/search.h"
+
+namespace selfcal {
+
+struct DiagnosisOptions {
+  SearchRule search;
+  /// A cause is named when `none` is less probable than the first of these, and noise looks as much
+  /// like a cause less often than the second.
+  double name_below_none = 0.05, name_below_p = 0.0125;
+  int resamples = 199;          ///< of the null distribution
+  double most_rejected = 0.05;  ///< share of the rows that may be put aside
+  unsigned long long seed = 1;
+};
+
+struct NamedValue {
+  std::string name, unit;
+  double value = 0, sigma = 0, usual_least = 0, usual_most = 0;
+};
+
+struct CauseResult {
+  std::string effect;
+  std::vector<std::string> where = {};
+  double probability = 0;
+  double survival = 0;   ///< share of it that calibration cannot absorb
+  double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where not tried
+  double visible = 0;    ///< rms of its visible part over the noise
+  std::vector<NamedValue> parameters = {};
+  std::vector<std::string> confounded_with = {};
+  std::vector<Node> entries = {};  ///< of a robot file, with its values
+};
+
+struct Gap {
+  double rms_nominal = 0, rms_before = 0, rms_after = 0, max_before = 0, max_after = 0;  ///< m
+  double noise_floor = 0;
+  std::optional<double> closed_fraction;
+  double closed_least = 0, closed_most = 1;  ///< 95 % interval
+  std::string judged_on = "check";           ///< or "folds"
+  int rows = 0;
+};
+
+struct Detectable {
+  std::string effect, where, unit;
+  double smallest = 0;
+};
+
+struct Share {
+  std::string name;
+  double share = 0;
+};
+struct Region {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0, share = 0;
+};
+struct Interval {
+  double from = 0, to = 0, share = 0;
+};
+
+struct Where {
+  std::vector<Share> by_joint, by_set;
+  std::vector<Region> by_region;
+  std::vector<Interval> by_time;
+};
+
+struct NextStep {
+  std::string what;
+  std::vector<std::string> separates;
+  double probability_after = 0;
+};
+
+struct Diagnosis {
+  Gap gap;
+  CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
+  std::string why;      ///< the verdict in words
+  double p_value = 1;   ///< of the verdict's evidence under a resampled null
+  std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
+  Where where;
+  std::vector<Detectable> detectable;
+  std::vector<Untestable> untestable;
+  std::vector<NextStep> next;
+  std::vector<Rejected> rejected;
+  std::vector<std::string> warnings;
+  std::shared_ptr<const Robot> model;  ///< geometry and the named effects, and its values
+  Eigen::VectorXd values;
+  double noise = 0;  ///< m, 1 sigma of one scalar
+};
+
+Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                   const DiagnosisOptions& options = {}, const Progress& progress = {});
+
+}  // namespace selfcal

@@ -1,0 +1,35 @@
+#include "diagnosis/null.h"
+
+#include <map>
+#include <random>
+
+namespace selfcal {
+
+double resampled_p(const View& view, Bench& bench, const Observations& data, int resamples,
+                   unsigned long long seed) {
+  const Whitened rows = view.whitened();
+  const DenseEquations kept = view.kept();
+  const Eigen::VectorXd residual = view.geometry_residuals(rows);
+  const double observed = bench.best_single();
+  std::mt19937_64 random(seed);
+  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows.pull.size());
+  int as_good = 0;
+  for (int i = 0; i < resamples; ++i) {
+    std::map<std::pair<int, int>, double> sign;  // by repeat group, or by row
+    Eigen::VectorXd flipped = residual;
+    for (Eigen::Index e = 0; e < flipped.size(); ++e) {
+      const int row = kept.row[static_cast<size_t>(e)];
+      const bool repeated = row >= 0 && !data.repeat.empty() && data.repeat[row] >= 0;
+      const std::pair<int, int> key = repeated ? std::pair(1, data.repeat[row]) : std::pair(0, row);
+      const auto [found, made] = sign.try_emplace(key, 0.0);
+      if (made) found->second = (random() & 1) ? 1 : -1;
+      flipped[e] *= found->second;
+    }
+    bench.look_at(flipped, no_pull);
+    if (bench.best_single() >= observed) ++as_good;
+  }
+  bench.look_at(rows.y, rows.pull);
+  return (1.0 + as_good) / (1.0 + resamples);
+}
+
+}  // namespace selfcal

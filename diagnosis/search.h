@@ -1,0 +1,100 @@
+// Which sets of causes explain the rows, and with what probability.
+//
+// Every single candidate is weighed at every size and with every structure of the unknown; the best
+// ones are extended by every other candidate to pairs, the best of these to triples. The posterior
+// is the normalised evidence of all sets visited times their priors.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/candidates.h"
+#include "diagnosis/workbench.h"
+
+namespace selfcal {
+
+/// Prior odds, and how far the search goes.
+struct SearchRule {
+  double family_odds = 0.10;   ///< of one family against its absence
+  double unknown_odds = 0.25;  ///< of structure that no known effect explains
+  double another = 0.25;       ///< factor on the odds of each cause after the first
+  double same_family = 0.3;    ///< odds that a cause acts at one more place
+  int extended_singles = 14, extended_pairs = 14;
+  int most_structures = 4;  ///< kept for pairs and triples
+};
+
+/// One hypothesis: candidates (ascending) and a structure (0: none).
+struct Hypothesis {
+  std::vector<int> candidates;
+  int structure = 0;
+  double log_weight = 0;      ///< evidence times prior, summed over sizes
+  std::vector<double> sizes;  ///< most probable, by candidate
+};
+
+using Cause = std::pair<std::string, std::string>;  ///< effect, at
+
+struct Posterior {
+  std::vector<Hypothesis> hypotheses;  ///< most probable first; log_weight normalised
+  std::map<std::string, double> family;
+  std::map<Cause, double> cause;
+  double none = 0, unknown = 0;
+  double log_total = 0;  ///< log evidence over that of nothing at all
+};
+
+/// Everything that the search needs and that does not depend on y.
+class Bench {
+ public:
+  Bench(const Whitened& rows, const std::vector<Structure>& structures, const Candidates& all,
+        const std::vector<EffectParameter>& parameters, const SearchRule& rule);
+
+  /// Exchanges y in every workbench.
+  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
+  Posterior search() const;
+  /// Largest log evidence of one candidate, or a structure alone, over that of none: the statistic
+  /// of the null distribution.
+  double best_single() const;
+
+  const Workbench& workbench(int structure) const { return workbenches_[structure]; }
+  const Block& block(int candidate) const { return blocks_[candidate]; }
+  const Candidates& candidates() const { return all_; }
+  const Structure& structure(int s) const { return structures_[s]; }
+  /// Variance of the noise in this structure, over that of the rows' whitening.
+  double noise_variance(int s) const { return structures_[s].noise; }
+  int structures() const { return static_cast<int>(structures_.size()); }
+  /// Log evidence of one candidate beside noise alone, over that of none.
+  double evidence(int candidate) const;
+  /// Share of the candidate's main columns that calibration cannot absorb (0 to 1).
+  double survival(int candidate) const { return survival_[candidate]; }
+  /// Smallest amplitude (of the first main parameter, or the largest of several) whose evidence
+  /// would stand out, in its own unit.
+  double detectable(int candidate, double log_evidence) const;
+  std::vector<Workbench::Term> terms(const Hypothesis& hypothesis) const;
+  /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
+  /// at most three families.
+  Hypothesis grow(Hypothesis h, size_t most) const;
+
+  static const std::vector<double>& sizes();
+
+ private:
+  struct Single {
+    double log_sum = 0, log_best = 0, size = 1;
+  };
+  double log_prior(const std::vector<int>& candidates, int structure) const;
+  /// One candidate in the light of a workbench, its sizes summed over.
+  Single weigh(const Workbench& workbench, int candidate) const;
+  double plausibility(int candidate, double size) const;
+  double held(const Hypothesis& h) const;
+  void agree(int structure, const Whitened& rows);
+
+  const Candidates& all_;
+  const SearchRule rule_;
+  std::vector<Structure> structures_;
+  std::vector<Workbench> workbenches_;
+  std::vector<Block> blocks_;
+  std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1
+  std::vector<char> seen_;                    ///< not absorbed altogether
+};
+
+}  // namespace selfcal

@@ -1,0 +1,156 @@
+// Covariance of two equations: that of their configurations, a Gaussian bell of the distance, times
+// the cosine between the directions that they measure in.
+#include "diagnosis/structures.h"
+
+#include <cmath>
+#include <span>
+
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+// What a configuration brings along, over the noise of its repeats: a surface's roughness and the
+// robot's own repeatability are noise to a calibration, and hardly ever more than the rest.
+constexpr struct {
+  double kappa, probability;
+} kShared[] = {{0, 0.4}, {0.4, 0.3}, {0.7, 0.2}, {0.9, 0.1}};
+constexpr double kUsual = 0.4;
+constexpr double kMore[] = {1.4, 2.8, 5.6};              ///< that is structure
+constexpr double kSizes[] = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< of smooth structure, over the noise
+constexpr double kJoints = 1.0;                          ///< rad
+constexpr double kPlace = 0.15;                          ///< m
+constexpr double kTime = 0.1;                            ///< of the whole
+
+class Kernel {
+ public:
+  Kernel(const Observations& data, const DenseEquations& rows, Eigen::MatrixXd tips)
+      : data_(data), rows_(rows), tips_(std::move(tips)) {
+    if (data.time.size() > 0) span_ = data.time.maxCoeff() - data.time.minCoeff();
+    direction_ = rows.shift;
+    for (auto each : direction_.rowwise())
+      if (each.norm() > 0) each /= each.norm();
+  }
+
+  bool possible(Closeness closeness) const { return closeness != Closeness::time || span_ > 0; }
+
+  /// Covariance of noise of one and of the readings' rounding.
+  Eigen::MatrixXd rounded(const Eigen::MatrixXd& rounding) const {
+    const auto n = static_cast<Eigen::Index>(rows_.row.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        const int a = rows_.row[i], b = rows_.row[j];
+        if (a < 0 || b < 0 || !repeats(a, b)) continue;
+        double shared = 0;
+        for (Eigen::Index k = 0; k < rounding.cols(); ++k)
+          if (data_.q(a, k) == data_.q(b, k)) shared += rounding(i, k) * rounding(j, k);
+        K(i, j) += shared / 3;  // uniform within half a digit either way
+        if (i != j) K(j, i) = K(i, j);
+      }
+    return K;
+  }
+
+  Eigen::MatrixXd of(Closeness closeness) const {
+    const auto n = static_cast<Eigen::Index>(rows_.row.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        const int a = rows_.row[i], b = rows_.row[j];
+        if (a < 0 || b < 0) continue;
+        const double alike = direction_.row(i).dot(direction_.row(j));
+        K(i, j) = K(j, i) = alike == 0 ? 0 : alike * close(closeness, a, b);
+      }
+    return K;
+  }
+
+ private:
+  bool repeats(int a, int b) const {
+    return a == b || (!data_.repeat.empty() && data_.repeat[a] >= 0 &&
+                      data_.repeat[a] == data_.repeat[b] && data_.set[a] == data_.set[b]);
+  }
+
+  double close(Closeness closeness, int a, int b) const {
+    if (repeats(a, b)) return 1;
+    const auto bell = [](double squared) { return std::exp(-squared / 2); };
+    switch (closeness) {
+      case Closeness::same:
+        return 0;
+      case Closeness::joints:
+        return bell((data_.q.row(a) - data_.q.row(b)).squaredNorm() / (kJoints * kJoints));
+      case Closeness::place:
+        return bell((tips_.row(a) - tips_.row(b)).squaredNorm() / (kPlace * kPlace));
+      case Closeness::time:
+        return bell(std::pow((data_.time[a] - data_.time[b]) / (kTime * span_), 2));
+    }
+    return 0;
+  }
+
+  const Observations& data_;
+  const DenseEquations& rows_;
+  const Eigen::MatrixXd tips_;
+  Eigen::MatrixXd direction_;
+  double span_ = 0;
+};
+
+}  // namespace
+
+std::string_view to_string(Closeness closeness) {
+  switch (closeness) {
+    case Closeness::same:
+      return "configuration";
+    case Closeness::joints:
+      return "joint angles";
+    case Closeness::place:
+      return "place";
+    case Closeness::time:
+      return "time";
+  }
+  return "";
+}
+
+Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q) {
+  Eigen::VectorXd steps = Eigen::VectorXd::Zero(q.cols());
+  for (Eigen::Index j = 0; j < q.cols(); ++j)
+    for (double power = 1e-2; power > 0.9e-9 && steps[j] == 0; power /= 10)
+      for (const double step : {5 * power, 2 * power, power}) {
+        const Eigen::ArrayXd multiple = q.col(j).array() / step;
+        if (((multiple - multiple.round()).abs() > 1e-3).any()) continue;
+        steps[j] = step;
+        break;
+      }
+  return steps;
+}
+
+std::vector<Structure> noise_alone(const Observations& data, const DenseEquations& rows,
+                                   const Eigen::MatrixXd& rounding) {
+  return {{0, 0, cholesky_root(Kernel(data, rows, {}).rounded(rounding)), 1, 1}};
+}
+
+std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
+                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& rounding) {
+  const Kernel kernel(data, rows, tips);
+  const Eigen::MatrixXd noise = kernel.rounded(rounding);
+  const Eigen::MatrixXd same = kernel.of(Closeness::same);
+  std::vector<Structure> list;
+  for (const auto& [kappa, probability] : kShared)
+    list.push_back({0, kappa, cholesky_root(noise + kappa * kappa * same), 1, probability});
+  const Eigen::MatrixXd usual = noise + kUsual * kUsual * same;
+  for (const Closeness closeness :
+       {Closeness::same, Closeness::joints, Closeness::place, Closeness::time}) {
+    if (!kernel.possible(closeness)) continue;
+    const bool alone = closeness == Closeness::same;
+    const Eigen::MatrixXd K = alone ? same : kernel.of(closeness);
+    const auto sizes = alone ? std::span<const double>(kMore) : std::span<const double>(kSizes);
+    for (const double kappa : sizes)
+      list.push_back({static_cast<int>(closeness), kappa,
+                      cholesky_root((alone ? noise : usual) + kappa * kappa * K), 1, 1});
+  }
+  double unknown = 0;
+  for (const Structure& each : list) unknown += each.kind > 0;
+  for (Structure& each : list)
+    if (each.kind > 0) each.probability = 1 / unknown;
+  return list;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,38 @@
+// What structure of an unknown cause may look like: residuals that configurations close to each
+// other share.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "constraints/equations.h"
+#include "diagnosis/workbench.h"
+
+namespace selfcal {
+
+/// What close means.
+enum class Closeness {
+  same = 1,    ///< only immediate repeats: anything that a configuration brings along
+  joints = 2,  ///< similar joint readings
+  place = 3,   ///< near each other in the cell
+  time = 4,    ///< soon after each other
+};
+std::string_view to_string(Closeness closeness);
+
+/// Noise alone first (and noise that immediate repeats share a part of), then every closeness at
+/// several sizes over the noise. `rows` are the
+/// equations that the workbench sees, `tips` (rows of the data set x 3) where the endpoint is.
+/// `rounding` (equations x joints) is what half the last digit of each joint's reading moves an
+/// equation: rows of one reading share it, however often they are repeated.
+std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
+                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& rounding);
+
+/// Only the first of these.
+std::vector<Structure> noise_alone(const Observations& data, const DenseEquations& rows,
+                                   const Eigen::MatrixXd& rounding);
+
+/// Step to which each joint's readings are rounded (rad or m): the largest of 1, 2, 5 times a power
+/// of ten that they are all multiples of; 0 below 1e-9.
+Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q);
+
+}  // namespace selfcal

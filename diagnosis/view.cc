@@ -1,0 +1,238 @@
+#include "diagnosis/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "constraints/site.h"
+#include "constraints/statistics.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/structures.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kFarQuantile = 1 - 1e-5;
+constexpr double kMostWeighed = 720;
+constexpr double kMedianToSigma = 1.4826;  // of a normal variable
+
+Options geometry_options(const DiagnosisOptions& options) {
+  Options geometry;
+  geometry.most_rejected = options.most_rejected;
+  geometry.seed = options.seed;
+  geometry.free = {"K*"};  // a ratio that is off is geometry: it must not be taken for a cause
+  return geometry;
+}
+
+/// What the rows themselves say, whatever the data sheet does; of immediate repeats where these say
+/// less, since what calibration leaves may be the very gap.
+std::vector<Scale> first_noise(const DataSet& data, const Fit& fitted) {
+  std::vector<Scale> noise = fitted.noise.estimated;
+  for (size_t s = 0; s < noise.size(); ++s) {
+    const double repeats =
+        repeat_sigma(data, static_cast<int>(s), fitted.at.residuals, fitted.noise.put_aside);
+    if (repeats > kLeastNoise) noise[s].length = std::min(noise[s].length, repeats);
+  }
+  return noise;
+}
+
+/// State of the geometry's fit as one of the robot with every candidate, whose parameters are zero.
+State extended(const State& state, Eigen::Index parameters) {
+  State wide = state;
+  wide.xi.conservativeResize(parameters);
+  wide.xi.tail(parameters - state.xi.size()).setZero();
+  return wide;
+}
+
+}  // namespace
+
+View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const DiagnosisOptions& options,
+           const Progress& progress)
+    : data_(data),
+      most_rejected_(options.most_rejected),
+      geometry_(geometry_of(std::move(robot))),
+      site_(site_of(*geometry_, data)),
+      candidates_(selfcal::candidates(*geometry_, data, site_)),
+      equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
+      adjusted_(adjust(*equations_, geometry_options(options), progress)) {
+  Problems problems;
+  everything_ = correct(geometry_, candidates_.entries, site_, problems);
+  for (const Effect* effect : effects_of(*everything_))
+    parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
+  all_equations_ = std::make_unique<Equations>(*everything_, data, Use::fit);
+  const Fit& fitted = adjusted_.fitted;
+  noise_ = first_noise(data, fitted);
+  all_ = all_equations_->dense(
+      extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
+      std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
+  put_aside_ = fitted.noise.put_aside;
+  weigh(kMostWeighed);
+
+  const auto geometry = static_cast<int>(geometry_->parameters().size());
+  for (int c = 0; c < geometry; ++c)
+    if (adjusted_.prior.free[c]) columns_.push_back(c);
+  const auto free = static_cast<Eigen::Index>(columns_.size());
+  for (Eigen::Index c = all_equations_->robot_columns(); c < all_.W.cols(); ++c)
+    columns_.push_back(static_cast<int>(c));
+  weight_.setZero(static_cast<Eigen::Index>(columns_.size()));
+  pull_ = weight_;
+  for (Eigen::Index i = 0; i < free; ++i) {
+    const int c = columns_[i];
+    weight_[i] = 1 / adjusted_.prior.sigma[c];
+    pull_[i] = weight_[i] * (adjusted_.prior.centre[c] - fitted.state.xi[c]);
+  }
+}
+
+/// Of large data sets every so many configurations, with all their repeats: the evidence of
+/// structure takes the third power of the rows.
+void View::weigh(double most) {
+  const double step = std::max(1.0, static_cast<double>(all_.row.size()) / most);
+  weighed_.assign(static_cast<size_t>(data_.rows.rows()), 0);
+  std::map<int, bool> repeats;
+  double next = 0, configurations = 0;
+  for (int row = 0; row < data_.rows.rows(); ++row) {
+    if (data_.rows.check[row]) continue;
+    const int repeat = data_.rows.repeat.empty() ? -1 : data_.rows.repeat[row];
+    if (repeat >= 0 && repeats.contains(repeat)) {
+      weighed_[row] = repeats[repeat];
+      continue;
+    }
+    const bool take = configurations >= next;
+    if (take) next += step;
+    configurations += 1;
+    weighed_[row] = take;
+    if (repeat >= 0) repeats[repeat] = take;
+  }
+}
+
+DenseEquations View::kept() const {
+  std::vector<int> rows;
+  for (size_t i = 0; i < all_.row.size(); ++i)
+    if (all_.row[i] < 0 || (!put_aside_[all_.row[i]] && weighed_[all_.row[i]]))
+      rows.push_back(static_cast<int>(i));
+  DenseEquations kept{all_.W(rows, Eigen::all), all_.y(rows), all_.shift(rows, Eigen::all), {}};
+  for (const int i : rows) kept.row.push_back(all_.row[i]);
+  return kept;
+}
+
+Whitened View::of(const DenseEquations& rows) const {
+  Whitened out;
+  out.A = rows.W(Eigen::all, columns_) / scale_;
+  out.C = rows.W.middleCols(static_cast<Eigen::Index>(geometry_->parameters().size()),
+                            static_cast<Eigen::Index>(parameters_.size())) /
+          scale_;
+  out.y = rows.y / scale_;
+  out.weight = weight_;
+  out.pull = pull_;
+  return out;
+}
+
+Whitened View::whitened() const { return of(kept()); }
+
+Eigen::MatrixXd View::tips() const {
+  Eigen::MatrixXd tips(data_.rows.rows(), 3);
+  for (int row = 0; row < data_.rows.rows(); ++row)
+    tips.row(row) =
+        geometry_->link_poses(data_.rows.q.row(row).transpose()).back().translation().transpose();
+  return tips;
+}
+
+Eigen::MatrixXd View::rounding(const DenseEquations& kept) const {
+  const Eigen::VectorXd steps = reading_steps(data_.rows.q);
+  Eigen::MatrixXd moved(kept.W.rows(), steps.size());
+  for (Eigen::Index j = 0; j < steps.size(); ++j)
+    moved.col(j) =
+        kept.W.col(geometry_->variable_parameter(static_cast<int>(j))) * (steps[j] / 2 / scale_);
+  return moved;
+}
+
+std::vector<Scale> View::noise_of_sets() const {
+  std::vector<Scale> noise = noise_;
+  for (Scale& each : noise) {
+    each.length *= scale_;
+    each.angle *= scale_;
+  }
+  return noise;
+}
+
+double View::noise() const {
+  double squares = 0;
+  int rows = 0;
+  for (const RowResidual& r : adjusted_.fitted.at.residuals) {
+    squares += std::pow(scale_ * noise_[r.set].length, 2);
+    ++rows;
+  }
+  return std::sqrt(squares / std::max(rows, 1));
+}
+
+Eigen::VectorXd View::residuals(const std::vector<int>& effects,
+                                const Eigen::VectorXd& prior) const {
+  const auto solve = [&](const Whitened& rows) {
+    const Eigen::Index n = rows.A.cols(), k = static_cast<Eigen::Index>(effects.size());
+    Eigen::MatrixXd M(rows.A.rows() + n + k, n + k);
+    M.setZero();
+    M.topLeftCorner(rows.A.rows(), n) = rows.A;
+    M.topRightCorner(rows.A.rows(), k) = rows.C(Eigen::all, effects) * prior.asDiagonal();
+    M.block(rows.A.rows(), 0, n, n).diagonal() = rows.weight;
+    M.bottomRightCorner(k, k).setIdentity();
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(M.rows());
+    z.head(rows.y.size()) = rows.y;
+    z.segment(rows.y.size(), n) = rows.pull;
+    return least_squares(M, z);
+  };
+  const Eigen::VectorXd x = solve(whitened());
+  const Whitened every = of(all_);
+  return every.y - every.A * x.head(every.A.cols()) -
+         every.C(Eigen::all, effects) * prior.cwiseProduct(x.tail(prior.size()));
+}
+
+Eigen::VectorXd View::geometry_residuals(const Whitened& rows) const {
+  const Eigen::Index n = rows.A.cols();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(rows.A.rows() + n, n);
+  M.topRows(rows.A.rows()) = rows.A;
+  M.bottomRows(n).diagonal() = rows.weight;
+  Eigen::VectorXd z(M.rows());
+  z << rows.y, rows.pull;
+  return rows.y - rows.A * least_squares(M, z);
+}
+
+bool View::refine(const Eigen::VectorXd& residuals, double variance) {
+  // From the middle of the residuals: no false row moves it, and where structure that nobody knows
+  // adds to the noise it holds both.
+  std::vector<double> sizes;
+  for (size_t i = 0; i < all_.row.size(); ++i)
+    if (all_.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
+  const auto n_equations = static_cast<double>(sizes.size());
+  const double spent = std::min(static_cast<double>(columns_.size()), 0.7 * n_equations);
+  const double robust =
+      std::pow(kMedianToSigma * median(std::move(sizes)), 2) / (1 - spent / n_equations);
+  std::vector<double> squares(static_cast<size_t>(data_.rows.rows()), 0);
+  std::vector<int> count(squares.size(), 0);
+  for (size_t i = 0; i < all_.row.size(); ++i)
+    if (all_.row[i] >= 0) {
+      squares[all_.row[i]] += std::pow(residuals[static_cast<Eigen::Index>(i)], 2);
+      ++count[all_.row[i]];
+    }
+  std::vector<char> put_aside(squares.size(), 0);
+  std::vector<std::pair<double, int>> far;
+  for (size_t row = 0; row < squares.size(); ++row) {
+    if (count[row] == 0) continue;
+    const double sigmas = std::sqrt(squares[row] / robust);
+    const double limit = chi_quantile(count[row], kFarQuantile);
+    if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
+  }
+  std::sort(far.begin(), far.end());
+  const double n =
+      static_cast<double>(std::count_if(count.begin(), count.end(), [](int c) { return c > 0; }));
+  const double most = most_rejected_ * n + 2 * std::sqrt(most_rejected_ * n);
+  for (size_t i = 0; i < far.size() && static_cast<double>(i) < most; ++i)
+    put_aside[far[i].second] = 1;
+  if (put_aside == put_aside_ && std::abs(variance - 1) < 0.1) return false;
+  put_aside_ = put_aside;
+  scale_ *= std::sqrt(variance);
+  return true;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,76 @@
+// The rows of a diagnosis as its algebra sees them: linearised where geometry alone fits best,
+// whitened by the noise as known so far, without the rows that are false.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "constraints/adjustment.h"
+#include "diagnosis/search.h"
+
+namespace selfcal {
+
+struct DiagnosisOptions;
+
+class View {
+ public:
+  /// Fits the geometry and linearises the equations of all candidates there.
+  View(std::shared_ptr<const Robot> robot, const DataSet& data, const DiagnosisOptions& options,
+       const Progress& progress);
+  View(const View&) = delete;
+
+  const Robot& geometry() const { return *geometry_; }
+  const std::shared_ptr<const Robot>& shared_geometry() const { return geometry_; }
+  const Site& site() const { return site_; }
+  const Candidates& candidates() const { return candidates_; }
+  const std::vector<EffectParameter>& parameters() const { return parameters_; }
+  const Adjusted& adjusted() const { return adjusted_; }
+  const Equations& equations() const { return *equations_; }
+
+  /// The rows not put aside, with the noise `scale` times what the geometry's fit says.
+  Whitened whitened() const;
+  DenseEquations kept() const;
+  Eigen::MatrixXd tips() const;
+  /// What half the last digit of each joint's reading moves each equation of kept(); whitened.
+  Eigen::MatrixXd rounding(const DenseEquations& kept) const;
+  /// What the geometry alone leaves of `rows` (as whitened()).
+  Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
+  const std::vector<char>& put_aside() const { return put_aside_; }
+  /// As known so far, by set.
+  std::vector<Scale> noise_of_sets() const;
+  /// 1 sigma of one scalar (m), pooled over the sets.
+  double noise() const;
+
+  /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of every
+  /// row, put aside or not, when fitted to the kept ones; whitened at the current scale.
+  Eigen::VectorXd residuals(const std::vector<int>& effects, const Eigen::VectorXd& prior) const;
+  /// Takes the noise from the variance of the best explanation and puts aside the rows whose
+  /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
+  bool refine(const Eigen::VectorXd& residuals, double variance);
+  /// All rows, put aside or not, whitened at the current scale.
+  const DenseEquations& all() const { return all_; }
+
+  /// How many equations take part (a data set with more is thinned out).
+  void weigh(double most);
+
+ private:
+  Whitened of(const DenseEquations& rows) const;
+
+  const DataSet& data_;
+  double most_rejected_;
+  std::shared_ptr<const Robot> geometry_, everything_;
+  Site site_;
+  Candidates candidates_;
+  std::vector<EffectParameter> parameters_;
+  std::unique_ptr<Equations> equations_, all_equations_;
+  Adjusted adjusted_;
+  std::vector<int> columns_;  ///< of A, in all_.W
+  Eigen::VectorXd weight_, pull_;
+  DenseEquations all_;
+  std::vector<Scale> noise_;     ///< by set, at a scale of one
+  std::vector<char> weighed_;    ///< by row: takes part in choosing the causes
+  std::vector<char> put_aside_;  ///< by row of the data set
+  double scale_ = 1;
+};
+
+}  // namespace selfcal

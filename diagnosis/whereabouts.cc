@@ -1,0 +1,148 @@
+#include "diagnosis/whereabouts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace selfcal {
+namespace {
+
+constexpr int kRegions = 6, kTimes = 6;
+
+std::vector<Share> by_joint(const View& view, const Bench& bench) {
+  std::vector<Workbench::Term> terms;
+  std::vector<int> joint_of;
+  const std::vector<Joint>& joints = view.geometry().joints();
+  int blocks = 0;
+  for (size_t c = 0; c < view.candidates().list.size(); ++c) {
+    const Candidate& each = view.candidates().list[c];
+    for (size_t j = 0; j < joints.size(); ++j)
+      if (each.at == joints[j].name && each.effect != "zero_shift" &&
+          bench.survival(static_cast<int>(c)) > 0.02) {
+        terms.push_back({&bench.block(static_cast<int>(c)), 1});
+        joint_of.push_back(static_cast<int>(j));
+        ++blocks;
+      }
+  }
+  for (Workbench::Term& term : terms) term.size = 2 / std::sqrt(static_cast<double>(blocks));
+  const Workbench& plain = bench.workbench(0);
+  const Eigen::VectorXd v = plain.estimate(terms).mean;
+  std::vector<double> share(joints.size(), 0);
+  Eigen::Index at = 0;
+  for (size_t t = 0; t < terms.size(); ++t)
+    for (const int column : terms[t].block->columns)
+      share[joint_of[t]] += v[at++] * plain.right()[column] / plain.total();
+  std::vector<Share> list;
+  for (size_t j = 0; j < joints.size(); ++j)
+    list.push_back({joints[j].name, std::clamp(share[j], 0.0, 1.0)});
+  return list;
+}
+
+/// Squared residuals by row of the data set, and how many scalars each has.
+struct RowSquares {
+  std::vector<int> row;
+  std::vector<double> squares, scalars;
+  double total = 0;
+
+  /// Share of the rows that `in` picks, beyond the noise (1 a scalar).
+  template <class In>
+  double share(In in) const {
+    double sum = 0;
+    for (size_t i = 0; i < row.size(); ++i)
+      if (in(row[i])) sum += squares[i] - scalars[i];
+    return total > 0 ? std::clamp(sum / total, 0.0, 1.0) : 0;
+  }
+};
+
+RowSquares row_squares(const View& view) {
+  const DenseEquations kept = view.kept();
+  const Eigen::VectorXd e = view.geometry_residuals(view.whitened());
+  RowSquares rows;
+  for (size_t i = 0; i < kept.row.size(); ++i) {
+    if (kept.row[i] < 0) continue;
+    if (rows.row.empty() || rows.row.back() != kept.row[i]) {
+      rows.row.push_back(kept.row[i]);
+      rows.squares.push_back(0);
+      rows.scalars.push_back(0);
+    }
+    rows.squares.back() += std::pow(e[static_cast<Eigen::Index>(i)], 2);
+    rows.scalars.back() += 1;
+  }
+  for (const double s : rows.squares) rows.total += s;
+  return rows;
+}
+
+/// Regions about points as far from each other as can be.
+std::vector<Region> by_region(const RowSquares& rows, const Eigen::MatrixXd& tips) {
+  std::vector<Region> regions;
+  std::vector<double> distance(rows.row.size(), std::numeric_limits<double>::infinity());
+  std::vector<int> nearest(rows.row.size(), 0);
+  for (int r = 0; r < kRegions && r < static_cast<int>(rows.row.size()); ++r) {
+    const auto farthest =
+        r == 0 ? 0 : std::max_element(distance.begin(), distance.end()) - distance.begin();
+    Region region;
+    region.centre = tips.row(rows.row[static_cast<size_t>(farthest)]).transpose();
+    for (size_t i = 0; i < rows.row.size(); ++i) {
+      const double d = (tips.row(rows.row[i]).transpose() - region.centre).norm();
+      if (d >= distance[i]) continue;
+      distance[i] = d;
+      nearest[i] = r;
+    }
+    regions.push_back(region);
+  }
+  for (size_t r = 0; r < regions.size(); ++r) {
+    std::vector<char> in(static_cast<size_t>(tips.rows()), 0);
+    for (size_t i = 0; i < rows.row.size(); ++i)
+      if (nearest[i] == static_cast<int>(r)) {
+        in[rows.row[i]] = 1;
+        regions[r].radius = std::max(regions[r].radius, distance[i]);
+      }
+    regions[r].share = rows.share([&](int row) { return in[row] != 0; });
+  }
+  return regions;
+}
+
+std::vector<Interval> by_time(const RowSquares& rows, const DataSet& data, const Site& site) {
+  std::vector<Interval> list;
+  if (site.end <= site.begin) return list;
+  const double step = (site.end - site.begin) / kTimes;
+  for (int i = 0; i < kTimes; ++i) {
+    Interval each{site.begin + i * step, site.begin + (i + 1) * step, 0};
+    const bool last = i + 1 == kTimes;
+    each.share = rows.share([&](int row) {
+      const double t = data.rows.time[row];
+      return t >= each.from && (t < each.to || (last && t <= each.to + 1e-9));
+    });
+    list.push_back(each);
+  }
+  return list;
+}
+
+/// Shares of overlapping noise may exceed one together; they are told as parts of one.
+template <class List>
+void at_most_one(List& list) {
+  double sum = 0;
+  for (const auto& each : list) sum += each.share;
+  for (auto& each : list) each.share /= std::max(sum, 1.0);
+}
+
+}  // namespace
+
+Where whereabouts(const View& view, const Bench& bench, const DataSet& data) {
+  Where where;
+  where.by_joint = by_joint(view, bench);
+  const RowSquares rows = row_squares(view);
+  for (size_t s = 0; s < data.sets.size(); ++s)
+    where.by_set.push_back({data.sets[s].name, rows.share([&](int row) {
+                              return data.rows.set[row] == static_cast<int>(s);
+                            })});
+  where.by_region = by_region(rows, view.tips());
+  where.by_time = by_time(rows, data, view.site());
+  at_most_one(where.by_joint);
+  at_most_one(where.by_set);
+  at_most_one(where.by_region);
+  at_most_one(where.by_time);
+  return where;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,85 @@
+// The evidence for sets of causes, with the geometry integrated out.
+//
+// Whitened rows y = A a + C v + u + e: a geometry and the sets' own unknowns (Gaussian priors, own
+// ones without), v the effects' parameters, e noise of one unknown variance s^2 and u structure
+// that no known effect explains, of covariance s^2 kappa^2 K. For a set S of candidates with prior
+// v ~ N(0, s^2 V) the integral over a, v and s (prior 1/s) is
+//   log p(y | S) = const(K) - 1/2 log|I + V G| - nu/2 log Q,   Q = y'My - g'(V^-1 + G)^-1 g
+// with M the projection beyond the whitened geometry, G = C'MC, g = C'My. So G and g are made
+// once for each K, and any set costs a Cholesky factor of its own size. In y'My only the rows
+// count: how far the geometry strains its priors does not scale with the noise and is much the same
+// for all sets.
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+namespace selfcal {
+
+/// What the rows say, before any cause: equations x unknowns, whitened.
+struct Whitened {
+  Eigen::MatrixXd A;       ///< equations x geometry and own unknowns
+  Eigen::VectorXd weight;  ///< by column of A: 1 / sigma of its prior, 0 without
+  Eigen::VectorXd pull;    ///< by column of A: weight times (centre - value)
+  Eigen::MatrixXd C;       ///< equations x effects' parameters
+  Eigen::VectorXd y;       ///< equations
+};
+
+/// Noise, and one structure of what no known effect explains.
+struct Structure {
+  int kind = 0;            ///< 0: noise alone
+  double kappa = 0;        ///< its size over the noise
+  Eigen::MatrixXd root;    ///< lower Cholesky factor of the covariance
+  double noise = 1;        ///< variance of its noise part
+  double probability = 1;  ///< prior, among those of noise alone or among those of structure
+};
+
+/// A group of columns of C with one prior: v = size * unit * N(0, 1).
+struct Block {
+  std::vector<int> columns;
+  Eigen::VectorXd unit;  ///< prior sigma of each at a size of one
+};
+
+class Workbench {
+ public:
+  Workbench(const Whitened& rows, const Structure& structure);
+
+  /// Exchanges y (for a null distribution); `y` and `pull` as in Whitened.
+  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
+
+  struct Term {
+    const Block* block;
+    double size;
+  };
+  /// The same rows with `terms` integrated out as the geometry is: what they leave for others. It
+  /// cannot look at another y.
+  Workbench given(std::span<const Term> terms) const;
+  /// log p(y | terms), without the constant that all structures and terms share.
+  double log_evidence(std::span<const Term> terms) const;
+  /// Posterior means of the terms' columns, one after the other, and their covariance over s^2.
+  struct Estimate {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    double variance = 1;  ///< s^2
+  };
+  Estimate estimate(std::span<const Term> terms) const;
+
+  const Eigen::MatrixXd& gram() const { return G_; }
+  const Eigen::VectorXd& right() const { return g_; }
+  double total() const { return yy_; }
+  double freedom() const { return nu_; }
+  /// `x` (equations) beyond structure and geometry.
+  Eigen::VectorXd beyond_geometry(const Eigen::VectorXd& x, const Eigen::VectorXd& pull) const;
+
+ private:
+  Workbench() = default;
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& x) const;
+
+  Eigen::MatrixXd root_, Q_, C_, G_;
+  Eigen::VectorXd g_;
+  Eigen::Index equations_ = 0;
+  double yy_ = 0, nu_ = 0, constant_ = 0;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,67 @@
+#include "diagnosis/structures.h"
+
+#include <gtest/gtest.h>
+
+namespace selfcal {
+namespace {
+
+TEST(ReadingSteps, FindsTheDigitToWhichEachJointIsRounded) {
+  Eigen::MatrixXd q(4, 3);
+  q << 0.614132, -1.41970, 0.1234567, 0.614130, 0.74838, 0.7654321, -0.2, 1.2, 0.5, 1.000002,
+      3.00005, 0.1;
+  const Eigen::VectorXd steps = reading_steps(q);
+  EXPECT_NEAR(steps[0], 2e-6, 1e-12);
+  EXPECT_NEAR(steps[1], 1e-5, 1e-12);
+  EXPECT_NEAR(steps[2], 1e-7, 1e-13);
+}
+
+TEST(ReadingSteps, SaysNothingOfReadingsThatAreNotRounded) {
+  EXPECT_EQ(reading_steps(Eigen::MatrixXd::Constant(3, 1, 0.12345678912345))[0], 0);
+}
+
+/// Three touches of one plane, the last two one configuration; readings are whole multiples of 10
+/// urad.
+struct Touches {
+  Touches() {
+    data.q.resize(3, 1);
+    data.q << 0.1, 0.5, 0.5;
+    data.set = {0, 0, 0};
+    data.repeat = {-1, 4, 4};
+    rows.row = {0, 1, 2};
+    rows.shift = Eigen::MatrixXd::Zero(3, 3);
+    rows.shift.col(2).setConstant(1e5);
+    tips = Eigen::MatrixXd::Zero(3, 3);
+    tips(0, 0) = 1;
+  }
+  Observations data;
+  DenseEquations rows;
+  Eigen::MatrixXd tips;
+};
+
+TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
+  const Touches t;
+  // Half a digit moves every equation by 0.6 sigma: a variance of 0.36 / 3.
+  const auto list = noise_alone(t.data, t.rows, Eigen::MatrixXd::Constant(3, 1, 0.6));
+  const Eigen::MatrixXd S = list.front().root * list.front().root.transpose();
+  EXPECT_NEAR(S(0, 0), 1.12, 1e-12);
+  EXPECT_NEAR(S(1, 2), 0.12, 1e-12);
+  EXPECT_NEAR(S(0, 1), 0, 1e-12);
+}
+
+TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
+  const Touches t;
+  const auto list = structures(t.data, t.rows, t.tips, Eigen::MatrixXd::Zero(3, 1));
+  EXPECT_EQ(list.front().kind, 0);
+  double noise = 0, unknown = 0;
+  for (const Structure& each : list) {
+    (each.kind == 0 ? noise : unknown) += each.probability;
+    const Eigen::MatrixXd S = each.root * each.root.transpose();
+    EXPECT_GE(S(1, 2), S(0, 1)) << "repeats are closest, whatever close means";
+    EXPECT_NE(each.kind, static_cast<int>(Closeness::time)) << "the rows carry no time";
+  }
+  EXPECT_NEAR(noise, 1, 1e-12);
+  EXPECT_NEAR(unknown, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,103 @@
+// The evidence against the same integral worked out whole: with flat priors on the geometry,
+//   log p(y) = -1/2 log|S| - 1/2 log|A' S^-1 A| - nu/2 log(y' P y) + const,  nu = n - rank A
+// where S is the covariance of noise and causes, P = S^-1 - S^-1 A (A' S^-1 A)^-1 A' S^-1.
+#include "diagnosis/workbench.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+Eigen::MatrixXd random_matrix(int rows, int columns, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd M(rows, columns);
+  for (double& x : M.reshaped()) x = normal(random);
+  return M;
+}
+
+struct Case {
+  Case() {
+    std::mt19937_64 random(3);
+    rows.A = random_matrix(14, 3, random);
+    rows.weight = rows.pull = Eigen::VectorXd::Zero(3);
+    rows.C = random_matrix(14, 4, random);
+    rows.y = random_matrix(14, 1, random);
+    structure.root = cholesky_root(Eigen::MatrixXd::Identity(14, 14));
+  }
+  Whitened rows;
+  Structure structure;
+  Block first{{0, 1}, Eigen::Vector2d(0.5, 2)}, second{{3}, Eigen::VectorXd::Constant(1, 1.5)};
+};
+
+double worked_out_whole(const Whitened& rows, const Eigen::MatrixXd& noise,
+                        const std::vector<Workbench::Term>& terms) {
+  Eigen::MatrixXd S = noise;
+  for (const Workbench::Term& term : terms)
+    for (size_t k = 0; k < term.block->columns.size(); ++k) {
+      const Eigen::VectorXd c = rows.C.col(term.block->columns[k]) * term.size *
+                                term.block->unit[static_cast<Eigen::Index>(k)];
+      S += c * c.transpose();
+    }
+  const Eigen::MatrixXd inverse = S.inverse();
+  const Eigen::MatrixXd information = rows.A.transpose() * inverse * rows.A;
+  const Eigen::MatrixXd P =
+      inverse - inverse * rows.A * information.inverse() * rows.A.transpose() * inverse;
+  const double nu = static_cast<double>(rows.A.rows() - rows.A.cols());
+  return -0.5 * std::log(S.determinant()) - 0.5 * std::log(information.determinant()) -
+         nu / 2 * std::log(rows.y.dot(P * rows.y));
+}
+
+constexpr double kRounding = 1e-9;
+
+TEST(Workbench, GivesTheEvidenceThatTheWholeIntegralGives) {
+  const Case one;
+  const Workbench bench(one.rows, one.structure);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(14, 14);
+  const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
+  EXPECT_NEAR(bench.log_evidence(none), worked_out_whole(one.rows, I, none), kRounding);
+  EXPECT_NEAR(bench.log_evidence(both), worked_out_whole(one.rows, I, both), kRounding);
+}
+
+TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
+  Case one;
+  std::mt19937_64 random(5);
+  const Eigen::MatrixXd B = random_matrix(14, 14, random);
+  const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(14, 14) + B * B.transpose() / 14;
+  one.structure = {1, 1, cholesky_root(noise), 1, 1};
+  const Workbench bench(one.rows, one.structure);
+  const std::vector<Workbench::Term> terms{{&one.first, 1}};
+  EXPECT_NEAR(bench.log_evidence(terms), worked_out_whole(one.rows, noise, terms), kRounding);
+}
+
+TEST(Workbench, GivenSomeCausesWeighsOthersAsTogether) {
+  const Case one;
+  const Workbench bench(one.rows, one.structure);
+  const std::vector<Workbench::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}};
+  std::vector<Workbench::Term> both = first;
+  both.push_back(second.front());
+  EXPECT_NEAR(bench.given(first).log_evidence(second), bench.log_evidence(both), kRounding);
+}
+
+TEST(Workbench, EstimatesACauseThatIsThereWithinItsSigma) {
+  Case one;
+  std::mt19937_64 random(7);
+  one.rows.y = 3.0 * one.rows.C.col(0) - 1.0 * one.rows.C.col(1) +
+               1e-3 * random_matrix(14, 1, random).col(0);
+  one.first.unit = Eigen::Vector2d(1e5, 1e5);  // over the noise
+  const Workbench bench(one.rows, one.structure);
+  const std::vector<Workbench::Term> terms{{&one.first, 1}};
+  const Workbench::Estimate estimate = bench.estimate(terms);
+  const Eigen::VectorXd sigma =
+      (estimate.variance * estimate.covariance.diagonal().array()).sqrt().matrix();
+  EXPECT_NEAR(estimate.mean[0], 3, 4 * sigma[0]);
+  EXPECT_NEAR(estimate.mean[1], -1, 4 * sigma[1]);
+  EXPECT_NEAR(std::sqrt(estimate.variance), 1e-3, 1e-3) << "nine freedoms: within a factor of two";
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,104 @@
+// selfcal trial from sealing to the score.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/data_set_file.h"
+#include "io/file.h"
+#include "tests/io/scratch.h"
+
+namespace selfcal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class TrialCommand : public testing::Test {
+ protected:
+  /// Exit status of `selfcal trial ARGUMENTS`; what it says is kept.
+  int trial(const std::string& arguments) {
+    const std::string said = path("said").string();
+    const std::string command =
+        std::string(SELFCAL_BINARY) + " trial " + arguments + " >" + said + " 2>&1";
+    const int status = std::system(command.c_str());
+    said_ = *read_file(said, 1 << 20);
+    return WEXITSTATUS(status);
+  }
+  fs::path path(const std::string& name) const { return scratch_.folder() / name; }
+  int make(const std::string& name) {
+    return trial("seal --make 2 --seed 3 --rows 120-130 --out " + path(name).string());
+  }
+  std::string text(const std::string& name) const { return *read_file(path(name), 1 << 24); }
+
+  Scratch scratch_;
+  std::string said_;
+};
+
+TEST_F(TrialCommand, SealsDataSetsThatReadAndTheSameForOneSeed) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  EXPECT_THAT(said_, HasSubstr(sha256_hex(text("a/truth.json"))));
+  ASSERT_EQ(make("b"), 0) << said_;
+  EXPECT_EQ(text("a/truth.json"), text("b/truth.json"));
+  for (const char* name : {"t000", "t001"}) {
+    const auto loaded = load_data_set(path("a") / name);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_GE(loaded->data.rows.rows(), 120);
+    EXPECT_EQ(text(std::string("a/") + name + "/observations.csv"),
+              text(std::string("b/") + name + "/observations.csv"));
+  }
+  EXPECT_EQ(make("a"), kBadInput) << "a sealed folder is not sealed again";
+}
+
+TEST_F(TrialCommand, AnswersWithoutTheTruthAndScoresWithIt) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  fs::rename(path("a/truth.json"), path("kept"));
+  const std::string answers = path("answers.json").string();
+  ASSERT_EQ(trial("run " + path("a").string() + " --baseline compliance --out " + answers), 0)
+      << said_;
+  fs::rename(path("kept"), path("a/truth.json"));
+  EXPECT_LE(trial("score " + path("a").string() + " " + answers + " --json"), 1);
+  const auto table = nlohmann::json::parse(said_);
+  EXPECT_TRUE(table.contains("right_cause_r_1")) << said_;
+}
+
+TEST_F(TrialCommand, NoticesATruthThatWasChangedAfterSealing) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  const std::string answers = path("answers.json").string();
+  ASSERT_EQ(trial("run " + path("a").string() + " --baseline compliance --out " + answers), 0);
+  std::ofstream(path("a/truth.json"), std::ios::app) << " ";
+  EXPECT_EQ(trial("score " + path("a").string() + " " + answers), kBadInput);
+  EXPECT_THAT(said_, HasSubstr("is not the truth that was sealed"));
+}
+
+TEST_F(TrialCommand, RefusesAnswersToOtherTrials) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  const std::string answers = path("answers.json").string(), folder = path("a").string();
+  ASSERT_EQ(trial("run " + folder + " --baseline compliance --out " + answers), 0);
+  const std::string other = text("a/truth.json") + " ";
+  std::ofstream(path("a/truth.json")) << other;  // and sealed anew
+  std::ofstream(path("a/TRUTH.sha256")) << sha256_hex(other);
+  EXPECT_EQ(trial("score " + folder + " " + answers), kBadInput);
+  EXPECT_THAT(said_, HasSubstr("answers trials that were sealed as"));
+}
+
+TEST_F(TrialCommand, TakesGivenDataSetsWithTheirTruth) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  const std::string both = path("a/t000").string() + " " + path("a/t001").string();
+  ASSERT_EQ(trial("seal " + both + " --truth " + path("a/truth.json").string() + " --out " +
+                  path("b").string()),
+            0)
+      << said_;
+  EXPECT_EQ(text("a/truth.json"), text("b/truth.json"));
+  EXPECT_EQ(text("a/TRUTH.sha256"), text("b/TRUTH.sha256"));
+  EXPECT_TRUE(load_data_set(path("b/t001")));
+  scratch_.write("other.json", R"({"x": {"effect": "none"}})");
+  EXPECT_EQ(trial("seal " + both + " --truth " + path("other.json").string() + " --out " +
+                  path("c").string()),
+            2);
+}
+
+}  // namespace
+}  // namespace selfcal
