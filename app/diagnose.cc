@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/diagnosis_json.h"
+#include "app/diagnosis_report.h"
 #include "app/diagnosis_summary.h"
 #include "app/progress_line.h"
 #include "diagnosis/compare.h"
@@ -23,13 +24,15 @@ struct Arguments {
   bool json = false;
 };
 
-Result<void> write(const Arguments& arguments, const Diagnosis& diagnosis,
+Result<void> write(const Arguments& arguments, const Diagnosis& diagnosis, const std::string& name,
                    const std::string& json) {
   const std::filesystem::path out(arguments.out);
   std::error_code error;
   std::filesystem::create_directories(out, error);
   if (error) return device_failed(arguments.out + ": cannot create the folder: " + error.message());
   if (auto done = write_file_atomically(out / "diagnosis.json", json + "\n"); !done) return done;
+  if (auto done = write_file_atomically(out / "report.html", html_report(diagnosis, name)); !done)
+    return done;
   return write_file_atomically(out / "corrected.robot.yaml",
                                robot_text(*diagnosis.model, diagnosis.values));
 }
@@ -98,11 +101,11 @@ int diagnose_command(const Arguments& arguments) {
     changed = "Since " + before->name + ": " + comparison.why + "\n";
   }
   const std::string json = whole.dump(1);
+  if (!arguments.out.empty())
+    if (const auto written = write(arguments, diagnosis, loaded->name, json); !written)
+      return tell(written.error());
   if (!arguments.next.empty())
     if (const auto written = write_file_atomically(arguments.next, next_table(diagnosis)); !written)
-      return tell(written.error());
-  if (!arguments.out.empty())
-    if (const auto written = write(arguments, diagnosis, json); !written)
       return tell(written.error());
   if (arguments.json)
     std::printf("%s\n", json.c_str());
@@ -125,7 +128,7 @@ void add_diagnose(CLI::App& app, int& status) {
                       "Earlier data set of the same robot: what changed");
   command->add_option("--next", arguments->next, "File for the rows to measure next");
   command->add_option("--out", arguments->out,
-                      "Folder for diagnosis.json and corrected.robot.yaml");
+                      "Folder for diagnosis.json, report.html and corrected.robot.yaml");
   command->add_flag("--json", arguments->json, "Print diagnosis.json alone on standard output");
   command->callback([arguments, &status] { status = diagnose_command(*arguments); });
 }

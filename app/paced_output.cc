@@ -12,6 +12,8 @@ constexpr Nanoseconds kFrame = 200'000;  // the frames of a sample take so long:
 constexpr Nanoseconds kLeisure = 500'000;  // what is done between two frames takes so long
 constexpr Nanoseconds kLongestMark = 5 * kMillisecond;  // waited for a mark in one turn
 constexpr Nanoseconds kStep = 1000;                     // over which a speed is taken
+constexpr Nanoseconds kLate = 5'000;                    // after its moment an edge counts as missed
+constexpr int kMostPauses = 20;                         // for one edge; then it is driven late
 constexpr std::size_t kMostDriven = 1'000'000;
 
 }  // namespace
@@ -22,7 +24,9 @@ PacedOutput::PacedOutput(Machine& machine, JointSender& joints, TriggerSender& t
       joints_(joints),
       trigger_(trigger),
       clock_(clock),
+      delay_(nanoseconds(machine.settings().trigger_delay)),
       began_(clock.now() - machine.now()),
+      told_(machine.now()),
       level_(machine.closed()) {}
 
 std::optional<Nanoseconds> PacedOutput::next_edge() const {
@@ -31,47 +35,72 @@ std::optional<Nanoseconds> PacedOutput::next_edge() const {
   return ahead ? std::min(*ahead, held_.front().time) : held_.front().time;
 }
 
-bool PacedOutput::at_leisure() {
+/// From when on no frame is begun before the next edge.
+std::optional<Nanoseconds> PacedOutput::quiet_from() const {
   const auto edge = next_edge();
-  return !edge || *edge > now() + kLeisure;
+  return edge ? std::optional(*edge - delay_ - 2 * kFrame) : std::nullopt;
+}
+
+bool PacedOutput::at_leisure() {
+  const auto quiet = quiet_from();
+  return !quiet || *quiet > now() + kLeisure;
 }
 
 /// False when there was news before anything was due.
 bool PacedOutput::wait_for_next() {
-  const auto edge = next_edge();
+  const auto quiet = quiet_from();
   const Nanoseconds sample = owed_ ? now() : machine_.next_sample();
-  if (!edge || *edge >= sample + kFrame) {
+  if (!quiet || *quiet > sample) {
     clock_.wait(sample - now());
     return now() >= sample;
   }
-  clock_.wait(*edge - kAwake - now());
-  if (now() < *edge - kAwake) return false;
-  while (now() < *edge) {
+  const Nanoseconds edge = *next_edge();
+  clock_.wait(edge - kAwake - now());
+  if (now() < edge - kAwake) return false;
+  while (now() < edge) {
   }
   return true;
 }
 
 Result<void> PacedOutput::turn() {
   if (!wait_for_next()) return {};
-  machine_.advance(now());
+  const Nanoseconds t = now();
+  if (const auto edge = next_edge(); edge && missed(*edge, t)) return go_on_from_last_frame();
+  machine_.advance(t);
   edges_.clear();
   machine_.take(edges_);
   held_.insert(held_.end(), edges_.begin(), edges_.end());
-  while (!held_.empty() && held_.front().time <= now()) {
-    const Edge edge = held_.front();
-    held_.pop_front();
-    if (edge.closed == level_) continue;
-    if (auto driven = drive(edge); !driven) return driven;
-  }
+  if (auto driven = drive_due(); !driven) return driven;
   samples_.clear();
   machine_.take(samples_);
   owed_ = owed_ || !samples_.empty();
   if (!owed_) return {};
-  if (const auto next = next_edge(); next && *next < now() + kFrame) return {};
-  // A robot whose bus is down goes on.
-  const auto sent = send_sample();
-  if (!sent && !failing_) std::fprintf(stderr, "%s\n", sent.error().what.c_str());
-  failing_ = !sent;
+  if (const auto quiet = quiet_from(); quiet && *quiet < now()) return {};
+  in_a_row_ = 0;
+  return try_sample();
+}
+
+/// Whether an edge has been missed that can be waited for once more: its contact has not been told.
+bool PacedOutput::missed(Nanoseconds edge, Nanoseconds now) {
+  return now > edge + kLate && told_ < edge - delay_ - kFrame / 2 && in_a_row_ < kMostPauses;
+}
+
+Result<void> PacedOutput::go_on_from_last_frame() {
+  ++pauses_;
+  ++in_a_row_;
+  began_ = clock_.now() - told_;
+  return try_sample();
+}
+
+Result<void> PacedOutput::drive_due() {
+  while (!held_.empty() && held_.front().time <= now()) {
+    const Edge edge = held_.front();
+    if (edge.closed != level_) {
+      if (missed(edge.time, now())) return go_on_from_last_frame();
+      if (auto driven = drive(edge); !driven) return driven;
+    }
+    held_.pop_front();
+  }
   return {};
 }
 
@@ -81,9 +110,10 @@ Result<void> PacedOutput::drive(const Edge& edge) {
   driven.before = clock_.now();
   auto sent = trigger_.send(edge.time, edge.closed);
   driven.after = clock_.now();
+  driven.late = driven.before - began_ - edge.time;
+  told_ = driven.before - began_;
   if (driven_.size() >= kMostDriven) return sent;
-  const Nanoseconds contact =
-      driven.before - began_ - nanoseconds(machine_.settings().trigger_delay);
+  const Nanoseconds contact = driven.before - began_ - delay_;
   driven.label = machine_.label();
   driven.q = machine_.readings(contact);
   driven.dq = (machine_.readings(contact + kStep) - machine_.readings(contact - kStep)) /
@@ -92,20 +122,30 @@ Result<void> PacedOutput::drive(const Edge& edge) {
   return sent;
 }
 
+/// A robot whose bus is down goes on.
+Result<void> PacedOutput::try_sample() {
+  const auto sent = send_sample();
+  if (!sent && !failing_) std::fprintf(stderr, "%s\n", sent.error().what.c_str());
+  failing_ = !sent;
+  return {};
+}
+
 /// When the positions are to be taken, on the machine's time; nothing while the mark is awaited.
-Result<std::optional<Nanoseconds>> PacedOutput::moment_of_sample() {
+Result<std::optional<Nanoseconds>> PacedOutput::moment_of_sample(Nanoseconds looked) {
   if (!joints_.marks()) return std::optional(now() + preparing_);
   const auto edge = next_edge();
-  const Nanoseconds longest =
-      edge ? std::min(kLongestMark, *edge - kAwake - kMillisecond - now()) : kLongestMark;
-  auto mark = joints_.mark(std::max<Nanoseconds>(longest, 0));
-  if (mark && *mark) **mark -= began_;
+  const Nanoseconds latest = edge ? *edge - delay_ - kFrame : looked + kLongestMark;
+  auto mark = joints_.mark(std::clamp<Nanoseconds>(latest - now(), 0, kLongestMark));
+  if (!mark || !*mark) return mark;
+  // A mark after the contact that lies ahead: the machine has stood still for it.
+  if (edge && looked<latest&&* * mark - began_> latest) began_ = **mark - looked;
+  **mark -= began_;
   return mark;
 }
 
 Result<void> PacedOutput::send_sample() {
   const Nanoseconds looked = now();
-  const auto moment = moment_of_sample();
+  const auto moment = moment_of_sample(looked);
   if (!moment || *moment) owed_ = false;
   if (!moment) return tl::unexpected(moment.error());
   if (!*moment) return {};
@@ -113,6 +153,7 @@ Result<void> PacedOutput::send_sample() {
   q_.resize(sample.joints);
   for (int j = 0; j < sample.joints; ++j)
     q_[j] = static_cast<double>(sample.counts[j]) * machine_.scales()[j].step;
+  told_ = **moment;
   // Now and then the processor does something else in between: that is not the usual.
   preparing_ += std::clamp<Nanoseconds>(now() - looked - preparing_, -200, 200);
   return joints_.send(**moment, q_);
@@ -128,6 +169,7 @@ std::string driven_text(const std::vector<DrivenEdge>& driven) {
     line["closed"] = edge.closed;
     line["before_ns"] = edge.before;
     line["after_ns"] = edge.after;
+    line["late_ns"] = edge.late;
     line["label"] = edge.label;
     line["q"] = list(edge.q);
     line["dq"] = list(edge.dq);

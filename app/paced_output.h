@@ -3,7 +3,10 @@
 //
 // An edge is waited for with the eyes open, as its moment is the measurement. A frame is sent when
 // it is due or a little later, and holds where the robot stands when it is sent, which is what its
-// stamp will say.
+// stamp will say. When the processor was away at the moment of an edge, the machine has stood still
+// since its last frame, as nothing was sent that says otherwise: it goes on from there with a frame
+// of its own, and the edge is waited for once more. For that no frame is sent from shortly before a
+// contact until its edge, which may come a trigger's delay later.
 #pragma once
 
 #include <deque>
@@ -19,6 +22,7 @@ namespace selfcal {
 struct DrivenEdge {
   bool closed = false;
   Nanoseconds before = 0, after = 0;  ///< of the driving (CLOCK_MONOTONIC)
+  Nanoseconds late = 0;               ///< `before` less the moment at which it was due
   std::string label;                  ///< of the move in which it came
   Eigen::VectorXd q, dq;  ///< true readings and speeds at `before` less the trigger's delay
 };
@@ -37,20 +41,30 @@ class PacedOutput {
   Result<void> repeat() { return trigger_.send(now(), level_); }
 
   const std::vector<DrivenEdge>& driven() const { return driven_; }
+  /// How often the machine had to stand still as the processor came too late for an edge.
+  int pauses() const { return pauses_; }
 
  private:
   Nanoseconds now() { return clock_.now() - began_; }
   std::optional<Nanoseconds> next_edge() const;
+  std::optional<Nanoseconds> quiet_from() const;
   bool wait_for_next();
+  bool missed(Nanoseconds edge, Nanoseconds now);
+  Result<void> go_on_from_last_frame();
+  Result<void> drive_due();
   Result<void> drive(const Edge& edge);
+  Result<void> try_sample();
   Result<void> send_sample();
-  Result<std::optional<Nanoseconds>> moment_of_sample();
+  Result<std::optional<Nanoseconds>> moment_of_sample(Nanoseconds looked);
 
   Machine& machine_;
   JointSender& joints_;
   TriggerSender& trigger_;
   Clock& clock_;
-  Nanoseconds began_;
+  Nanoseconds delay_;     ///< from a contact to its edge
+  Nanoseconds began_;     ///< the clock at the machine's time 0, were it always on time
+  Nanoseconds told_ = 0;  ///< the machine's time of the last frame or edge
+  int pauses_ = 0, in_a_row_ = 0;
   Nanoseconds preparing_ = 1000;  ///< from the look at the clock to the sending, as it was lately
   bool level_ = false;
   bool owed_ = false;      ///< a sample is due: its mark has not come, or an edge went first

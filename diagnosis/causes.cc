@@ -121,19 +121,38 @@ class Teller {
   const Posterior& posterior_;
 };
 
+/// Together with what looks the same on these rows it is one answer.
+CauseResult with_look_alikes(const View& view, const Bench& bench, const Posterior& posterior,
+                             CauseResult cause) {
+  const auto answers = [&](const std::string& effect, const std::string& at) {
+    return effect == cause.effect ||
+           std::find(cause.confounded_with.begin(), cause.confounded_with.end(),
+                     label(effect, at)) != cause.confounded_with.end();
+  };
+  double sum = 0;
+  for (const Hypothesis& h : posterior.hypotheses) {
+    bool any =
+        h.candidates.empty() && bench.structure(h.structure).kind > 0 && answers("unknown", "");
+    for (const int c : h.candidates)
+      any = any || answers(view.candidates().list[c].effect, view.candidates().list[c].at);
+    if (any) sum += std::exp(h.log_weight);
+  }
+  cause.probability = std::min(sum, 1.0);
+  return cause;
+}
+
 /// What all causes more probable than not explain of the squares, and what is left beyond the
 /// noise; both as the geometry alone sees them.
 struct Shares {
   double explained = 0, left = 0;
 };
-Shares shares(const View& view, const Bench& bench, const Posterior& posterior) {
+Shares shares(const Bench& bench, const Posterior& posterior) {
   const Hypothesis* best = &posterior.hypotheses.front();
   for (const Hypothesis& h : posterior.hypotheses)
     if (bench.structure(h.structure).kind > 0) {
       best = &h;
       break;
     }
-  (void)view;
   const Workbench& plain = bench.workbench(0);
   const double after = plain.given(bench.terms(*best)).total() * bench.noise_variance(0);
   const double before = plain.total() * bench.noise_variance(0);
@@ -194,10 +213,11 @@ CauseResult named_cause(const View& view, const Bench& bench, const Posterior& p
     if (each.effect != "none" && each.effect != "unknown" && (!best || rank(each) > rank(*best)))
       best = &each;
   if (!best) return unknown;
-  if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : *best;
-  if (best->probability < 0.5) return unknown;
-  const Shares part = shares(view, bench, posterior);
-  return part.left > part.explained ? unknown : *best;
+  const CauseResult known = with_look_alikes(view, bench, posterior, *best);
+  if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : known;
+  if (known.probability < 0.5) return unknown;
+  const Shares part = shares(bench, posterior);
+  return part.left > part.explained ? unknown : known;
 }
 
 }  // namespace selfcal

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kResamples = 1000;
 constexpr double kFar = 1 - 1e-6;
+constexpr double kBeyond = 1.25;  ///< a judging row's prediction has an error of its own
 constexpr double kWithinFloor = 1.05;  ///< before over floor below which nothing can be said
 
 struct Row {
@@ -89,7 +90,7 @@ Closing close_gap(const std::shared_ptr<const Robot>& geometry, const Adjusted& 
     const RowResidual& a = whole.check[i];
     if (a.lengths == 0) continue;
     const double near = std::min(a.length, b.length), limit = chi_quantile(a.lengths, kFar);
-    if (near > 2 * limit * std::max(noise, whole.check_scale[a.set].length)) {
+    if (near > kBeyond * limit * std::max(noise, whole.check_scale[a.set].length)) {
       closing.rejected.push_back({a.row + 1, data.sets[a.set].name, a.length, true,
                                   "neither the geometry nor the named effects come near it"});
       continue;

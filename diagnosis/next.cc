@@ -190,7 +190,10 @@ std::vector<NextStep> next_steps(const View& view, const DataSet& data,
   const CauseResult* other = look_alike(diagnosis);
   if (!other || diagnosis.verdict.entries.empty()) return {};
   const Paper paper(view, diagnosis.verdict.entries, other->entries);
-  const double p = std::clamp(diagnosis.verdict.probability, 0.01, 0.99);
+  double own = diagnosis.verdict.probability;  // without that of its look-alikes
+  for (const CauseResult& each : diagnosis.candidates)
+    if (each.effect == diagnosis.verdict.effect) own = each.probability;
+  const double p = std::clamp(own / (own + other->probability), 0.01, 0.99);
   const double now = paper.apart(data);
   std::vector<NextStep> steps;
   for (const Step& step : kSteps) {

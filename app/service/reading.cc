@@ -7,6 +7,8 @@ namespace selfcal {
 namespace {
 
 constexpr double kDither = 1e-5;  // rad or m: encoders of robots that stand still move so much
+constexpr Nanoseconds kMostPeriods = 3;              // between the samples around a moment,
+constexpr Nanoseconds kLeastGap = 4 * kMillisecond;  // or so much
 
 }  // namespace
 
@@ -45,7 +47,9 @@ std::optional<std::pair<EncoderSample, EncoderSample>> SampleHistory::around(Nan
   if (after == samples_.end()) return std::nullopt;
   if (after->time == t) return std::pair{*after, *after};
   if (after == samples_.begin()) return std::nullopt;
-  return std::pair{*std::prev(after), *after};
+  const EncoderSample& before = *std::prev(after);
+  if (after->time - before.time > std::max(kMostPeriods * period(), kLeastGap)) return std::nullopt;
+  return std::pair{before, *after};
 }
 
 Nanoseconds SampleHistory::period() const {

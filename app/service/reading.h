@@ -35,8 +35,9 @@ class SampleHistory {
 
   /// The usual time between samples: the median of the last ones; 0 with fewer than three.
   Nanoseconds period() const;
-  /// The two samples around a moment; nothing while the later one has not come or when the earlier
-  /// one is gone.
+  /// The two samples around a moment; nothing while the later one has not come, when the earlier
+  /// one is gone, or when the two are farther apart than three usual periods (and 4 ms): samples
+  /// were lost or a clock was set, and in between the joints may have done anything.
   std::optional<std::pair<EncoderSample, EncoderSample>> around(Nanoseconds t) const;
   /// True when no joint moved faster than `speed` over the last `span`, one count and a dither of
   /// 10 urad aside; nothing as long as there are fewer than three samples in it.

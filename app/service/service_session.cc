@@ -7,10 +7,7 @@
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kMostPeriods = 3;  // between the samples around an edge
-constexpr Nanoseconds kLeastGap = 4 * kMillisecond;
-constexpr Nanoseconds kLatestSample = kSecond / 5;  // after an edge, before it counts as lost
-constexpr double kNearPath = 0.05;                  // rad or m
+constexpr double kNearPath = 0.05;  // rad or m
 
 /// Distance from a straight joint path, largest joint.
 double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
@@ -166,15 +163,11 @@ void Service::read_touch() {
   if (!senses_.closing()->timed)
     return put_aside("the trigger's edge got lost, and with it the moment of the touch");
   const auto around = senses_.samples().around(edge - nanoseconds(config_.touch.delay));
-  if (!around) return put_aside("no encoder reading just before the edge");
+  if (!around) return put_aside("no encoder readings just before and after the edge");
   TouchRecord touch;
   touch.step = situation_.step;
   touch.edge = edge;
   std::tie(touch.before, touch.after) = *around;
-  // Across a gap the joints may have done anything: samples were lost, or a clock was set.
-  if (touch.after.time - touch.before.time >
-      std::max(kMostPeriods * senses_.samples().period(), kLeastGap))
-    return put_aside("the encoder readings around the edge are too far apart");
   const Reading reading = reading_of(touch, meaning_);
   const TouchRuling ruling =
       rule_on_touch(*models_.active(), session_, meaning_, session_.plan[touch.step], reading,

@@ -1,0 +1,167 @@
+// In the order of the questions: what is it, how far does it close, where does it lie, what else
+// could it be, what would have been seen, what to do next.
+#include "app/diagnosis_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/words.h"
+
+namespace selfcal {
+namespace {
+
+constexpr const char* kStyle = R"(
+body{font:16px/1.45 system-ui,sans-serif;max-width:54rem;margin:2rem auto;padding:0 1rem;color:#1b1f24}
+h1{font-size:1.5rem;margin:0 0 .3rem}h2{font-size:1.1rem;margin:2rem 0 .4rem}
+.why{font-size:1.15rem;background:#eef3f8;border-left:5px solid #2b6cb0;padding:.7rem 1rem}
+table{border-collapse:collapse;width:100%}td,th{padding:.2rem .6rem .2rem 0;text-align:left;vertical-align:top}
+th{font-weight:600;color:#57606a;border-bottom:1px solid #d0d7de}
+.bar{display:inline-block;height:.8rem;background:#2b6cb0;border-radius:2px;vertical-align:middle}
+.muted{color:#57606a}.num{font-variant-numeric:tabular-nums;white-space:nowrap}
+)";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+std::string spaced(std::string effect) {
+  std::replace(effect.begin(), effect.end(), '_', ' ');
+  return effect;
+}
+
+std::string joined(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& each : list) text += (text.empty() ? "" : ", ") + each;
+  return escaped(text);
+}
+
+/// A bar of up to `most` rem.
+std::string bar(double share, double most = 18) {
+  return printed("<span class=bar style=\"width:%.2frem\"></span>",
+                 most * std::clamp(share, 0.0, 1.0));
+}
+
+std::string gap_table(const Gap& gap) {
+  if (gap.rows == 0) return "<p>No rows are kept aside: how far the gap closes was not judged.</p>";
+  const double most = std::max({gap.rms_before, gap.rms_after, gap.noise_floor, 1e-12});
+  std::string text = "<table>";
+  const auto row = [&](const char* what, double value) {
+    text += printed("<tr><td>%s<td class=num>%.4g mm<td>", what, 1e3 * value) + bar(value / most);
+  };
+  row("calibrated, geometry alone", gap.rms_before);
+  row("with the named effects", gap.rms_after);
+  row("noise", gap.noise_floor);
+  text += "</table>";
+  text += printed(
+      "<p class=muted>rms on %d rows that neither the fit nor the choice has seen; %.4g mm with "
+      "the "
+      "maker's figures.",
+      gap.rows, 1e3 * gap.rms_nominal);
+  if (gap.closed_fraction)
+    text += printed(" %.0f %% of what calibration leaves is closed (95 %%: %.0f to %.0f %%).",
+                    100 * *gap.closed_fraction, 100 * gap.closed_least, 100 * gap.closed_most);
+  return text + "</p>";
+}
+
+std::string cause_table(const std::vector<CauseResult>& causes) {
+  std::string text = "<table><tr><th>cause<th>where<th>probability<th>size<th>cannot be told from";
+  for (const CauseResult& each : causes) {
+    if (each.probability < 0.01) continue;
+    text += "<tr><td>" + spaced(each.effect) + "<td>" + joined(each.where) +
+            printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) + "<td>";
+    if (each.visible > 0) text += printed("%.2g &times; noise", each.visible);
+    text += "<td class=muted>" + joined(each.confounded_with);
+  }
+  return text + "</table>";
+}
+
+std::string parameter_table(const std::vector<CauseResult>& causes) {
+  std::string rows;
+  for (const CauseResult& each : causes)
+    for (const NamedValue& p : each.parameters) {
+      if (each.probability < 0.5) continue;
+      const double size = std::abs(p.value);
+      const char* plausible = size > 3 * p.usual_most ? "larger than usual" : "plausible";
+      rows +=
+          printed("<tr><td>%s<td class=num>%.3g &plusmn; %.1g %s<td class=num>%.1g to %.1g<td>%s",
+                  escaped(p.name).c_str(), p.value, p.sigma, p.unit.c_str(), p.usual_least,
+                  p.usual_most, plausible);
+    }
+  if (rows.empty()) return "";
+  return "<h2>How large, and is that "
+         "plausible?</h2><table><tr><th>parameter<th>value<th>usual<th>" +
+         rows + "</table>";
+}
+
+template <class List>
+std::string share_table(const char* title, const List& list) {
+  std::string rows;
+  for (const auto& each : list)
+    rows += "<tr><td>" + escaped(each.name) +
+            printed("<td class=num>%.0f %%<td>", 100 * each.share) + bar(each.share);
+  return rows.empty() ? "" : std::string("<h3>") + title + "</h3><table>" + rows + "</table>";
+}
+
+std::string where(const Where& where) {
+  std::vector<Share> times, regions;
+  for (const Interval& each : where.by_time)
+    times.push_back({printed("%.0f to %.0f s", each.from, each.to), each.share});
+  for (const Region& each : where.by_region)
+    regions.push_back({printed("around (%.2f, %.2f, %.2f) m, %.2f m wide", each.centre.x(),
+                               each.centre.y(), each.centre.z(), 2 * each.radius),
+                       each.share});
+  return share_table("by joint", where.by_joint) + share_table("by set", where.by_set) +
+         share_table("by time", times) + share_table("by region", regions);
+}
+
+std::string limits(const Diagnosis& diagnosis) {
+  std::string text = "<table><tr><th>cause<th>where<th>smallest that would have been named";
+  for (const Detectable& each : diagnosis.detectable)
+    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+            printed("<td class=num>%.2g %s", each.smallest, each.unit.c_str());
+  text += "</table>";
+  if (diagnosis.untestable.empty()) return text;
+  text += "<h3>Cannot be tested on these rows</h3><table>";
+  for (const Untestable& each : diagnosis.untestable)
+    text +=
+        "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.at) + "<td>" + escaped(each.why);
+  return text + "</table>";
+}
+
+std::string next(const Diagnosis& diagnosis) {
+  if (diagnosis.next.empty()) return "";
+  std::string text = "<h2>What to measure next</h2><ul>";
+  for (const NextStep& step : diagnosis.next)
+    text += "<li>" + escaped(step.what) +
+            printed(": then %.0f %% sure, of ", 100 * step.probability_after) +
+            joined(step.separates);
+  return text + "</ul>";
+}
+
+}  // namespace
+
+std::string html_report(const Diagnosis& diagnosis, const std::string& name) {
+  std::string text = "<!doctype html><html lang=en><meta charset=utf-8><title>Diagnosis of " +
+                     escaped(name) + "</title><style>" + kStyle + "</style>";
+  text += "<h1>" + escaped(name) + "</h1><p class=why>" + escaped(diagnosis.why) + "</p>";
+  text += "<h2>How far the gap closes</h2>" + gap_table(diagnosis.gap);
+  text += "<h2>What causes it</h2>" + cause_table(diagnosis.candidates);
+  text += parameter_table(diagnosis.candidates) + next(diagnosis);
+  text += "<h2>Where what calibration leaves lies</h2>" + where(diagnosis.where);
+  text += "<h2>What would have been seen</h2>" + limits(diagnosis);
+  if (!diagnosis.rejected.empty()) {
+    text += "<h2>Rows put aside</h2><p>";
+    for (const Rejected& each : diagnosis.rejected)
+      text += printed("%d (%s), ", each.row, escaped(each.set).c_str());
+    text.resize(text.size() - 2);
+    text += "</p>";
+  }
+  for (const std::string& warning : diagnosis.warnings)
+    text += "<p class=muted>" + escaped(warning) + "</p>";
+  return text + "</html>\n";
+}
+
+}  // namespace selfcal
