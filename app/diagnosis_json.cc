@@ -95,6 +95,10 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
   json["candidates"] = array_of(diagnosis.candidates, [&](const CauseResult& each) {
     return of_candidate(each, diagnosis.p_value);
   });
+  json["practice"] = Json::object({{"sessions", diagnosis.practice.sessions},
+                                   {"right", finite(diagnosis.practice.right)},
+                                   {"false_alarms", finite(diagnosis.practice.false_alarms)},
+                                   {"temperature", finite(diagnosis.practice.temperature)}});
   json["where"] = of_where(diagnosis.where);
   json["detectable"] = array_of(diagnosis.detectable, [](const Detectable& each) {
     return Json::object({{"effect", each.effect},

@@ -16,6 +16,7 @@ h1{font-size:1.5rem;margin:0 0 .3rem}h2{font-size:1.1rem;margin:2rem 0 .4rem}
 .why{font-size:1.15rem;background:#eef3f8;border-left:5px solid #2b6cb0;padding:.7rem 1rem}
 table{border-collapse:collapse;width:100%}td,th{padding:.2rem .6rem .2rem 0;text-align:left;vertical-align:top}
 th{font-weight:600;color:#57606a;border-bottom:1px solid #d0d7de}
+h3{font-size:1rem;margin:1rem 0 .2rem}
 .bar{display:inline-block;height:.8rem;background:#2b6cb0;border-radius:2px;vertical-align:middle}
 .muted{color:#57606a}.num{font-variant-numeric:tabular-nums;white-space:nowrap}
 )";

@@ -63,14 +63,19 @@ bool PacedOutput::wait_for_next() {
 }
 
 Result<void> PacedOutput::turn() {
-  if (!wait_for_next()) return {};
+  if (!restarting_ && !wait_for_next()) return {};
   const Nanoseconds t = now();
-  if (const auto edge = next_edge(); edge && missed(*edge, t)) return go_on_from_last_frame();
+  if (const auto edge = next_edge(); edge && missed(*edge, t)) return pause();
+  if (restarting_) {
+    auto sent = try_sample();
+    restarting_ = owed_;
+    return sent;
+  }
   machine_.advance(t);
   edges_.clear();
   machine_.take(edges_);
   held_.insert(held_.end(), edges_.begin(), edges_.end());
-  if (auto driven = drive_due(); !driven) return driven;
+  if (auto driven = drive_due(); !driven || restarting_) return driven;
   samples_.clear();
   machine_.take(samples_);
   owed_ = owed_ || !samples_.empty();
@@ -85,18 +90,20 @@ bool PacedOutput::missed(Nanoseconds edge, Nanoseconds now) {
   return now > edge + kLate && told_ < edge - delay_ - kFrame / 2 && in_a_row_ < kMostPauses;
 }
 
-Result<void> PacedOutput::go_on_from_last_frame() {
+/// The machine has stood still since its last frame, and goes on with another one.
+Result<void> PacedOutput::pause() {
   ++pauses_;
   ++in_a_row_;
   began_ = clock_.now() - told_;
-  return try_sample();
+  owed_ = restarting_ = true;
+  return {};
 }
 
 Result<void> PacedOutput::drive_due() {
   while (!held_.empty() && held_.front().time <= now()) {
     const Edge edge = held_.front();
     if (edge.closed != level_) {
-      if (missed(edge.time, now())) return go_on_from_last_frame();
+      if (missed(edge.time, now())) return pause();
       if (auto driven = drive(edge); !driven) return driven;
     }
     held_.pop_front();

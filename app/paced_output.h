@@ -50,7 +50,7 @@ class PacedOutput {
   std::optional<Nanoseconds> quiet_from() const;
   bool wait_for_next();
   bool missed(Nanoseconds edge, Nanoseconds now);
-  Result<void> go_on_from_last_frame();
+  Result<void> pause();
   Result<void> drive_due();
   Result<void> drive(const Edge& edge);
   Result<void> try_sample();
@@ -67,9 +67,10 @@ class PacedOutput {
   int pauses_ = 0, in_a_row_ = 0;
   Nanoseconds preparing_ = 1000;  ///< from the look at the clock to the sending, as it was lately
   bool level_ = false;
-  bool owed_ = false;      ///< a sample is due: its mark has not come, or an edge went first
-  bool failing_ = false;   ///< the last sample could not be sent
-  std::deque<Edge> held_;  ///< passed by the machine, not due yet
+  bool restarting_ = false;  ///< after a pause, until a frame was sent
+  bool owed_ = false;        ///< a sample is due: its mark has not come, or an edge went first
+  bool failing_ = false;     ///< the last sample could not be sent
+  std::deque<Edge> held_;    ///< passed by the machine, not due yet
   std::vector<Edge> edges_;
   std::vector<EncoderSample> samples_;
   std::vector<double> q_;

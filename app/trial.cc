@@ -1,3 +1,4 @@
+// Arguments of selfcal trial seal, run and score.
 #include "app/trial.h"
 
 #include <memory>

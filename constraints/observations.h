@@ -30,6 +30,9 @@ struct Observations {
   int rows() const { return static_cast<int>(q.rows()); }
 };
 
+/// The given rows, in their order; one may come several times.
+Observations taken(const Observations& data, const std::vector<int>& rows);
+
 /// What else held when `rows` were taken, a lane each.
 Conditions conditions(const Observations& data, const std::vector<int>& rows);
 

@@ -75,18 +75,4 @@ Site site_of(const Robot& robot, const DataSet& data) {
   return site;
 }
 
-Conditions conditions(const Observations& data, const std::vector<int>& rows) {
-  Conditions at;
-  const auto pick = [&](const Eigen::MatrixXd& column) {
-    return column.rows() > 0 ? Eigen::MatrixXd(column(rows, Eigen::all)) : Eigen::MatrixXd();
-  };
-  at.wrench = pick(data.wrench);
-  at.velocity = pick(data.velocity);
-  at.normal = pick(data.normal);
-  if (data.temperature.size() > 0) at.temperature = data.temperature(rows);
-  if (data.time.size() > 0) at.time = data.time(rows);
-  for (const int row : rows) at.set.push_back(data.set[row]);
-  return at;
-}
-
 }  // namespace selfcal

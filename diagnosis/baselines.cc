@@ -1,3 +1,5 @@
+// F tests and the information criterion on what geometry, with its priors, leaves of the rows and
+// of each candidate's columns.
 #include "diagnosis/baselines.h"
 
 #include <algorithm>
@@ -37,6 +39,8 @@ class Regression {
     // Each prior determines the share of its parameter that the rows do not.
     freedom_ = static_cast<double>(n) - orthogonal_columns(onto).Q.topRows(n).squaredNorm();
     equations_ = static_cast<double>(n);
+    // How far the geometry strains its priors says nothing of the noise.
+    squares_ = y_.head(n).squaredNorm();
   }
 
   const Candidate& candidate(size_t i) const { return view_.candidates().list[i]; }
@@ -44,7 +48,7 @@ class Regression {
   double freedom() const { return freedom_; }
   double equations() const { return equations_; }
 
-  double squares() const { return y_.squaredNorm(); }
+  double squares() const { return squares_; }
   /// Sum of squares left with a candidate's columns, and how many of these count.
   struct Left {
     double squares = 0;
@@ -52,7 +56,7 @@ class Regression {
   };
   Left with(size_t i) const {
     const OrthogonalColumns basis = orthogonal_columns(C_(Eigen::all, candidate(i).main));
-    Left left{y_.squaredNorm(), 0};
+    Left left{squares_, 0};
     if (C_(Eigen::all, candidate(i).main).norm() == 0) return left;
     left.columns = static_cast<int>(basis.Q.cols());
     left.squares -= (basis.Q.transpose() * y_).squaredNorm();
@@ -61,7 +65,9 @@ class Regression {
   /// Projects a candidate out.
   void take(size_t i) {
     const OrthogonalColumns basis = orthogonal_columns(C_(Eigen::all, candidate(i).main));
-    y_ -= basis.Q * (basis.Q.transpose() * y_).eval();
+    const Eigen::VectorXd explained = basis.Q.transpose() * y_;
+    squares_ -= explained.squaredNorm();
+    y_ -= basis.Q * explained;
     C_ -= basis.Q * (basis.Q.transpose() * C_).eval();
     for (Eigen::Index c = 0; c < C_.cols(); ++c)
       if (C_.col(c).norm() < 1e-9) C_.col(c).setZero();
@@ -73,7 +79,7 @@ class Regression {
   View view_;
   Eigen::MatrixXd C_;
   Eigen::VectorXd y_;
-  double freedom_ = 0, equations_ = 0;
+  double freedom_ = 0, equations_ = 0, squares_ = 0;
 };
 
 TrialCauseNamed named(const Candidate& candidate, double probability) {

@@ -180,14 +180,13 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   std::string words = verdict.effect;
   for (size_t i = 0; i < verdict.where.size(); ++i)
     words += (i == 0 ? " at " : " and ") + verdict.where[i];
-  std::snprintf(text, sizeof text, " causes the gap (probability %.2f, p %.2g)",
+  for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
+    words +=
+        (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + verdict.confounded_with[i];
+  if (!verdict.confounded_with.empty()) words += ")";
+  std::snprintf(text, sizeof text, ", causes the gap (probability %.2f, p %.2g)",
                 verdict.probability, diagnosis.p_value);
   words += text;
-  if (!verdict.confounded_with.empty()) {
-    words += "; these rows cannot tell it from";
-    for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
-      words += (i == 0 ? " " : ", ") + verdict.confounded_with[i];
-  }
   return words;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kResamples = 1000;
 constexpr double kFar = 1 - 1e-6;
-constexpr double kBeyond = 1.25;  ///< a judging row's prediction has an error of its own
+constexpr double kBeyond = 1.25;       ///< a judging row's prediction has an error of its own
 constexpr double kWithinFloor = 1.05;  ///< before over floor below which nothing can be said
 
 struct Row {

@@ -8,6 +8,7 @@
 #include "diagnosis/closing.h"
 #include "diagnosis/next.h"
 #include "diagnosis/null.h"
+#include "diagnosis/practice.h"
 #include "diagnosis/structures.h"
 #include "diagnosis/view.h"
 #include "diagnosis/whereabouts.h"
@@ -63,9 +64,13 @@ class Diagnostician {
     result_.candidates = cause_results(view_, *bench_, posterior_);
     tell("asking noise the same question", 0.75);
     result_.p_value = resampled_p(view_, *bench_, data_.rows, options_.resamples, options_.seed);
-    result_.verdict = result_.p_value <= options_.name_below_p
-                          ? named_cause(view_, *bench_, posterior_, result_.candidates, options_)
-                          : CauseResult{.effect = "none", .probability = posterior_.none};
+    result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
+    // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
+    if (result_.verdict.effect != "unknown" && result_.p_value > options_.name_below_p)
+      result_.verdict = {.effect = "none", .probability = std::max(posterior_.none, 0.5)};
+    tell("practising on simulated sessions", 0.8);
+    result_.practice = practise(view_, *bench_, options_);
+    result_.verdict.probability = calibrated(result_.verdict.probability, result_.practice);
     result_.where = whereabouts(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable();

@@ -20,6 +20,7 @@ struct DiagnosisOptions {
   /// like a cause less often than the second.
   double name_below_none = 0.05, name_below_p = 0.0125;
   int resamples = 199;          ///< of the null distribution
+  int practice = 30;            ///< simulated sessions that calibrate probabilities; 0: none
   double most_rejected = 0.05;  ///< share of the rows that may be put aside
   unsigned long long seed = 1;
 };
@@ -79,12 +80,21 @@ struct NextStep {
   double probability_after = 0;
 };
 
+/// What simulated sessions over the same configurations taught.
+struct Practice {
+  int sessions = 0;
+  double right = 0;         ///< share of the causes in them that were named
+  double false_alarms = 0;  ///< share of the sessions without one that named one
+  double temperature = 1;   ///< by which log odds are divided
+};
+
 struct Diagnosis {
   Gap gap;
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   std::string why;      ///< the verdict in words
   double p_value = 1;   ///< of the verdict's evidence under a resampled null
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
+  Practice practice;
   Where where;
   std::vector<Detectable> detectable;
   std::vector<Untestable> untestable;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "diagnosis/causes.h"
@@ -29,33 +30,15 @@ std::vector<int> spread_rows(const DataSet& data) {
   return some;
 }
 
-template <class Matrix>
-void repeat_rows(Matrix& column, const std::vector<int>& rows) {
-  if (column.rows() == 0) return;
-  const Matrix more = column(rows, Eigen::all);
-  const Eigen::Index n = column.rows();
-  column.conservativeResize(n + more.rows(), column.cols());
-  column.bottomRows(more.rows()) = more;
-}
-
+/// The data set and after it its rows `rows` once more, each a configuration of its own.
 DataSet with_copies(const DataSet& data, const std::vector<int>& rows) {
+  std::vector<int> all(static_cast<size_t>(data.rows.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  all.insert(all.end(), rows.begin(), rows.end());
   DataSet more = data;
-  Observations& o = more.rows;
-  repeat_rows(o.q, rows);
-  repeat_rows(o.position, rows);
-  repeat_rows(o.orientation, rows);
-  repeat_rows(o.distance, rows);
-  repeat_rows(o.normal, rows);
-  repeat_rows(o.wrench, rows);
-  repeat_rows(o.velocity, rows);
-  repeat_rows(o.temperature, rows);
-  repeat_rows(o.time, rows);
-  for (const int row : rows) {
-    o.set.push_back(o.set[row]);
-    o.group.push_back(o.group[row]);
-    if (!o.repeat.empty()) o.repeat.push_back(-1);
-    o.check.push_back(0);
-  }
+  more.rows = taken(data.rows, all);
+  for (size_t i = static_cast<size_t>(data.rows.rows()); i < more.rows.repeat.size(); ++i)
+    more.rows.repeat[i] = -1;
   return more;
 }
 

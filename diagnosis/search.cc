@@ -145,13 +145,13 @@ double Bench::evidence(int candidate) const {
 }
 
 double Bench::best_single() const {
-  const double nothing = workbenches_.front().log_evidence({});
+  size_t home = 0;
+  for (size_t s = 1; s < structures_.size(); ++s)
+    if (workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({})) home = s;
   double best = -INFINITY;
   for (int c = 0; c < static_cast<int>(blocks_.size()); ++c)
-    if (seen_[c]) best = std::max(best, weigh(workbenches_.front(), c).log_sum - nothing);
-  for (size_t s = 1; s < structures_.size(); ++s)
-    if (structures_[s].kind > 0) best = std::max(best, workbenches_[s].log_evidence({}) - nothing);
-  return best;
+    if (seen_[c]) best = std::max(best, weigh(workbenches_[home], c).log_sum);
+  return best - workbenches_[home].log_evidence({});
 }
 
 std::vector<Workbench::Term> Bench::terms(const Hypothesis& hypothesis) const {

@@ -26,15 +26,20 @@ Options geometry_options(const DiagnosisOptions& options) {
   return geometry;
 }
 
-/// What the rows themselves say, whatever the data sheet does; of immediate repeats where these say
-/// less, since what calibration leaves may be the very gap.
+/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
+/// since the set that holds the cause would otherwise be taken for a noisy one.
 std::vector<Scale> first_noise(const DataSet& data, const Fit& fitted) {
-  std::vector<Scale> noise = fitted.noise.estimated;
-  for (size_t s = 0; s < noise.size(); ++s) {
-    const double repeats =
-        repeat_sigma(data, static_cast<int>(s), fitted.at.residuals, fitted.noise.put_aside);
-    if (repeats > kLeastNoise) noise[s].length = std::min(noise[s].length, repeats);
+  std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
+  const auto method = [&](size_t s) { return data.sets[s].method->name(); };
+  for (const RowResidual& r : fitted.at.residuals) {
+    auto& [squares, rows] = pooled[method(static_cast<size_t>(r.set))];
+    squares += std::pow(fitted.noise.estimated[r.set].length, 2);
+    rows += 1;
   }
+  std::vector<Scale> noise = fitted.noise.estimated;
+  for (size_t s = 0; s < noise.size(); ++s)
+    if (const auto found = pooled.find(method(s)); found != pooled.end())
+      noise[s].length = std::sqrt(found->second.first / found->second.second);
   return noise;
 }
 

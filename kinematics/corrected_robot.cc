@@ -1,10 +1,10 @@
-// X = X_geometry(q + A v) carried along by the twist B v = (shift, turn) at the tip T of the model:
-//   p += shift + turn x (p - p_T),   R = exp(turn) R
-// A, B and p_T are taken at the model's own values and do not follow xi. So Psi has, exactly,
-//   (p' + turn x p', exp(turn) w')
+// X = X_geometry(q + A v) carried along by the twist B v = (shift, turn) of the tip:
+//   p += shift + turn x a,   R = exp(turn) R,   a the body's origin as seen from the tip
+// A, B and a are taken at the model's own values and do not follow xi. So Psi has, exactly,
+//   (p', exp(turn) w')
 // of each column (p', w') of the geometry's Psi where the joints then are, the same of J A for the
 // effects' parameters, and there, for a column (b, w) of B and the left Jacobian Jl of SO(3), also
-//   (b + w x (p - p_T), Jl(turn) w).
+//   (b + w x a, Jl(turn) w).
 #include "kinematics/corrected_robot.h"
 
 #include <cmath>
@@ -56,7 +56,7 @@ class CorrectedRobot final : public Robot {
 
   void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
               PsiBlock* psi) const override {
-    const std::vector<Deviation> deviations = deviations_of(block);
+    const std::vector<Deviation> deviations = deviations_of(block, body);
     const Eigen::VectorXd own = xi.head(geometry_parameters());
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
     ConfigurationBlock moved = block;
@@ -65,14 +65,14 @@ class CorrectedRobot final : public Robot {
       moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();
     PsiBlock inner;
     geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
-    if (psi) fill(deviations, v, X, inner, *psi);
+    if (psi) fill(deviations, v, inner, *psi);
     for (int lane = 0; lane < kLanes; ++lane) {
       const Eigen::Matrix<double, 6, 1> twist = deviations[lane].by.tip * v;
       if (twist.isZero(0)) continue;
       const Eigen::Vector3d turn = twist.tail<3>();
       const Eigen::Matrix3d R = exp_rotation(turn) * X.R(lane);
       X.position.row(lane) +=
-          (twist.head<3>() + turn.cross(X.p(lane) - deviations[lane].tip)).transpose().array();
+          (twist.head<3>() + turn.cross(deviations[lane].arm)).transpose().array();
       X.rotation.row(lane) = R.reshaped().transpose().array();
     }
   }
@@ -97,10 +97,10 @@ class CorrectedRobot final : public Robot {
   }
 
  private:
-  /// Of one lane: the influence of all effects side by side, and the tip that B is about.
+  /// Of one lane: the influence of all effects side by side, and the body as seen from the tip.
   struct Deviation {
     Influence by;
-    Eigen::Vector3d tip;
+    Eigen::Vector3d arm;
   };
 
   Eigen::Index geometry_parameters() const {
@@ -132,11 +132,14 @@ class CorrectedRobot final : public Robot {
     return at;
   }
 
-  Deviation deviation(const Circumstances& at) const {
+  Deviation deviation(const Circumstances& at, Body body) const {
     const auto n = static_cast<Eigen::Index>(joints().size());
     const auto count = static_cast<Eigen::Index>(parameters_.size()) - geometry_parameters();
     Deviation all{{Eigen::MatrixXd::Zero(n, count), Eigen::MatrixXd::Zero(6, count)},
-                  at.poses.back().translation()};
+                  Eigen::Vector3d::Zero()};
+    if (body == Body::last_link)
+      all.arm = at.poses[mechanics().link_of(static_cast<int>(n) - 1)].translation() -
+                at.poses.back().translation();
     Eigen::Index column = 0;
     for (const auto& effect : effects_) {
       const auto own = static_cast<Eigen::Index>(effect->parameters().size());
@@ -150,16 +153,16 @@ class CorrectedRobot final : public Robot {
   }
 
   /// By lane; lanes past the block's count share the last one's.
-  std::vector<Deviation> deviations_of(const ConfigurationBlock& block) const {
+  std::vector<Deviation> deviations_of(const ConfigurationBlock& block, Body body) const {
     std::vector<Deviation> all;
     for (int lane = 0; lane < kLanes; ++lane)
-      all.push_back(lane < std::max(block.count, 1) ? deviation(circumstances(block, lane))
+      all.push_back(lane < std::max(block.count, 1) ? deviation(circumstances(block, lane), body)
                                                     : all.back());
     return all;
   }
 
-  /// `X` is where the geometry alone puts the body, `inner` its Psi.
-  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& v, const Locations& X,
+  /// `inner` is Psi of the geometry alone.
+  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& v,
             const PsiBlock& inner, PsiBlock& psi) const {
     const Eigen::Index own = geometry_parameters(), n = static_cast<Eigen::Index>(joints().size());
     psi.resize(6 * kLanes, static_cast<Eigen::Index>(parameters_.size()));
@@ -173,23 +176,18 @@ class CorrectedRobot final : public Robot {
       Eigen::MatrixXd columns = J * by.joints;
       const Eigen::Vector3d turn = by.tip.bottomRows<3>() * v;
       if (!turn.isZero(0)) {
-        carry(turn, columns);
-        Eigen::MatrixXd geometry(6, own);
-        for (int c = 0; c < 6; ++c) geometry.row(c) = inner.row(c * kLanes + lane);
-        carry(turn, geometry);
-        for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane).head(own) = geometry.row(c);
+        const Eigen::Matrix3d E = exp_rotation(turn);
+        columns.bottomRows<3>() = (E * columns.bottomRows<3>()).eval();
+        Eigen::MatrixXd turns(3, own);
+        for (int c = 0; c < 3; ++c) turns.row(c) = inner.row((3 + c) * kLanes + lane);
+        turns = (E * turns).eval();
+        for (int c = 0; c < 3; ++c) psi.row((3 + c) * kLanes + lane).head(own) = turns.row(c);
       }
-      const Eigen::Matrix3d arm = skew(X.p(lane) - deviations[lane].tip);
-      columns.topRows<3>() += by.tip.topRows<3>() - arm * by.tip.bottomRows<3>();
+      columns.topRows<3>() +=
+          by.tip.topRows<3>() - skew(deviations[lane].arm) * by.tip.bottomRows<3>();
       columns.bottomRows<3>() += left_jacobian_inverse(turn).inverse() * by.tip.bottomRows<3>();
       for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane).tail(v.size()) = columns.row(c);
     }
-  }
-
-  /// What columns (shift, turn) of a body become when the body is carried along by `turn`.
-  static void carry(const Eigen::Vector3d& turn, Eigen::MatrixXd& columns) {
-    columns.topRows<3>() += (skew(turn) * columns.topRows<3>()).eval();
-    columns.bottomRows<3>() = (exp_rotation(turn) * columns.bottomRows<3>()).eval();
   }
 
   std::shared_ptr<const Robot> geometry_;

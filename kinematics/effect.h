@@ -5,7 +5,7 @@
 // where v are the effect's own parameters and A, B (its influence) follow from the circumstances of
 // a configuration: load, direction of motion, temperature, time, touched surface. What is not
 // linear (a moment, a wave number, a time constant) is the effect's shape, given and not estimated
-// by the identification. A and B are taken at the nominal geometry: the difference is of second
+// by the identification. A and B are taken at the geometry of the file: the difference is of second
 // order in errors that are small, and derivatives stay exact.
 #pragma once
 
@@ -26,7 +26,7 @@ class Robot;
 struct Circumstances {
   const Mechanics* mechanics = nullptr;
   Eigen::VectorXd q;                     ///< readings (rad or m)
-  std::vector<Eigen::Isometry3d> poses;  ///< of the links, world, nominal
+  std::vector<Eigen::Isometry3d> poses;  ///< of the links, world, as the file has them
   Load wrench;                       ///< on the tool, world axes, at the tip; zero when not known
   Eigen::VectorXd torque;            ///< by joint, of gravity and wrench (N m, N)
   Eigen::VectorXd velocity;          ///< by joint, just before the reading (rad/s, m/s)

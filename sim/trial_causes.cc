@@ -1,3 +1,4 @@
+// Every cause by its name, and what several of them share.
 #include "sim/trial_causes.h"
 
 #include <cmath>

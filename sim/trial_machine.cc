@@ -14,9 +14,10 @@ namespace selfcal {
 namespace {
 
 constexpr double kLeastSurvival = 0.12;  // below this the honest answer is "absorbed"
-constexpr int kTries = 40;
-constexpr int kSteps = 12;      // Newton steps of a touch
-constexpr double kMet = 1e-12;  // m
+constexpr int kTries = 40;               // of one effect
+constexpr int kMixtures = 10;            // of effects
+constexpr int kSteps = 12;               // Newton steps of a touch
+constexpr double kMet = 1e-12;           // m
 
 class TrialMaker {
  public:
@@ -80,19 +81,36 @@ class TrialMaker {
 
   void choose_causes(const Calibration& calibration) {
     constexpr double kSizes[] = {0.5, 0.75, 1, 1.5, 2.5, 4};
-    std::vector<std::string> names = mixture();
-    const double drawn = kSizes[pick(random_, 6)];
-    TrialLedger& truth = out_.truth;
-    if (names.front() == "none") return;
-    truth.r = request_.r.value_or(drawn);
-    for (size_t i = 0; i < names.size(); ++i) {
-      if (!draw(names[i], truth.r, calibration)) {
-        out_.unreached = names[i] + ": calibration absorbs it wherever it acts";
-        return;
+    for (int attempt = 0; attempt < kMixtures; ++attempt) {
+      const std::vector<std::string> names = mixture();
+      const double drawn = kSizes[pick(random_, 6)];
+      out_.unreached.clear();
+      if (names.front() == "none") return;
+      const double r = request_.r.value_or(drawn);
+      if (draw_all(names, r, calibration)) return enter(names, r);
+      if (!request_.effect.empty()) return;
+    }
+  }
+
+  bool draw_all(const std::vector<std::string>& names, double r, const Calibration& calibration) {
+    causes_.clear();
+    for (const std::string& name : names)
+      if (!draw(name, r, calibration)) {
+        causes_.clear();
+        out_.unreached = name + ": calibration absorbs it wherever it acts";
+        return false;
       }
-      (i == 0 ? truth.effect : truth.second) = names[i];
-      truth.where[names[i]] = causes_.back().where;
-      truth.physics += (i > 0 ? "; " : "") + causes_.back().physics;
+    return true;
+  }
+
+  void enter(const std::vector<std::string>& names, double r) {
+    TrialLedger& truth = out_.truth;
+    truth.r = r;
+    truth.effect = names.front();
+    if (names.size() > 1) truth.second = names.back();
+    for (size_t i = 0; i < names.size(); ++i) {
+      truth.where[names[i]] = causes_[i].where;
+      truth.physics += (i > 0 ? "; " : "") + causes_[i].physics;
     }
   }
 

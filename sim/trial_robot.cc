@@ -1,3 +1,4 @@
+// A UR10's figures, each drawn anew within a fifth or so.
 #include "sim/trial_robot.h"
 
 #include <array>

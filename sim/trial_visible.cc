@@ -1,3 +1,5 @@
+// Ridge regression on the geometry's columns: r = |(I - A (A'A + P)^-1 A') e| / sqrt(n), with P the
+// priors' weights, e the shifts over the noise and n the equations of the rows that identify.
 #include "sim/trial_visible.h"
 
 #include <algorithm>

@@ -23,11 +23,11 @@ AirRecord AirRecord::lagged(double lag) const {
 
 AirRecord draw_air(double duration, Random& random) {
   constexpr int kSteps = 400, kSmooth = 10;
+  const double rise = uniform(random, 6, 13), settle = uniform(random, 0.2, 0.8) * kSteps;
   AirRecord weather{kSmooth, {}}, air{duration / kSteps, {}};
   double level = 0;
   for (int i = 0; i <= kSteps / kSmooth + 1; ++i)
     weather.celsius.push_back(level = 0.8 * level + 0.6 * normal(random));
-  const double rise = uniform(random, 6, 13), settle = uniform(random, 0.2, 0.8) * kSteps;
   for (int i = 0; i <= kSteps; ++i)
     air.celsius.push_back(21 - rise * std::expm1(-i / settle) + 0.4 * weather.at(i));
   return air;

@@ -20,6 +20,7 @@ void EdgeWatch::add(const std::vector<LineEvent>& events, Nanoseconds now, std::
     number_ = event.number;
     lost_ += skipped;
     gap_ = gap_ || skipped > 0;
+    if (skipped > 0) overran_ = now;
     foreign_ = std::abs(now - event.time) > kOldest;
     const Nanoseconds time = foreign_ ? now : event.time;
     const bool timed = !gap_ && !foreign_;
@@ -35,6 +36,7 @@ void EdgeWatch::add(const std::vector<LineEvent>& events, Nanoseconds now, std::
   }
   // What came while the queue was full is gone, and nothing says so.
   gap_ = events.size() >= kQueue && events.back().number == 0;
+  if (gap_) overran_ = now;
   mismatch_ = false;
 }
 
@@ -66,6 +68,8 @@ std::string EdgeWatch::trouble(Nanoseconds now) const {
   if (foreign_) return "the kernel stamps edges by another clock: Linux 5.7 or newer is needed";
   if (chattered_ && now - *chattered_ < kTellFor)
     return "the trigger chatters, more than 80 changes a second: a loose wire, or no bias?";
+  if (overran_ && now - *overran_ < kTellFor)
+    return "more edges came at once than the kernel keeps: some are lost";
   return {};
 }
 

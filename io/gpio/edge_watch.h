@@ -25,7 +25,7 @@ class EdgeWatch {
   static constexpr std::size_t kChatter = 40;
   static constexpr Nanoseconds kChatterSpan = kSecond / 2;
   static constexpr Nanoseconds kBounce = 5 * kMillisecond;
-  /// Chattering is told of for so long after it was last seen.
+  /// Chattering and overruns are told of for so long after they were last seen.
   static constexpr Nanoseconds kTellFor = 3 * kSecond;
 
   EdgeWatch(bool closed, Nanoseconds now) : level_(closed), began_(now) {}
@@ -54,6 +54,7 @@ class EdgeWatch {
   bool foreign_ = false;   ///< stamps are of another clock
   std::deque<Nanoseconds> changes_;
   std::optional<Nanoseconds> chattered_;  ///< last
+  std::optional<Nanoseconds> overran_;    ///< last: the kernel's queue was full
 };
 
 }  // namespace selfcal

@@ -219,9 +219,9 @@ class SerialRobot final : public Robot {
       gear.setZero();
       for (int k = 0; k < joint_count(); ++k)
         if (coupling_(k, j) != 0)
-          gear +=
-              coupling_(k, j) *
-              (psi.col(variable_parameter(k)).reshaped(kLanes, 6).array().colwise() * block.q.col(j));
+          gear += coupling_(k, j) *
+                  (psi.col(variable_parameter(k)).reshaped(kLanes, 6).array().colwise() *
+                   block.q.col(j));
     }
   }
 

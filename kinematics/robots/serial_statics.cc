@@ -67,8 +67,7 @@ std::vector<std::string> remarks(const Model& model) {
   lines.push_back("static torques with every joint in the middle of its limits:");
   for (size_t j = 0; j < moving.size(); ++j) {
     const Frame& frame = model.frames[moving[j]];
-    std::snprintf(text, sizeof text, "  %s %.2f %s", frame.name.c_str(),
-                  torques[j],
+    std::snprintf(text, sizeof text, "  %s %.2f %s", frame.name.c_str(), torques[j],
                   frame.motion == Motion::revolute ? "N m" : "N");
     lines.push_back(text);
   }

@@ -6,20 +6,14 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <sstream>
 
 #include "tests/support/domain.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
 
 constexpr std::chrono::minutes kLongest(2);
-
-std::string text_of(const std::filesystem::path& path) {
-  std::stringstream stream;
-  stream << std::ifstream(path).rdbuf();
-  return stream.str();
-}
 
 }  // namespace
 

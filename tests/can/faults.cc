@@ -60,9 +60,10 @@ TEST_F(CanFaultsTest, TakeASingleErrorForAnAccidentAndManyForTrouble) {
   EXPECT_EQ(faults.trouble(now + kSecond / 5), "can0: errors on the bus");
 }
 
-TEST_F(CanFaultsTest, SayNothingOfAStepOfTheWallClock) {
+TEST_F(CanFaultsTest, TellOfAStepOfTheWallClockForAWhile) {
   faults.note(CanFault::time_stepped, now);
-  EXPECT_THAT(faults.trouble(now), IsEmpty());
+  EXPECT_EQ(faults.trouble(now), "can0: the wall clock stepped");
+  EXPECT_THAT(faults.trouble(now + 2 * kSecond), IsEmpty());
   EXPECT_EQ(faults.count(CanFault::time_stepped), 1u);
 }
 

@@ -75,6 +75,8 @@ TEST_F(EdgeWatchTest, DoesNotTrustTheStampAfterAFullQueue) {
     full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
   add(full);
   EXPECT_TRUE(watch.suspicious()) << "to be looked at soon";
+  EXPECT_THAT(watch.trouble(now), HasSubstr("some are lost"));
+  EXPECT_EQ(watch.trouble(now + EdgeWatch::kTellFor), "");
 
   const Nanoseconds later = 2 * kSecond + kMillisecond;
   EXPECT_THAT(add({{later, true}, {later + 10, false}}),
@@ -115,6 +117,7 @@ TEST_F(EdgeWatchTest, CountsAGapInTheNumbers) {
               ElementsAre(Seen{2 * kSecond + 90, true, false}, Seen{2 * kSecond + 90, false, false},
                           Seen{3 * kSecond, true, true}));
   EXPECT_EQ(watch.lost(), 3u);
+  EXPECT_THAT(watch.trouble(now), HasSubstr("some are lost"));
   // Two are missing: the levels alternate, and yet the stamp is not that of the touch.
   EXPECT_THAT(add({{4 * kSecond, false, 10}}), ElementsAre(Seen{4 * kSecond, false, false}));
   EXPECT_EQ(watch.lost(), 5u);

@@ -5,22 +5,11 @@
 
 #include <cstdio>
 #include <fstream>
-#include <sstream>
+
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::stringstream stream;
-  stream << std::ifstream(path).rdbuf();
-  return stream.str();
-}
-
-void replace(std::string& text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  ASSERT_NE(at, std::string::npos) << what;
-  text.replace(at, what.size(), by);
-}
 
 CellOptions on_the_line(CellOptions options, const Wiring& robot) {
   options.live = true;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tests/hil/wiring.h"
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 
 namespace selfcal {
 

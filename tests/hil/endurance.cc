@@ -2,11 +2,8 @@
 // SELFCAL_MINUTES says, at a service in a process of its own: nothing is dropped, and what it
 // costs.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include "io/clock.h"
 #include "tests/hil/bus_cell.h"
@@ -14,20 +11,6 @@
 
 namespace selfcal {
 namespace {
-
-/// Processor time that a process has used (s).
-double used_by(pid_t pid) {
-  std::stringstream text;
-  text << std::ifstream("/proc/" + std::to_string(pid) + "/stat").rdbuf();
-  std::string skipped;
-  std::getline(text, skipped, ')');
-  double ticks = 0;
-  for (int field = 3; field <= 15; ++field) {
-    text >> skipped;
-    if (field >= 14) ticks += std::stod(skipped);  // utime, stime
-  }
-  return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
 
 /// The values of all diagnostic lines, as "selfcal: encoders dropped".
 std::map<std::string, std::string> values_of(const HealthReport& report) {
@@ -50,14 +33,14 @@ TEST_F(Endurance, DropsNothing) {
   cell.start_service();
   ASSERT_TRUE(cell.until([&] { return !cell.health.empty(); }));
   const Nanoseconds began = monotonic_now(), end = began + minutes * 60 * kSecond;
-  const double used = used_by(cell.service_pid());
+  const double used = cpu_seconds(cell.service_pid());
   while (monotonic_now() < end) {
     ASSERT_TRUE(cell.service_lives()) << cell.log();
     Wakeup().wait(kSecond);
     cell.listen();
     if (cell.health.size() > 10) cell.health.erase(cell.health.begin(), cell.health.end() - 1);
   }
-  const double share = (used_by(cell.service_pid()) - used) / seconds(monotonic_now() - began);
+  const double share = (cpu_seconds(cell.service_pid()) - used) / seconds(monotonic_now() - began);
   ASSERT_FALSE(cell.health.empty());
   const auto values = values_of(cell.health.back());
   for (const auto& [key, value] : values)

@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "io/clock.h"
 #include "tests/hil/bus_cell.h"
 #include "tests/hil/meddler.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -41,7 +41,7 @@ struct Fault {
   const char* name;
   std::function<void()> inject, heal;
   const char* state;       ///< "fault", or "collecting" where it goes on
-  const char* diagnostic;  ///< in one of its lines; empty where the counters alone tell
+  const char* diagnostic;  ///< in one of its lines
 };
 
 /// In a session that has been planned and goes on as long as there are faults to inject.
@@ -54,6 +54,7 @@ class Faults : public InTheMachine {
     CellOptions options = small_session();
     options.touches = 12;
     options.id = "faulty";
+    options.config += "touch: {repeats: 3, most_lost: 2}\n";
     cell = std::make_unique<BusCell>(options, wires, meddler->robot());
     slow_down();
     cell->start_bus_robot();
@@ -65,11 +66,8 @@ class Faults : public InTheMachine {
   /// A hundred samples a second are enough here, and leave the processor to the service.
   void slow_down() const {
     const auto path = cell->folder / "rx90_cell.scenario.yaml";
-    std::stringstream text;
-    text << std::ifstream(path).rdbuf();
-    std::string scenario = text.str();
-    const std::string was = "encoder_period: 0.002";
-    scenario.replace(scenario.find(was), was.size(), "encoder_period: 0.01");
+    std::string scenario = text_of(path);
+    replace(scenario, "encoder_period: 0.002", "encoder_period: 0.01");
     std::ofstream(path) << scenario;
   }
 
@@ -108,29 +106,37 @@ class Faults : public InTheMachine {
     std::fflush(stdout);
   }
 
+  bool noticed(const Fault& fault);
   void go_through(const Fault& fault);
+  void refuse_in_self_test(const Fault& fault);
 
   std::unique_ptr<Meddler> meddler;
   std::unique_ptr<BusCell> cell;
 };
 
-void Faults::go_through(const Fault& fault) {
-  SCOPED_TRACE(fault.name);
-  const std::vector<Nanoseconds> before = taken();
+/// Injects the fault and waits for what the service is to say of it.
+bool Faults::noticed(const Fault& fault) {
   cell->listen();
   cell->health.clear();
   fault.inject();
   std::string line;
-  const bool noticed = cell->until(
+  const bool said = cell->until(
       [&] {
         for (const HealthReport& report : cell->health)
           for (const HealthMessage& each : report.lines)
             if (each.message.find(fault.diagnostic) != std::string::npos) line = each.message;
         return !line.empty() && cell->in_state(fault.state);
       },
-      60 * kSecond);
-  EXPECT_TRUE(noticed) << text_of_health() << cell->statuses.back().why;
+      180 * kSecond);
+  EXPECT_TRUE(said) << text_of_health() << cell->statuses.back().why;
   show(fault, line);
+  return said;
+}
+
+void Faults::go_through(const Fault& fault) {
+  SCOPED_TRACE(fault.name);
+  const std::vector<Nanoseconds> before = taken();
+  ASSERT_TRUE(noticed(fault));
   fault.heal();
   // A service that goes on may still come to a fault of what the healing leaves behind.
   if (std::string(fault.state) == "fault")
@@ -142,6 +148,16 @@ void Faults::go_through(const Fault& fault) {
   EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin())) << "a touch is lost";
 }
 
+/// A fault that is there when the service starts.
+void Faults::refuse_in_self_test(const Fault& fault) {
+  SCOPED_TRACE(fault.name);
+  cell->kill_service();
+  cell->start_service();
+  ASSERT_TRUE(noticed(fault));
+  fault.heal();
+  ASSERT_TRUE(cell->until([&] { return cell->in_state("idle"); }, 120 * kSecond));
+}
+
 TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
   const auto nothing = [](const can_frame&, const PutFrame&) {};
   const auto through = [](const can_frame& frame, const PutFrame& put) { put(frame, 0); };
@@ -151,6 +167,14 @@ TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
     meddler->frames([=](const can_frame& frame, const PutFrame& put) {
       (frame.can_id == id ? of_it : FrameRule(through))(frame, put);
     });
+  };
+  // 140 changes a second until the service has had enough of it.
+  const auto chatter = [&] {
+    for (int i = 0; i < 4000 && !cell->in_state("fault"); ++i) {
+      meddler->drive(i % 2 == 0);
+      pause(7 * kMillisecond);
+      if (i % 30 == 0) cell->listen();
+    }
   };
   const std::vector<Fault> faults = {
       {"interface down and up", [&] { command("ip link set vcan0 down"); },
@@ -196,6 +220,15 @@ TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
          });
        },
        honest, "collecting", "a counter jumped"},
+      {"frames twice",
+       [&] {
+         rule(kSecondJoint,
+              [n = std::make_shared<int>(0)](const can_frame& frame, const PutFrame& put) {
+                put(frame, 0);
+                if (++*n % 10 == 0) put(frame, 0);
+              });
+       },
+       honest, "collecting", "frames come twice"},
       {"a second sender",
        [&] {
          rule(kSecondJoint, [](const can_frame& frame, const PutFrame& put) {
@@ -217,27 +250,22 @@ TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
          ::kill(cell->service_pid(), SIGCONT);
        },
        honest, "collecting", "frames were lost in the queue"},
-      {"trigger chatters",
-       [&] {
-         for (int i = 0; i < 200; ++i) {
-           meddler->drive(i % 2 == 0);
-           pause(7 * kMillisecond);
-         }
-       },
-       honest, "fault", "chatters"},
+      {"trigger chatters", chatter, honest, "fault", "chatters"},
       {"trigger stuck closed", [&] { meddler->level([](bool) { return true; }); }, honest, "fault",
-       "the trigger"},
-      {"trigger stuck open", [&] { meddler->level([](bool) { return false; }); }, honest,
-       "collecting", ""},
+       "stuck"},
+      {"trigger stuck open", [&] { meddler->level([](bool) { return false; }); }, honest, "fault",
+       "touches in a row gave nothing"},
       {"trigger inverted", [&] { meddler->level([](bool closed) { return !closed; }); }, honest,
-       "fault", "the trigger"},
+       "fault", "stuck"},
       {"more edges than 16",
        [&] {
          for (int i = 0; i < 500; ++i) meddler->drive(i % 2 == 0);
        },
-       honest, "collecting", ""},
-      {"wall clock + 1 h", [&] { step_wall_clock(3600 * kSecond); }, honest, "collecting", ""},
-      {"wall clock - 1 h", [&] { step_wall_clock(-3600 * kSecond); }, honest, "collecting", ""},
+       honest, "collecting", "more edges came at once"},
+      {"wall clock + 1 h", [&] { step_wall_clock(3600 * kSecond); }, honest, "collecting",
+       "the wall clock stepped"},
+      {"wall clock - 1 h", [&] { step_wall_clock(-3600 * kSecond); }, honest, "collecting",
+       "the wall clock stepped"},
   };
   for (const Fault& fault : faults) {
     go_through(fault);
@@ -245,6 +273,19 @@ TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
   }
   cell->listen();
   std::printf("%s", text_of_health().c_str());
+
+  EXPECT_TRUE(cell->command("abort").accepted);
+  const std::vector<Fault> at_start = {
+      {"at start: closed", [&] { meddler->level([](bool) { return true; }); }, honest, "fault",
+       "closed while the robot stands"},
+      {"at start: inverted", [&] { meddler->level([](bool closed) { return !closed; }); }, honest,
+       "fault", "inverted"},
+      {"at start: chatters", chatter, honest, "fault", "chatters"},
+  };
+  for (const Fault& fault : at_start) {
+    refuse_in_self_test(fault);
+    if (HasFatalFailure()) return;
+  }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "io/clock.h"
 #include "io/gpio/trigger.h"
 #include "tests/hil/spinning_arm.h"
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -87,8 +87,7 @@ Pairs Pairing::pair(int touches, int step_every) {
       if (!around && clock.now() - edge.time < kSecond / 5) break;
       waiting.pop_front();
       ++made;
-      // As the service has it (app/service/service_session.cc): too far apart is no reading.
-      if (!around || !edge.timed || around->second.time - around->first.time > kSecond / 5)
+      if (!around || !edge.timed)
         ++pairs.unpaired;
       else
         pairs.off_us.push_back(off_us(arm, *encoders, edge, *around));

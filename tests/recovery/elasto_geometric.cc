@@ -1,12 +1,12 @@
 // Elasto-geometrical calibration as Kamali et al. did it: 50 of 875 rows, chosen by DETMAX on O1,
 // identify the geometry alone and with the joints' stiffness; the other 825 judge (Table III).
 //
-// Of the paper's remaining 0.264 mm (mean square 0.088 mm^2) the noise here explains little: what
-// measuring adds (35 um of tracker, 1 N and 0.1 N m of force sensor, 10 urad of repeatability) is 6
-// % of it, with small things that the model lacks (springs 20 % stiffer under load, a tenth as much
-// compliance across the axes, masses off by a tenth) 13 %. One arc minute of play at every joint, a
-// gear's usual figure, would make it 73 %: the paper models neither play nor temperature, and
-// measured neither.
+// Of the paper's remaining 0.264 mm (mean square 0.088 mm^2) the noise here explains little. What
+// measuring adds (35 um of tracker, 1 N and 0.1 N m of force sensor, 10 urad of repeatability) is a
+// share of 0.06; with small things that the model lacks (springs 20 % stiffer under load, a tenth
+// as much compliance across the axes, masses off by a tenth) it is 0.14. One arc minute of play at
+// every joint, a gear's usual figure, would make it 0.72: the paper models neither play nor
+// temperature, and measured neither.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "constraints/equations.h"
 #include "constraints/identifiability.h"
 #include "tests/recovery/kamali.h"
+#include "tests/recovery/kamali_plan.h"
 
 namespace selfcal::recovery {
 namespace {
@@ -40,7 +41,7 @@ struct Planning {
   Eigen::MatrixXd R;
   DenseEquations dense;
 
-  Planning() {
+  explicit Planning(unsigned long long seed = 1600) : kamali(seed) {
     data.rows.check.assign(data.rows.check.size(), 0);
     const Equations equations(kamali.robot(), data, Use::fit);
     State state{nominal_values(kamali.robot()), {}, {}};
@@ -92,9 +93,7 @@ Row nominal(const Kamali& kamali, const DataSet& data) {
     if (parameters[i].part == Part::base) xi[static_cast<Eigen::Index>(i)] = kamali.truth()[i];
   Eigen::VectorXd error(data.rows.rows());
   for (int row = 0; row < data.rows.rows(); ++row) {
-    ConfigurationBlock block;
-    block.q = data.rows.q.row(row).replicate(kLanes, 1).array();
-    block.count = 1;
+    ConfigurationBlock block = block_of(data.rows.q.row(row).transpose());
     block.conditions = conditions(data.rows, {row});
     Locations X;
     kamali.robot().locate(block, xi, Body::endpoint, X, nullptr);
@@ -117,7 +116,9 @@ Calibrated calibrate(const Kamali& kamali, const Disturbance& disturbance,
   options.fix = kamali.others();
   Calibrated all;
   all.nominal = nominal(kamali, data);
-  all.geometry = in_mm(identify(kamali.robot(), data, options).residual.check);
+  const Solution geometry = identify(kamali.robot(), data, options);
+  all.geometry = in_mm(geometry.residual.check);
+  EXPECT_EQ(geometry.values.tail<6>(), Eigen::VectorXd::Zero(6));  // effects are fixed until freed
   options.free = {"*.c"};
   all.solution = identify(kamali.robot(), data, options);
   all.elastic = in_mm(all.solution.residual.check);
@@ -180,13 +181,14 @@ TEST(ElastoGeometric, LeavesWhatThePapersTableThreeLeaves) {
   print("and stiffness", all.elastic);
   print("   the paper's", {0.264, 0.137, 0.960});
   EXPECT_EQ(count(all.solution, Status::identified), 32);
-  // Nominal and geometry follow from Table II, the poses and the loads, of which the paper gives
-  // the last two in outline: a quarter more or less.
-  EXPECT_NEAR(all.nominal.mean, 2.486, 0.25 * 2.486);
-  EXPECT_NEAR(all.nominal.max, 5.954, 0.25 * 5.954);
-  EXPECT_NEAR(all.geometry.mean, 0.943, 0.25 * 0.943);
-  EXPECT_NEAR(all.geometry.std, 0.479, 0.25 * 0.479);
-  EXPECT_NEAR(all.geometry.max, 2.571, 0.25 * 2.571);
+  // Nominal and geometry follow from Table II, the poses and the loads, and of the last two the
+  // paper gives an outline. Twelve other draws of them gave 2.03 to 2.19 and 4.1 to 4.5 mm, 1.15
+  // to 1.18 and 2.6 to 3.2 mm; the paper lies within a third of these.
+  EXPECT_NEAR(all.nominal.mean, 2.486, 0.3 * 2.486);
+  EXPECT_NEAR(all.nominal.max, 5.954, 0.35 * 5.954);
+  EXPECT_NEAR(all.geometry.mean, 0.943, 0.3 * 0.943);
+  EXPECT_NEAR(all.geometry.std, 0.479, 0.2 * 0.479);
+  EXPECT_NEAR(all.geometry.max, 2.571, 0.3 * 2.571);
   // What stiffness leaves is disturbance alone; ours is smaller than the paper's (see above).
   EXPECT_LT(all.elastic.max, 0.960);
   EXPECT_LT(all.elastic.mean, 0.264);
@@ -219,7 +221,7 @@ TEST(ElastoGeometric, SaysWhatIsLeftOfEachCause) {
               measuring, realistic, play);
   EXPECT_NEAR(measuring, 0.05, 0.02);
   EXPECT_NEAR(realistic, 0.14, 0.05);
-  EXPECT_NEAR(play, 0.75, 0.15);
+  EXPECT_NEAR(play, 0.72, 0.15);
 }
 
 TEST(ElastoGeometric, FindsTheStiffnessOfTableTwoWithinItsSigma) {

@@ -75,7 +75,7 @@ void replace(Node& map, std::string_view key, Node value) {
 
 }  // namespace
 
-Kamali::Kamali() {
+Kamali::Kamali(unsigned long long seed) {
   auto loaded =
       load_robot(std::string(SELFCAL_SOURCE_DIR) + "/tests/recovery/irb1600_kamali.robot.yaml");
   if (!loaded) throw std::runtime_error(loaded.error().what);
@@ -88,7 +88,7 @@ Kamali::Kamali() {
     truth_[i] += each.error * each.unit;
     candidates_[i] = 1;
   }
-  std::mt19937_64 random(1600);
+  std::mt19937_64 random(seed);
   q_ = poses_in_the_cube(*robot_, random);
   wrench_ = random_wrenches(q_.rows() * kWrenches, random);
 }
@@ -123,9 +123,28 @@ std::unique_ptr<Robot> Kamali::machine(const Disturbance& disturbance) const {
   return robot;
 }
 
+Eigen::VectorXd Kamali::joint_angles(const Robot& real, Eigen::Index row,
+                                     const Disturbance& disturbance,
+                                     std::mt19937_64& random) const {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd q = q_.row(row / kWrenches).transpose();
+  const std::vector<Eigen::Isometry3d> links = real.link_poses(q);
+  const Eigen::Matrix3d R = links.back().linear();
+  const Load load{R * wrench_.row(row).head<3>().transpose(),
+                  R * wrench_.row(row).tail<3>().transpose()};
+  for (int j = 0; j < 6; ++j) {
+    const double torque = joint_torque(real.mechanics(), links, load, j);
+    const double c = truth_[find_parameter(*robot_, "j" + std::to_string(j + 1) + ".c")];
+    const double largest = j < 3 ? 400 : 30;  // N m, about what the shoulder and the wrist carry
+    q[j] += disturbance.repeat * normal(random) +
+            disturbance.play / 2 * (normal(random) > 0 ? 1 : -1) -
+            disturbance.stiffening * c * torque * std::abs(torque) / largest;
+  }
+  return q;
+}
+
 DataSet Kamali::measure(const Disturbance& disturbance, unsigned long long seed) const {
   const auto real = machine(disturbance);
-  const Eigen::VectorXd xi = values(*real);
   DataSet data;
   Problems problems;
   Node set = Node::map();
@@ -144,22 +163,9 @@ DataSet Kamali::measure(const Disturbance& disturbance, unsigned long long seed)
   Locations X;
   for (Eigen::Index i = 0; i < n; ++i) {
     rows.q.row(i) = q_.row(i / kWrenches);
-    Eigen::VectorXd q = rows.q.row(i).transpose();
-    const auto links = real->link_poses(q);
-    Load load;
-    load.force = links.back().linear() * wrench_.row(i).head<3>().transpose();
-    load.moment = links.back().linear() * wrench_.row(i).tail<3>().transpose();
-    for (int j = 0; j < 6; ++j) {
-      const double torque = joint_torque(real->mechanics(), links, load, j);
-      const double c = truth_[find_parameter(*robot_, "j" + std::to_string(j + 1) + ".c")];
-      const double largest = j < 3 ? 400 : 30;  // N m, about what the shoulder and the wrist carry
-      q[j] += disturbance.repeat * normal(random) +
-              disturbance.play / 2 * (normal(random) > 0 ? 1 : -1) -
-              disturbance.stiffening * c * torque * std::abs(torque) / largest;
-    }
-    ConfigurationBlock block = block_of(q);
+    ConfigurationBlock block = block_of(joint_angles(*real, i, disturbance, random));
     block.conditions.wrench = wrench_.row(i);
-    real->locate(block, xi, Body::endpoint, X, nullptr);
+    real->locate(block, values(*real), Body::endpoint, X, nullptr);
     for (int c = 0; c < 3; ++c) {
       rows.position(i, c) = X.p(0)[c] + disturbance.tracker * normal(random);
       rows.wrench(i, c) += disturbance.force * normal(random);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct Disturbance {
 
 class Kamali {
  public:
-  Kamali();
+  /// `seed` draws the poses and the wrenches.
+  explicit Kamali(unsigned long long seed = 1600);
 
   const Robot& robot() const { return *robot_; }
   /// True values of every parameter.
@@ -40,6 +42,9 @@ class Kamali {
 
  private:
   std::unique_ptr<Robot> machine(const Disturbance& disturbance) const;
+  /// Where the joints of row `row` really stand, as far as the real robot's model does not know.
+  Eigen::VectorXd joint_angles(const Robot& real, Eigen::Index row, const Disturbance& disturbance,
+                               std::mt19937_64& random) const;
 
   std::unique_ptr<Robot> robot_;
   Eigen::VectorXd truth_;

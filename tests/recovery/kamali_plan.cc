@@ -24,13 +24,6 @@ Eigen::Matrix3d random_rotation(std::mt19937_64& random, double most) {
   return exp_rotation(most * axis);
 }
 
-ConfigurationBlock block_of(const Eigen::VectorXd& q) {
-  ConfigurationBlock block;
-  block.q = q.transpose().replicate(kLanes, 1).array();
-  block.count = 1;
-  return block;
-}
-
 /// Newton steps from a random start within the limits; empty when they lead elsewhere.
 Eigen::VectorXd inverse(const Robot& robot, const Eigen::Matrix3d& R, const Eigen::Vector3d& p,
                         std::mt19937_64& random) {
@@ -65,12 +58,14 @@ Eigen::MatrixXd poses_in_the_cube(const Robot& robot, std::mt19937_64& random) {
   const Eigen::Isometry3d base =
       robot.link_poses(Eigen::VectorXd::Zero(6))[3];  // w4: the robot's base in the tracker's frame
   const Eigen::Vector3d centre(0.95, 0, 0.75);
-  Eigen::Matrix3d ahead;  // the tool's z along x and 45 degrees down
-  ahead = Eigen::AngleAxisd(135 * kDegree, Eigen::Vector3d::UnitY());
+  // The tool's z along x and 45 degrees down.
+  const Eigen::Matrix3d ahead =
+      Eigen::AngleAxisd(135 * kDegree, Eigen::Vector3d::UnitY()).toRotationMatrix();
   Eigen::MatrixXd q(kGrid * kGrid * kGrid, 6);
   for (Eigen::Index i = 0; i < q.rows();) {
-    const Eigen::Vector3d cell(static_cast<double>(i % 5), static_cast<double>(i / 5 % 5),
-                               static_cast<double>(i / 25));
+    const Eigen::Vector3d cell(static_cast<double>(i % kGrid),
+                               static_cast<double>(i / kGrid % kGrid),
+                               static_cast<double>(i / (kGrid * kGrid)));
     const Eigen::Vector3d p = centre + 0.125 * (cell - Eigen::Vector3d::Constant(2));
     const Eigen::Matrix3d R = ahead * random_rotation(random, 1);
     const Eigen::VectorXd found = inverse(robot, base.linear() * R, base * p, random);

@@ -78,6 +78,19 @@ TEST(SampleHistory, FindsTheTwoSamplesAroundAMoment) {
   EXPECT_FALSE(history.around(51)) << "the one after has not come";
 }
 
+TEST(SampleHistory, HasNothingAcrossAGap) {
+  constexpr Nanoseconds kPeriod = 2 * kMillisecond;
+  SampleHistory history;
+  for (int i = 0; i < 10; ++i) history.add(sample_of(i * kPeriod, {i}));
+  history.add(sample_of(12 * kPeriod, {12}));  // two samples were lost
+  history.add(sample_of(13 * kPeriod, {13}));
+  history.add(sample_of(17 * kPeriod, {17}));  // three
+  EXPECT_TRUE(history.around(10 * kPeriod));
+  EXPECT_TRUE(history.around(12 * kPeriod + 1));
+  EXPECT_FALSE(history.around(14 * kPeriod));
+  EXPECT_TRUE(history.around(17 * kPeriod)) << "the sample of the very moment";
+}
+
 TEST(SampleHistory, DropsAndCountsSamplesThatDoNotFollowInTime) {
   SampleHistory history;
   history.add(sample_of(10, {1}));

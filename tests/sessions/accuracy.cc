@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/service/session.h"
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 #include "tests/support/end_position.h"
 
 namespace selfcal {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "io/clock.h"
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 
 namespace selfcal {
 namespace {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -138,9 +138,7 @@ TEST(Manners, ChecksQuicklyAndCalibratesOnlyWhenTheActiveModelFails) {
   // The robot has had a collision: a joint's zero is off by 1 mrad.
   cell.kill_service();
   const auto path = cell.folder / "rx90_cell.scenario.yaml";
-  std::stringstream text;
-  text << std::ifstream(path).rdbuf();
-  std::string changed = text.str();
+  std::string changed = text_of(path);
   const double truth =
       cell.machine()->truth().xi[find_parameter(cell.machine()->robot(), "theta3")];
   changed.replace(changed.find("errors:"), 7,

@@ -1,30 +1,14 @@
 // What the service costs the robot's computer.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <fstream>
 
 #include <algorithm>
-#include <sstream>
 
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 
 namespace selfcal {
 namespace {
-
-/// CPU time so far of a process, or of its first thread alone (s).
-double cpu_seconds(pid_t pid, bool first_thread) {
-  const std::string id = std::to_string(pid);
-  std::ifstream file("/proc/" + id + (first_thread ? "/task/" + id : "") + "/stat");
-  std::string text;
-  std::getline(file, text);
-  std::istringstream fields(text.substr(text.rfind(')') + 2));
-  std::string skipped;
-  for (int i = 0; i < 11; ++i) fields >> skipped;
-  double user = 0, system = 0;
-  fields >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
 
 /// A line of /proc/PID/status, in MB.
 double megabytes(pid_t pid, const std::string& key) {

@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 namespace selfcal {
@@ -46,6 +48,19 @@ bool Running::alive() {
 
 Running::~Running() {
   if (pid_ > 0) end(SIGKILL);
+}
+
+double cpu_seconds(pid_t pid, bool first_thread) {
+  const std::string id = std::to_string(pid);
+  std::ifstream file("/proc/" + id + (first_thread ? "/task/" + id : "") + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 }  // namespace selfcal

@@ -29,4 +29,7 @@ class Running {
   pid_t pid_ = 0;
 };
 
+/// Processor time so far of a process, or of its first thread alone (s).
+double cpu_seconds(pid_t pid, bool first_thread = false);
+
 }  // namespace selfcal

@@ -1,22 +1,16 @@
-#include "tests/sessions/cell.h"
+#include "tests/support/cell.h"
 
 #include <signal.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 
 #include "io/clock.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::stringstream stream;
-  stream << std::ifstream(path).rdbuf();
-  return stream.str();
-}
 
 /// Replaces the rest of the line after `key` at the beginning of a line.
 void set_line(std::string& text, const std::string& key, const std::string& value) {
