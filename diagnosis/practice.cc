@@ -82,6 +82,7 @@ class Simulator {
       std::vector<int> known_size;
       for (int s = 0; s < bench_.structures(); ++s)
         if (bench_.structure(s).kind > 0 && bench_.structure(s).kappa > 1) known_size.push_back(s);
+      if (known_size.empty()) return normal(rows_.y.size());
       const Structure& structure = bench_.structure(known_size[random_() % known_size.size()]);
       return structure.root * normal(structure.root.rows());
     }
@@ -90,6 +91,7 @@ class Simulator {
     truth = "none";
     if (kind < kUnknown + kNone) return y;
     const int c = drawn_cause();
+    if (c < 0) return y;
     truth = view_.candidates().list[c].effect;
     const Block& block = bench_.block(c);
     const double r = kVisible[random_() % kVisible.size()] * std::sqrt(noise.noise);
@@ -98,7 +100,8 @@ class Simulator {
     return y;
   }
 
-  /// A family, then a place and a shape of it, each as likely as the others.
+  /// A family, then a place and a shape of it, each as likely as the others; -1 when calibration
+  /// absorbs all of them.
   int drawn_cause() {
     std::vector<std::string> families;
     std::vector<int> seen;
@@ -110,6 +113,7 @@ class Simulator {
     }
     std::sort(families.begin(), families.end());
     families.erase(std::unique(families.begin(), families.end()), families.end());
+    if (families.empty()) return -1;
     const std::string family = families[random_() % families.size()];
     std::erase_if(seen, [&](int c) { return view_.candidates().list[c].effect != family; });
     return seen[random_() % seen.size()];

@@ -40,7 +40,7 @@ Eigen::VectorXd Workbench::beyond_geometry(const Eigen::VectorXd& x,
 void Workbench::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull) {
   const Eigen::VectorXd left = beyond_geometry(y, pull);
   g_ = C_.transpose() * left.head(equations_);
-  yy_ = left.head(equations_).squaredNorm();
+  yy_ = left.squaredNorm();  // the strain on the priors too: a cause relieves both
 }
 
 namespace {
@@ -125,7 +125,7 @@ Workbench::Estimate Workbench::estimate(std::span<const Term> terms) const {
   const Eigen::VectorXd g = D.cwiseProduct(g_(columns));
   estimate.mean = D.cwiseProduct(inverse * g);
   estimate.covariance = D.asDiagonal() * inverse * D.asDiagonal();
-  estimate.variance = (yy_ - g.dot(inverse * g)) / nu_;
+  estimate.variance = std::max(yy_ - g.dot(inverse * g), 1e-12) / nu_;
   return estimate;
 }
 

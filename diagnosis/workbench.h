@@ -6,9 +6,8 @@
 // v ~ N(0, s^2 V) the integral over a, v and s (prior 1/s) is
 //   log p(y | S) = const(K) - 1/2 log|I + V G| - nu/2 log Q,   Q = y'My - g'(V^-1 + G)^-1 g
 // with M the projection beyond the whitened geometry, G = C'MC, g = C'My. So G and g are made
-// once for each K, and any set costs a Cholesky factor of its own size. In y'My only the rows
-// count: how far the geometry strains its priors does not scale with the noise and is much the same
-// for all sets.
+// once for each K, and any set costs a Cholesky factor of its own size. nu counts what the rows
+// alone determine; the noise of each K is taken to be right already (Bench::agree).
 #pragma once
 
 #include <Eigen/Dense>

@@ -83,6 +83,21 @@ TEST(Workbench, GivenSomeCausesWeighsOthersAsTogether) {
   EXPECT_NEAR(bench.given(first).log_evidence(second), bench.log_evidence(both), kRounding);
 }
 
+TEST(Workbench, NeverExplainsMoreThanThereIs) {
+  // A strong cause that pulls the geometry far from its priors: what it explains is taken from the
+  // rows and from the strain on the priors.
+  Case one;
+  one.rows.weight.setConstant(3);
+  one.rows.pull.setConstant(20);
+  one.rows.y = 50 * one.rows.C.col(0) + 40 * one.rows.A.col(1);
+  one.first.unit = Eigen::Vector2d(100, 100);
+  const Workbench bench(one.rows, one.structure);
+  const std::vector<Workbench::Term> first{{&one.first, 16}};
+  EXPECT_GT(bench.estimate(first).variance, 0);
+  EXPECT_GE(bench.given(first).total(), 0);
+  EXPECT_LT(bench.given(first).total(), bench.total());
+}
+
 TEST(Workbench, EstimatesACauseThatIsThereWithinItsSigma) {
   Case one;
   std::mt19937_64 random(7);
