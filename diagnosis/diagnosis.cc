@@ -20,7 +20,8 @@ namespace {
 constexpr int kPasses = 4;
 constexpr size_t kMostEffects = 60;
 constexpr double kMostGrown = 2100;  ///< equations
-constexpr double kAbsorbed = 0.02;   ///< share that survives below which nothing can be said
+constexpr double kSurelyUnknown = 0.7;
+constexpr double kAbsorbed = 0.02;  ///< share that survives below which nothing can be said
 
 /// All columns of a hypothesis and the prior sigma of each.
 std::pair<std::vector<int>, Eigen::VectorXd> columns_of(const Bench& bench, const Hypothesis& h) {
@@ -64,10 +65,7 @@ class Diagnostician {
     result_.candidates = cause_results(view_, *bench_, posterior_);
     tell("asking noise the same question", 0.75);
     result_.p_value = resampled_p(view_, *bench_, data_.rows, options_.resamples, options_.seed);
-    result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
-    // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
-    if (result_.verdict.effect != "unknown" && result_.p_value > options_.name_below_p)
-      result_.verdict = {.effect = "none", .probability = std::max(posterior_.none, 0.5)};
+    decide();
     tell("practising on simulated sessions", 0.8);
     result_.practice = practise(view_, *bench_, options_);
     result_.verdict.probability = calibrated(result_.verdict.probability, result_.practice);
@@ -82,6 +80,18 @@ class Diagnostician {
   }
 
  private:
+  void decide() {
+    result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
+    if (result_.verdict.effect == "unknown") return;
+    // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
+    const bool noise_does_as_well = result_.p_value > options_.name_below_p;
+    if (result_.verdict.effect != "none" && !noise_does_as_well) return;
+    if (posterior_.unknown > kSurelyUnknown)
+      result_.verdict = {.effect = "unknown", .probability = posterior_.unknown};
+    else
+      result_.verdict = {.effect = "none", .probability = std::max(posterior_.none, 0.5)};
+  }
+
   /// Noise of a new configuration over that of an immediate repeat.
   double shared_noise() const {
     for (const Hypothesis& h : posterior_.hypotheses)

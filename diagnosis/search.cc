@@ -147,7 +147,9 @@ double Bench::evidence(int candidate) const {
 double Bench::best_single() const {
   size_t home = 0;
   for (size_t s = 1; s < structures_.size(); ++s)
-    if (workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({})) home = s;
+    if (structures_[s].kind == 0 &&
+        workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({}))
+      home = s;
   double best = -INFINITY;
   for (int c = 0; c < static_cast<int>(blocks_.size()); ++c)
     if (seen_[c]) best = std::max(best, weigh(workbenches_[home], c).log_sum);

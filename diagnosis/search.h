@@ -52,8 +52,8 @@ class Bench {
   /// Exchanges y in every workbench.
   void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
   Posterior search() const;
-  /// Largest log evidence of one candidate over that of none, in the structure that explains the
-  /// rows best without any: the statistic of the null distribution.
+  /// Largest log evidence of one candidate over that of none, in the noise that explains the rows
+  /// best without any: the statistic of the null distribution.
   double best_single() const;
 
   const Workbench& workbench(int structure) const { return workbenches_[structure]; }
