@@ -78,6 +78,7 @@ class Bench {
   static const std::vector<double>& sizes();
 
  private:
+  friend class Search;
   struct Single {
     double log_sum = 0, log_best = 0, size = 1;
   };

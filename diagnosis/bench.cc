@@ -1,0 +1,176 @@
+// Candidates as blocks of columns with a common scale, and what each of them is worth.
+#include "diagnosis/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace selfcal {
+namespace {
+
+constexpr double kAbsorbed = 1e-3;  ///< share that survives below which a candidate says nothing
+constexpr int kAgreements = 3;
+constexpr double kWorthwhile = 5;  ///< log evidence that a cause must bring to be reckoned with
+constexpr double kSlack = 0.25;    ///< of slack columns, over the main ones
+
+double log_add(double a, double b) {
+  const double top = std::max(a, b);
+  return std::isinf(top) ? top : top + std::log(std::exp(a - top) + std::exp(b - top));
+}
+
+double middle(const EffectParameter& p) { return std::sqrt(p.usual_least * p.usual_most); }
+
+}  // namespace
+
+const std::vector<double>& Bench::sizes() {
+  static const std::vector<double> list{0.25, 0.5, 1, 2, 4, 8, 16};
+  return list;
+}
+
+Bench::Bench(const Whitened& rows, const std::vector<Structure>& structures, const Candidates& all,
+             const std::vector<EffectParameter>& parameters, const SearchRule& rule)
+    : all_(all), rule_(rule), structures_(structures) {
+  for (const Structure& structure : structures_) workbenches_.emplace_back(rows, structure);
+  const Eigen::MatrixXd& G = workbenches_.front().gram();
+  const auto n = static_cast<double>(rows.C.rows());
+  for (const Candidate& candidate : all.list) {
+    Block block;
+    std::vector<double> unit;
+    double visible = 0, whole = 0, largest = 0;
+    for (const int k : candidate.main) {
+      const double u = middle(parameters[static_cast<size_t>(k)]);
+      visible += u * u * G(k, k);
+      whole += u * u * rows.C.col(k).squaredNorm();
+      largest = std::max(largest, u / parameters[static_cast<size_t>(k)].usual_most);
+    }
+    survival_.push_back(whole > 0 ? std::sqrt(std::max(visible, 0.0) / whole) : 0);
+    seen_.push_back(survival_.back() > kAbsorbed);
+    const double scale = seen_.back() ? std::sqrt(n / visible) : 0;
+    amplitude_.push_back(scale * largest);
+    for (const int k : candidate.main) {
+      block.columns.push_back(k);
+      unit.push_back(scale * middle(parameters[static_cast<size_t>(k)]));
+    }
+    double slack = 0;
+    for (const int k : candidate.slack) slack += rows.C.col(k).squaredNorm();
+    for (const int k : candidate.slack) {
+      block.columns.push_back(k);
+      unit.push_back(slack > 0 ? kSlack * scale * std::sqrt(whole / slack) : 0);
+    }
+    block.unit =
+        Eigen::Map<const Eigen::VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));
+    blocks_.push_back(std::move(block));
+  }
+  for (int s = 0; s < static_cast<int>(structures_.size()); ++s) agree(s, rows);
+}
+
+/// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
+/// from what its best explanation leaves.
+void Bench::agree(int s, const Whitened& rows) {
+  for (int i = 0; i < kAgreements; ++i) {
+    double best = workbenches_[s].log_evidence({});
+    double variance = workbenches_[s].total() / workbenches_[s].freedom();
+    for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
+      if (!seen_[c]) continue;
+      const Single single = weigh(workbenches_[s], c);
+      if (single.log_sum - kWorthwhile < best) continue;
+      best = single.log_sum - kWorthwhile;
+      const Workbench::Term term{&blocks_[c], single.size};
+      variance = workbenches_[s].estimate({&term, 1}).variance;
+    }
+    if (std::abs(std::log(variance)) < 0.1) return;
+    structures_[s].root *= std::sqrt(variance);
+    structures_[s].noise *= variance;
+    workbenches_[s] = Workbench(rows, structures_[s]);
+  }
+}
+
+void Bench::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull) {
+  for (Workbench& workbench : workbenches_) workbench.look_at(y, pull);
+}
+
+double Bench::plausibility(int candidate, double size) const {
+  // Three times the usual largest is as good as any; ten times that costs two.
+  const double beyond = std::log10(size * amplitude_[candidate] / 3);
+  return beyond > 0 ? -2 * beyond * beyond : 0;
+}
+
+double Bench::log_prior(const std::vector<int>& candidates, int structure) const {
+  double sum = 0;
+  std::set<std::string> families;
+  std::set<Cause> causes;
+  for (const int c : candidates) {
+    const Candidate& each = all_.list[static_cast<size_t>(c)];
+    sum += each.log_prior;
+    if (!causes.insert({each.effect, each.at}).second)
+      sum += std::log(rule_.same_family);
+    else if (!families.insert(each.effect).second)
+      sum += std::log(rule_.same_family);
+    else
+      sum += std::log(rule_.family_odds) + (families.size() > 1 ? std::log(rule_.another) : 0);
+  }
+  sum += std::log(structures_[structure].probability);
+  if (structures_[structure].kind == 0) return sum;
+  return sum + std::log(rule_.unknown_odds) + (families.empty() ? 0 : std::log(rule_.another));
+}
+
+Bench::Single Bench::weigh(const Workbench& workbench, int candidate) const {
+  Single single{-INFINITY, -INFINITY, 1};
+  for (const double size : sizes()) {
+    const Workbench::Term term{&blocks_[candidate], size};
+    const double log = workbench.log_evidence({&term, 1}) + plausibility(candidate, size) -
+                       std::log(static_cast<double>(sizes().size()));
+    single.log_sum = log_add(single.log_sum, log);
+    if (log > single.log_best) {
+      single.log_best = log;
+      single.size = size;
+    }
+  }
+  return single;
+}
+
+double Bench::held(const Hypothesis& h) const {
+  // The sizes of candidates at hand stay at their best: one of the grid, about two of which matter.
+  double sum = 0;
+  for (size_t i = 0; i < h.candidates.size(); ++i)
+    sum += plausibility(h.candidates[i], h.sizes[i]) -
+           std::log(static_cast<double>(sizes().size()) / 2);
+  return sum;
+}
+
+double Bench::evidence(int candidate) const {
+  return seen_[candidate] ? weigh(workbenches_.front(), candidate).log_sum -
+                                workbenches_.front().log_evidence({})
+                          : 0;
+}
+
+double Bench::best_single() const {
+  size_t home = 0;
+  for (size_t s = 1; s < structures_.size(); ++s)
+    if (structures_[s].kind == 0 &&
+        workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({}))
+      home = s;
+  double best = -INFINITY;
+  for (int c = 0; c < static_cast<int>(blocks_.size()); ++c)
+    if (seen_[c]) best = std::max(best, weigh(workbenches_[home], c).log_sum);
+  return best - workbenches_[home].log_evidence({});
+}
+
+std::vector<Workbench::Term> Bench::terms(const Hypothesis& hypothesis) const {
+  std::vector<Workbench::Term> list;
+  for (size_t i = 0; i < hypothesis.candidates.size(); ++i)
+    list.push_back({&blocks_[hypothesis.candidates[i]], hypothesis.sizes[i]});
+  return list;
+}
+
+double Bench::detectable(int candidate, double log_evidence) const {
+  // A cause of visible size r adds about n r^2 / 2 to the log evidence.
+  const double r = std::sqrt(2 * log_evidence / workbenches_.front().freedom());
+  return r *
+         blocks_[candidate]
+             .unit
+             .head(static_cast<Eigen::Index>(all_.list[static_cast<size_t>(candidate)].main.size()))
+             .maxCoeff();
+}
+
+}  // namespace selfcal
