@@ -1,21 +1,12 @@
 // One function for each part of diagnosis.json, in the order of the file.
 #include "app/diagnosis_json.h"
 
-#include <cmath>
+#include "io/json_parts.h"
 
 namespace selfcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
-template <class List, class Convert>
-Json array_of(const List& list, Convert convert) {
-  Json array = Json::array();
-  for (const auto& each : list) array.push_back(convert(each));
-  return array;
-}
 
 Json of_gap(const Gap& gap) {
   const auto known = [&](double number) { return gap.rows > 0 ? finite(number) : Json(nullptr); };

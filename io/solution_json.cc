@@ -1,24 +1,15 @@
 // One function for each part of result.json, in the order of the file.
 #include "io/solution_json.h"
 
-#include <cmath>
+#include "io/json_parts.h"
 
 namespace selfcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
 /// Standard deviations are negative where there is none.
 Json sigma(double number) { return number < 0 ? Json(nullptr) : finite(number); }
-
-template <class List, class Convert>
-Json array_of(const List& list, Convert convert) {
-  Json array = Json::array();
-  for (const auto& each : list) array.push_back(convert(each));
-  return array;
-}
 
 Json of_verdict(const Verdict& verdict) {
   return Json::object({{"answer", to_string(verdict.answer)},
