@@ -57,8 +57,8 @@ class CanFaults {
 
   std::uint64_t count(CanFault fault) const { return of(fault).count; }
   std::vector<CanTally> tallies() const;
-  /// What makes readings doubtful at the moment, in a sentence; empty when nothing does. A single
-  /// lost frame or error does not, nor a step of the wall clock: what they touch is no sample.
+  /// What an owner should know of the readings at the moment, in a sentence; empty when there is
+  /// nothing. A single lost frame or error is not told: what it touches is no sample.
   std::string trouble(Nanoseconds now) const;
 
  private:

@@ -174,7 +174,7 @@ TEST_F(Paced, LetsTheMachineStandStillWhileTheProcessorIsAway) {
       for (int j = 0; j < 6; ++j) sample.counts[j] = std::llround(synced.readings[k][j] / 1e-9);
       history.add(sample);
     }
-    const DrivenEdge& edge =
+    const DrivenEdge edge =
         *std::ranges::find(output.driven(), std::to_string(i), &DrivenEdge::label);
     machine.stop("touched");
     play(output, 20 * kMillisecond);
