@@ -185,9 +185,16 @@ int show_plan(const Config& config) {
                 config.sets[s].name.c_str(), std::string(config.sets[s].method->name()).c_str(),
                 touches, check, home);
   }
-  if (plan.unreached.empty()) return kDone;
-  std::fprintf(stderr, "selfcal: %s\n", plan.unreached.c_str());
-  return kAnswerIsNo;
+  if (!plan.unreached.empty()) {
+    std::fprintf(stderr, "selfcal: %s\n", plan.unreached.c_str());
+    return kAnswerIsNo;
+  }
+  const EndpointSigma expected =
+      expected_sigma(*config.robot, values(*config.robot), config.sets, config.targets, plan);
+  std::printf(
+      "  end position known to %.3f mm then (1 sigma, median over the workspace; worst %.3f mm)\n",
+      1e3 * expected.median, 1e3 * expected.max);
+  return kDone;
 }
 
 int serve_command(const Arguments& arguments) {

@@ -9,17 +9,24 @@ namespace {
 constexpr double kNoise = 2e-5;       // m, where a set does not say its own
 constexpr double kPlaceVariance = 1;  // m^2, rad^2: where a surface or socket lies is not known
 
+/// What is unknown of a surface or a socket.
+struct Place {
+  int column = 0;          ///< first of three
+  Eigen::Vector3d normal;  ///< that the plane's unknowns belong to
+};
+
 /// Columns of the surfaces and sockets, after those of the robot.
 class Columns {
  public:
   Columns(int first, const std::vector<Set>& sets) : next_(first), sets_(sets) {}
 
-  /// First of the three columns of the candidate's surface (that of the set it refers to, from
-  /// which it is a known distance away) or socket.
-  int of(const Candidate& candidate) {
+  /// That of the candidate's surface or socket; two faces that are a known distance apart are one
+  /// place, and have one normal though their ways out are opposite.
+  const Place& of(const Candidate& candidate) {
     const int reference = sets_[candidate.set].reference;
     const auto [found, added] =
-        at_.try_emplace({reference < 0 ? candidate.set : reference, candidate.group}, next_);
+        at_.try_emplace({reference < 0 ? candidate.set : reference, candidate.group},
+                        Place{next_, candidate.outward});
     if (added) next_ += 3;
     return found->second;
   }
@@ -28,7 +35,7 @@ class Columns {
  private:
   int next_;
   const std::vector<Set>& sets_;
-  std::map<std::pair<int, int>, int> at_;
+  std::map<std::pair<int, int>, Place> at_;
 };
 
 /// Two unit vectors across n.
@@ -56,14 +63,14 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
       const Candidate& each = candidates[first + lane];
       Eigen::MatrixXd moves(3, parameters);
       for (int c = 0; c < 3; ++c) moves.row(c) = psi.row(c * kLanes + lane);
-      const int own = columns.of(each);
+      const Place& own = columns.of(each);
       const bool socket = each.group >= 0;
       Eigen::MatrixXd W = Eigen::MatrixXd::Zero(socket ? 3 : 1, columns.end());
-      W.leftCols(parameters) = socket ? moves : Eigen::MatrixXd(each.outward.transpose() * moves);
+      W.leftCols(parameters) = socket ? moves : Eigen::MatrixXd(own.normal.transpose() * moves);
       if (socket)
-        W.middleCols(own, 3) = -Eigen::Matrix3d::Identity();
+        W.middleCols(own.column, 3) = -Eigen::Matrix3d::Identity();
       else
-        W.middleCols(own, 3) << X.p(lane).transpose() * across(each.outward), -1;
+        W.middleCols(own.column, 3) << X.p(lane).transpose() * across(own.normal), -1;
       const double noise = sets[each.set].noise > 0 ? sets[each.set].noise : kNoise;
       rows.push_back(W / noise);
     }
@@ -116,6 +123,21 @@ std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
           Cw[i] -= gain * (scale * (rows[i] * gain).transpose());
     }
   }
+}
+
+Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
+                                 const std::vector<Set>& sets,
+                                 const std::vector<Candidate>& touches) {
+  Columns columns(static_cast<int>(robot.parameters().size()), sets);
+  const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, touches, columns);
+  Eigen::MatrixXd C = prior(robot, columns.end());
+  for (const Eigen::MatrixXd& W : rows)
+    for (Eigen::Index a = 0; a < W.rows(); ++a) {
+      const Eigen::VectorXd gain = C * W.row(a).transpose();
+      C -= gain * gain.transpose() / (1 + W.row(a).dot(gain));
+    }
+  const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
+  return C.topLeftCorner(parameters, parameters);
 }
 
 }  // namespace selfcal

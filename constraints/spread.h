@@ -26,4 +26,10 @@ std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,
                               const std::vector<Candidate>& candidates, std::vector<int> counts);
 
+/// Covariance of the robot's parameters after the touches, from their priors and each set's noise
+/// (20 um where a set says none); the surfaces and sockets are unknown.
+Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
+                                 const std::vector<Set>& sets,
+                                 const std::vector<Candidate>& touches);
+
 }  // namespace selfcal

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "constraints/contact.h"
+#include "constraints/endpoint_sigma.h"
 #include "constraints/spread.h"
 
 namespace selfcal {
@@ -233,6 +234,22 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   mark_check(chosen, sets.size(), options.check);
   plan.touches = order(robot, xi, std::move(chosen), obstacles, options);
   return plan;
+}
+
+EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
+                             const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
+                             const TouchPlan& plan) {
+  std::vector<Candidate> touches;
+  for (const TouchTarget& target : targets)
+    for (const PlannedTouch& each : plan.touches)
+      if (each.set == target.set && !each.check)
+        touches.push_back({each.touch, each.set, each.group, target.outward});
+  EndpointQuestion question;
+  question.robot = &robot;
+  question.xi = xi;
+  question.covariance = covariance_after(robot, xi, sets, touches);
+  question.unseen = Eigen::MatrixXd::Identity(6, 6);
+  return endpoint_sigma(question);
 }
 
 }  // namespace selfcal

@@ -10,6 +10,7 @@
 
 #include "constraints/configurations.h"
 #include "constraints/data_set.h"
+#include "constraints/identification.h"
 
 namespace selfcal {
 
@@ -57,6 +58,13 @@ struct TouchPlan {
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
                        const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options);
+
+/// How sure the end position will be after those of the planned touches that are not kept aside,
+/// with every surface and socket unknown: over poses of the whole workspace, a rigid motion
+/// removed.
+EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
+                             const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
+                             const TouchPlan& plan);
 
 /// True when the endpoint keeps out of every obstacle but `touched` (-1 for none) on the straight
 /// joint path from `from` to `to`.

@@ -5,12 +5,13 @@ namespace selfcal {
 void Debouncer::begin(bool closed) {
   level_ = raw_ = closed;
   burst_.reset();
+  ends_.clear();
 }
 
 void Debouncer::add(const Edge& edge, Nanoseconds heard) {
   if (burst_ && raw_ == level_ && edge.time - last_ >= quiet_) {
     ++glitches_;
-    burst_.reset();
+    end_burst(heard);
   }
   if (!burst_ && edge.closed == level_) return;
   if (!burst_) {
@@ -21,6 +22,12 @@ void Debouncer::add(const Edge& edge, Nanoseconds heard) {
   raw_ = edge.closed;
   last_ = edge.time;
   heard_ = heard;
+}
+
+void Debouncer::end_burst(Nanoseconds now) {
+  burst_.reset();
+  ends_.push_back(now);
+  if (ends_.size() > kChatter) ends_.pop_front();
 }
 
 void Debouncer::reconcile(bool closed, Nanoseconds now) {
@@ -35,7 +42,7 @@ std::optional<Edge> Debouncer::settled(Nanoseconds now) {
     raw_ = true;
   }
   const Edge edge{*burst_, raw_, timed_};
-  burst_.reset();
+  end_burst(now);
   if (raw_ == level_) {
     ++glitches_;
     return std::nullopt;

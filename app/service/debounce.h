@@ -2,9 +2,10 @@
 //
 // A new level counts once nothing has changed for `quiet`; its moment is that of the first edge of
 // the burst. A burst that ends at the old level is a glitch; one that does not end within five
-// times `quiet` counts as closed, which is the safe side.
+// times `quiet` counts as closed, which is the safe side. A line with burst upon burst chatters.
 #pragma once
 
+#include <deque>
 #include <optional>
 
 #include "io/ports.h"
@@ -26,8 +27,15 @@ class Debouncer {
   /// The level that has held since, if it is a new one.
   std::optional<Edge> settled(Nanoseconds now);
   std::uint64_t glitches() const { return glitches_; }
+  /// Far more bursts within the last second than touches can make.
+  bool chatters(Nanoseconds now) const {
+    return ends_.size() == kChatter && now - ends_.front() <= kSecond;
+  }
 
  private:
+  static constexpr std::size_t kChatter = 16;
+  void end_burst(Nanoseconds now);
+
   Nanoseconds quiet_;
   bool level_ = false, raw_ = false;
   std::optional<Nanoseconds> burst_;  ///< its first edge
@@ -35,6 +43,7 @@ class Debouncer {
   Nanoseconds last_ = 0, heard_ = 0;  ///< of the last edge: stamp, hearing
   Nanoseconds burst_heard_ = 0;
   std::uint64_t glitches_ = 0;
+  std::deque<Nanoseconds> ends_;  ///< of the last bursts, as they were heard
 };
 
 }  // namespace selfcal

@@ -32,6 +32,7 @@ class Senses {
   /// The debounced level; nothing while the trigger is not known or gone.
   std::optional<bool> closed() const { return known_ ? level_ : std::nullopt; }
   const std::optional<Edge>& closing() const { return closing_; }  ///< the last one
+  bool trigger_chatters(Nanoseconds now) const { return debouncer_.chatters(now); }
   std::optional<double> celsius() const {
     return ports_.thermometer ? ports_.thermometer->celsius() : std::nullopt;
   }

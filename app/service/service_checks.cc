@@ -7,6 +7,7 @@ namespace {
 
 constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
 constexpr Nanoseconds kStopAgain = kSecond / 2;       // until the robot stands
+constexpr const char* kChatters = "the trigger chatters: a loose wire, or no bias?";
 constexpr const char* kTwoSenders = "two senders of encoder readings: are they of two robots?";
 
 /// `what`, and why if that is known.
@@ -24,6 +25,7 @@ void Service::check_senses() {
     broken(because("no encoder reading for " + format_number(config_.silence) + " s",
                    ports_.encoders->trouble()));
   if (!senses_.closed()) broken(because("the trigger is gone", ports_.trigger->trouble()));
+  if (senses_.trigger_chatters(now_)) broken(kChatters);
   if (ports_.encoders->senders() > 1) broken(kTwoSenders);
 }
 
@@ -40,6 +42,7 @@ std::string Service::missing() const {
   const std::string trouble = ports_.trigger->trouble();
   if (!senses_.closed()) return because("the trigger's level is not known", trouble);
   if (!trouble.empty()) return trouble;
+  if (senses_.trigger_chatters(now_)) return kChatters;
   if (*senses_.closed() && !situation_.unfinished)
     return "the trigger is closed while the robot stands: in contact, stuck, or inverted (`active` "
            "of a GPIO line)";

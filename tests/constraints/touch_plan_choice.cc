@@ -6,20 +6,26 @@
 
 #include "constraints/configurations.h"
 #include "constraints/equations.h"
+#include "constraints/spread.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/constraints/touch_plan_cell.h"
 
 namespace selfcal {
 namespace {
 
-/// log det of what rows at these readings and the priors say of the robot and the plane.
-double information(const Cell& cell, const std::vector<Eigen::VectorXd>& rows) {
+/// What rows at these readings, of set `set` each, and the priors say of the robot and the planes.
+Eigen::MatrixXd information(const Cell& cell, const std::vector<Eigen::VectorXd>& rows,
+                            const std::vector<int>& set) {
   DataSet data;
   data.sets = cell.sets;
   const auto count = static_cast<Eigen::Index>(rows.size());
   data.rows.q.resize(count, 6);
-  for (Eigen::Index row = 0; row < count; ++row) data.rows.q.row(row) = rows[row].transpose();
-  data.rows.set.assign(rows.size(), 0);
+  data.rows.normal.resize(count, 3);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    data.rows.q.row(row) = rows[row].transpose();
+    data.rows.normal.row(row) = cell.targets[set[row]].outward.transpose();
+  }
+  data.rows.set = set;
   data.rows.group.assign(rows.size(), -1);
   data.rows.check.assign(rows.size(), 0);
   const Equations equations(rx90(), data, Use::fit);
@@ -27,7 +33,7 @@ double information(const Cell& cell, const std::vector<Eigen::VectorXd>& rows) {
   state.xi = values(rx90());
   equations.start(state);
   Weighting weighting;
-  weighting.scale = {{2e-5, 1}};
+  weighting.scale.assign(cell.sets.size(), {2e-5, 1});
   weighting.put_aside.assign(rows.size(), 0);
   const Eigen::MatrixXd R = equations.linearise(state, weighting).R;
   const Eigen::Index columns = equations.columns();
@@ -38,6 +44,10 @@ double information(const Cell& cell, const std::vector<Eigen::VectorXd>& rows) {
     const double sigma = own ? 1 : each->free ? each->tolerance : 1e-9;
     A(i, i) += 1 / (sigma * sigma);
   }
+  return A;
+}
+
+double log_det(const Eigen::MatrixXd& A) {
   return symmetric_eigen(A).values.array().max(1e-12).log().sum();
 }
 
@@ -60,10 +70,51 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
     std::vector<Eigen::VectorXd> rows;
     for (int row = 0; row < data.rows.rows(); ++row)
       rows.push_back(data.rows.q.row(row).transpose());
-    best_by_chance = std::max(best_by_chance, information(cell, rows));
+    best_by_chance = std::max(best_by_chance, log_det(information(cell, rows, data.rows.set)));
   }
   // Those by chance may lie anywhere on the plane; the planned ones must be reached from home.
-  EXPECT_GT(information(cell, planned), best_by_chance);
+  EXPECT_GT(log_det(information(cell, planned, std::vector<int>(planned.size()))), best_by_chance);
+}
+
+TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
+  Cell cell;
+  const Eigen::Vector3d normal(0, 1, 0);
+  cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, 20);
+  cell.plane({0.70, 0.1, 0.5}, normal, 0.2, 20).plane({0.70, -0.1, 0.5}, -normal, 0.2, 20);
+  Problems problems;
+  Node entry = Node::map();
+  entry.set("method", Node::of(std::string("plane")));
+  Node step = Node::map();
+  step.set("set", Node::of(cell.sets[1].name));
+  step.set("distance", Node::of(0.2));
+  step.set("noise", Node::of(1e-7));
+  entry.set("parallel_to", std::move(step));
+  cell.sets[2].method = make_set(cell.sets[2].name, entry, problems).method;
+  cell.sets[2].reference = 1;
+  ASSERT_FALSE(problems.any());
+  cell.options.check = 0;
+  const TouchPlan plan = cell.plan();
+  ASSERT_EQ(plan.touches.size(), 60u);
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<int> set;
+  std::vector<Candidate> touches;
+  for (const PlannedTouch& each : plan.touches) {
+    rows.push_back(each.touch);
+    set.push_back(each.set);
+    touches.push_back({each.touch, each.set, -1, cell.targets[each.set].outward});
+  }
+  const Eigen::MatrixXd exact = information(cell, rows, set).inverse();
+  const Eigen::MatrixXd expected = covariance_after(rx90(), values(rx90()), cell.sets, touches);
+  for (Eigen::Index i = 0; i < expected.rows(); ++i) {
+    if (!rx90().parameters()[i].free) continue;
+    EXPECT_NEAR(std::sqrt(expected(i, i) / exact(i, i)), 1, 1e-3) << rx90().parameters()[i].name;
+  }
+  // The block gives the scale: without its step the end position is known far worse.
+  const EndpointSigma with = expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan);
+  cell.sets[2].reference = -1;
+  const EndpointSigma without =
+      expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan);
+  EXPECT_GT(without.median, 3 * with.median);
 }
 
 }  // namespace

@@ -106,5 +106,27 @@ TEST(Debouncer, DatesAContactJustAfterAGlitchByItsOwnEdge) {
   EXPECT_EQ(debouncer.glitches(), 1U);
 }
 
+/// Pulses of `width`, one every `period`, for a second; whether it was ever said to chatter.
+bool chatters(Nanoseconds width, Nanoseconds period) {
+  Debouncer debouncer(kQuiet);
+  debouncer.begin(false);
+  bool ever = false;
+  for (Nanoseconds t = kSecond; t < 2 * kSecond; t += period) {
+    debouncer.add({t, true}, t);
+    debouncer.settled(t + width - 1);
+    debouncer.add({t + width, false}, t + width);
+    debouncer.settled(t + period - 1);
+    ever = ever || debouncer.chatters(t + period);
+  }
+  EXPECT_FALSE(debouncer.chatters(4 * kSecond));
+  return ever;
+}
+
+TEST(Debouncer, KnowsALineThatChattersFromOneThatTouches) {
+  EXPECT_TRUE(chatters(7 * kMillisecond, 14 * kMillisecond));
+  EXPECT_TRUE(chatters(kQuiet / 2, 20 * kMillisecond)) << "glitches count as well";
+  EXPECT_FALSE(chatters(50 * kMillisecond, 200 * kMillisecond)) << "five touches a second";
+}
+
 }  // namespace
 }  // namespace selfcal
