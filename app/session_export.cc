@@ -60,14 +60,14 @@ Result<std::string> description_text(const SessionRecord& record) {
          date_time(record.started_ms) + ".\n" + write_yaml(node);
 }
 
-Result<DataSet> stored_rows(Store& store, const SessionRecord& record) {
+Result<DataSet> stored_rows(Store& store, const SessionRecord& record, const Robot& robot) {
   auto plan = store.plan(record.id);
   if (!plan) return tl::unexpected(plan.error());
   auto touches = store.touches(record.id);
   if (!touches) return tl::unexpected(touches.error());
   const auto meaning = read_meaning(record.config);
   if (!meaning) return tl::unexpected(meaning.error());
-  DataSet data = rows_of({record, std::move(*plan), std::move(*touches)}, *meaning);
+  DataSet data = rows_of(robot, {record, std::move(*plan), std::move(*touches)}, *meaning);
   if (data.rows.rows() == 0)
     return bad_input(name_of(record.id) + ": has no rows (none were taken, or they were pruned)");
   return data;
@@ -79,15 +79,17 @@ Result<int> export_session(Store& store, std::int64_t session, const std::string
                            const fs::path& folder) {
   const auto record = store.session(session);
   if (!record) return tl::unexpected(record.error());
-  const auto data = stored_rows(store, *record);
-  if (!data) return tl::unexpected(data.error());
-  const auto robot = nominal_text(store, *record, robot_text);
+  const auto robot_file = nominal_text(store, *record, robot_text);
+  if (!robot_file) return tl::unexpected(robot_file.error());
+  const auto robot = robot_of(*robot_file, name_of(session));
   if (!robot) return tl::unexpected(robot.error());
+  const auto data = stored_rows(store, *record, **robot);
+  if (!data) return tl::unexpected(data.error());
   const auto description = description_text(*record);
   if (!description) return tl::unexpected(description.error());
   if (auto made = make_empty_folder(folder); !made) return tl::unexpected(made.error());
   const std::pair<const char*, std::string> files[] = {
-      {"robot.yaml", *robot},
+      {"robot.yaml", *robot_file},
       {"observations.csv", observations_text(*data)},
       {"dataset.yaml", *description}};
   for (const auto& [name, text] : files)

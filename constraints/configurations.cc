@@ -87,6 +87,7 @@ class Sampler {
     own = request.own ? *request.own
                       : method.through(anywhere(method, request.patch), reference, random_);
     int last_of_group = -1;
+    spare_.clear();
     for (int i = 0; i < request.rows; ++i) {
       int group = method.paired() ? 0 : -1;
       if (method.group_freedom() > 0) group = i / request.rows_per_group;
@@ -139,20 +140,35 @@ class Sampler {
     const int reference = data_.sets[request.set].reference;
     method.approach(sampled_.truth.own[request.set],
                     reference < 0 ? nullptr : &sampled_.truth.own[reference], data_.rows, row);
+    const auto take = [&](const Eigen::ArrayXd& q, const Location& there) {
+      data_.rows.q.row(row) = q.matrix().transpose();
+      const Location before = last_of_group < 0 ? Location{} : at(last_of_group, method.body());
+      method.measure(there, before, sampled_.truth.own[request.set], data_.rows, row);
+      last_of_group = row;
+    };
+    if (!spare_.empty()) {
+      take(spare_.back().q, spare_.back().there);
+      spare_.pop_back();
+      return true;
+    }
     for (int attempt = 0; attempt < kTries; ++attempt) {
       ConfigurationBlock block = starts();
       Locations X;
       const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
       const std::vector<int> found = must ? newton(request, wanted, row, last_of_group, block, X)
                                           : everywhere(method, block, X);
+      bool taken = false;
       for (const int lane : found) {
         if (!within_limits(block, lane) || !request.patch.contains(X.p(lane))) continue;
-        data_.rows.q.row(row) = block.q.row(lane).matrix();
-        const Location before = last_of_group < 0 ? Location{} : at(last_of_group, method.body());
-        method.measure(location(X, lane), before, sampled_.truth.own[request.set], data_.rows, row);
-        last_of_group = row;
-        return true;
+        if (taken) {
+          spare_.push_back({block.q.row(lane), location(X, lane)});
+          continue;
+        }
+        take(block.q.row(lane), location(X, lane));
+        if (!request.together) return true;
+        taken = true;
       }
+      if (taken) return true;
     }
     data_.rows.set.pop_back();
     data_.rows.group.pop_back();
@@ -244,6 +260,11 @@ class Sampler {
   Random& random_;
   DataSet& data_;
   Sampled sampled_;
+  struct Found {
+    Eigen::ArrayXd q;
+    Location there;
+  };
+  std::vector<Found> spare_;  ///< solved together with the last row, for the next ones
 };
 
 }  // namespace

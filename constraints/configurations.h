@@ -31,6 +31,9 @@ struct SampleRequest {
   std::optional<Eigen::VectorXd> own;  ///< true own values; random when missing
   Patch patch;
   std::vector<Location> places;  ///< true locations of the first groups; random when missing
+  /// Rows may come from starts that were solved together: faster, and as random. For methods
+  /// without groups.
+  bool together = false;
   /// Residual that row `i` of the request shall have (noise of a touch); zeros when empty.
   std::function<Eigen::VectorXd(int i)> residual;
 };

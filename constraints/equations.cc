@@ -41,7 +41,7 @@ void motion_columns(const Locations& X, PsiBlock& psi) {
 }  // namespace
 
 double RowResidual::sigmas(const Scale& scale) const {
-  return std::hypot(length / scale.length, angle / scale.angle);
+  return std::hypot(length / scale.length, angle / scale.angle) / factor;
 }
 
 Equations::Equations(const Robot& robot, const DataSet& data, Use use)
@@ -112,8 +112,9 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
 }
 
 RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
-                         int row, int set) {
+                         int row, int set, double factor) {
   RowResidual r{row, set};
+  r.factor = factor;
   for (size_t a = 0; a < quantities.size(); ++a) {
     const double value = out.r(lane, static_cast<Eigen::Index>(a));
     const bool angle = quantities[a] == Quantity::angle;
@@ -135,7 +136,8 @@ std::vector<RowResidual> Equations::residuals(const State& state) const {
       const int count = std::min(kLanes, items - first);
       evaluate(s, first, count, state, block, false);
       for (int lane = 0; lane < count; ++lane)
-        list.push_back(row_residual(block.out, block.quantities, lane, block.rows[lane], s));
+        list.push_back(row_residual(block.out, block.quantities, lane, block.rows[lane], s,
+                                    data_.rows.factor(block.rows[lane])));
     }
   }
   return list;

@@ -35,9 +35,10 @@ struct RowResidual {
   int row = 0, set = 0;
   double length = 0, angle = 0;  ///< norms (m, rad)
   int lengths = 0, angles = 0;   ///< counts of scalars
+  double factor = 1;             ///< of its noise over its set's
   std::array<double, kMostEquations>
       scalars{};  ///< lengths + angles entries, in the method's order
-  /// Distance from zero in sigmas.
+  /// Distance from zero in sigmas of the set's noise and the row's factor.
   double sigmas(const Scale& scale) const;
 };
 

@@ -62,7 +62,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
           if (freedom > 0)
             row.segment(groups_at[s] + freedom * data_.rows.group[block.rows[lane]], freedom) =
                 block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
-          row /= scale[s].of(block.quantities[a]);
+          row /= scale[s].of(block.quantities[a]) * data_.rows.factor(block.rows[lane]);
         }
       }
     }

@@ -24,6 +24,6 @@ struct Equations::Bend {
 };
 
 RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
-                         int row, int set);
+                         int row, int set, double factor);
 
 }  // namespace selfcal

@@ -76,10 +76,11 @@ void Equations::weigh(int set, const Weighting& weighting, Block& block, Eigen::
   Lanes root_weight = Lanes::Zero(kLanes);
   for (int lane = 0; lane < count; ++lane) {
     const int row = block.rows[lane];
-    out.residuals.push_back(row_residual(block.out, block.quantities, lane, row, set));
+    const double own = data_.rows.factor(row);
+    out.residuals.push_back(row_residual(block.out, block.quantities, lane, row, set, own));
     if (weighting.put_aside[row]) continue;
     const double t = out.residuals.back().sigmas(scale);
-    root_weight[lane] = t > soft ? std::sqrt(soft / t) : 1;  // Huber
+    root_weight[lane] = (t > soft ? std::sqrt(soft / t) : 1) / own;  // Huber
     out.cost += t > soft ? soft * (2 * t - soft) : t * t;
     out.equations += equations;
   }

@@ -29,7 +29,7 @@ struct SetNoise {
 
 double robust(const SetNoise& set, bool angle) {
   std::vector<double> norms;
-  for (const RowResidual* r : set.rows) norms.push_back(angle ? r->angle : r->length);
+  for (const RowResidual* r : set.rows) norms.push_back((angle ? r->angle : r->length) / r->factor);
   const int count = angle ? set.rows.front()->angles : set.rows.front()->lengths;
   if (count == 0) return 1;
   return median(std::move(norms)) / chi_quantile(count, 0.5) *
@@ -40,7 +40,7 @@ double root_mean_square(const SetNoise& set, const std::vector<char>& put_aside,
   double sum = 0, count = 0, kept = 0;
   for (const RowResidual* r : set.rows) {
     if (put_aside[r->row]) continue;
-    sum += angle ? r->angle * r->angle : r->length * r->length;
+    sum += std::pow((angle ? r->angle : r->length) / r->factor, 2);
     count += angle ? r->angles : r->lengths;
     kept += r->angles + r->lengths;
   }

@@ -29,6 +29,7 @@ Observations taken(const Observations& data, const std::vector<int>& rows) {
   some.velocity = picked(data.velocity, rows);
   some.temperature = picked(data.temperature, rows);
   some.time = picked(data.time, rows);
+  some.noise_factor = picked(data.noise_factor, rows);
   some.set = picked(data.set, rows);
   some.group = picked(data.group, rows);
   some.repeat = picked(data.repeat, rows);

@@ -13,21 +13,23 @@ namespace selfcal {
 /// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
 /// reader has made sure that the cells a row's method needs are there and finite.
 struct Observations {
-  Eigen::MatrixXd q;            ///< rows x joints, readings (rad or m)
-  Eigen::MatrixXd position;     ///< rows x 3, x y z (m)
-  Eigen::MatrixXd orientation;  ///< rows x 4, qw qx qy qz, unit
-  Eigen::VectorXd distance;     ///< rows, to the previous row of the group (m)
-  Eigen::MatrixXd normal;       ///< rows x 3, outward normal of the touched surface, world, unit
-  Eigen::MatrixXd wrench;       ///< rows x 6, on the tool at the last frame's origin, in its axes
-  Eigen::MatrixXd velocity;     ///< rows x joints, just before the reading (rad/s, m/s)
-  Eigen::VectorXd temperature;  ///< rows (C)
-  Eigen::VectorXd time;         ///< rows (s)
-  std::vector<int> set;         ///< rows, index into the data set's sets
-  std::vector<int> group;       ///< rows, index into its set's group names; -1 without a group
+  Eigen::MatrixXd q;             ///< rows x joints, readings (rad or m)
+  Eigen::MatrixXd position;      ///< rows x 3, x y z (m)
+  Eigen::MatrixXd orientation;   ///< rows x 4, qw qx qy qz, unit
+  Eigen::VectorXd distance;      ///< rows, to the previous row of the group (m)
+  Eigen::MatrixXd normal;        ///< rows x 3, outward normal of the touched surface, world, unit
+  Eigen::MatrixXd wrench;        ///< rows x 6, on the tool at the last frame's origin, in its axes
+  Eigen::MatrixXd velocity;      ///< rows x joints, just before the reading (rad/s, m/s)
+  Eigen::VectorXd temperature;   ///< rows (C)
+  Eigen::VectorXd time;          ///< rows (s)
+  Eigen::VectorXd noise_factor;  ///< rows, a row's noise over its set's, at least 1; not in a file
+  std::vector<int> set;          ///< rows, index into the data set's sets
+  std::vector<int> group;        ///< rows, index into its set's group names; -1 without a group
   std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column
   std::vector<char> check;  ///< rows, 1 for rows kept aside to judge
 
   int rows() const { return static_cast<int>(q.rows()); }
+  double factor(int row) const { return noise_factor.rows() > 0 ? noise_factor[row] : 1; }
 };
 
 /// The given rows, in their order; one may come several times.

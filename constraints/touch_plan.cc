@@ -75,6 +75,7 @@ class Candidates {
     data.sets[0].reference = -1;
     SampleRequest request;
     request.rows = rows;
+    request.together = target.places.empty();
     request.rows_per_group =
         std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
     request.own = target.own;

@@ -22,10 +22,12 @@ Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<Encode
 Reading reading_between(const EncoderSample& before, const EncoderSample& after, Nanoseconds at,
                         const std::vector<EncoderScale>& scales) {
   const Eigen::VectorXd first = reading_of(before, scales), second = reading_of(after, scales);
-  if (after.time <= before.time) return {first, Eigen::VectorXd::Zero(first.size())};
+  if (after.time <= before.time) return {first, Eigen::VectorXd::Zero(first.size()), 0};
   const double share =
       static_cast<double>(at - before.time) / static_cast<double>(after.time - before.time);
-  return {first + share * (second - first), (second - first) / seconds(after.time - before.time)};
+  const double period = seconds(after.time - before.time);
+  return {first + share * (second - first), (second - first) / period,
+          period * std::max(share * (1 - share), 0.0) / std::sqrt(3)};
 }
 
 bool SampleHistory::add(const EncoderSample& sample) {

@@ -13,12 +13,16 @@ namespace selfcal {
 /// Joint readings (rad or m) and their speed at one moment.
 struct Reading {
   Eigen::VectorXd q, dq;
+  /// 1 sigma of the moment at which the joints were at q (s): a robot that begins to stop at some
+  /// instant after the contact makes the later sample lag by up to its whole way.
+  double sigma_time = 0;
 };
 
 Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<EncoderScale>& scales);
 
-/// Between two samples, by linear interpolation: exact at a steady speed, off by a t^2 / 8 under an
-/// acceleration a over the time t between them.
+/// Between two samples a time T apart, by linear interpolation: exact at a steady speed v. Stopped
+/// at once at the share s of T it is off by v T s (1 - s), and later by less: the error is taken as
+/// uniform within that, sigma_time = T s (1 - s) / sqrt 3.
 Reading reading_between(const EncoderSample& before, const EncoderSample& after, Nanoseconds at,
                         const std::vector<EncoderScale>& scales);
 

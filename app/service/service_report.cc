@@ -95,9 +95,9 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
     if (progress.accepted) {
       Session so_far = session_;
       so_far.plan.resize(touch->step + 1);
-      progress.residual =
-          running_residual(*models_.active(), rows_of(so_far, meaning_, Parts::all_fit))
-              .value_or(std::nan(""));
+      progress.residual = running_residual(*models_.active(), rows_of(*models_.active(), so_far,
+                                                                      meaning_, Parts::all_fit))
+                              .value_or(std::nan(""));
     }
   }
   messenger_.publish(progress);

@@ -36,7 +36,7 @@ void Service::analyse() {
     return;
   const bool check = session_.kind() == SessionKind::check;
   data_ = std::make_shared<DataSet>(
-      rows_of(session_, meaning_, check ? Parts::all_check : Parts::as_planned));
+      rows_of(*models_.active(), session_, meaning_, check ? Parts::all_check : Parts::as_planned));
   if (!check) {
     const std::string few = too_few(*data_);
     return put(Event::What::computed, few.empty(), few);
@@ -54,7 +54,7 @@ void Service::join_base() {
   const Session base{*record, std::move(*plan), std::move(*touches)};
   const auto meaning = read_meaning(base.record.config);
   if (!meaning) return put(Event::What::computed, false, meaning.error().what);
-  base_ = std::make_shared<DataSet>(rows_of(base, *meaning));
+  base_ = std::make_shared<DataSet>(rows_of(*models_.active(), base, *meaning));
   *data_ = joined(*base_, *data_);
   put(Event::What::computed);
 }

@@ -10,6 +10,8 @@ namespace selfcal {
 namespace {
 
 constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
+constexpr double kNoise = 2e-5;      // m, where a set does not say its own
+constexpr double kStep = 1e-3;       // s, over which a speed is taken
 
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
@@ -27,15 +29,32 @@ int group_index(Set& set, const std::string& name) {
   return static_cast<int>(set.groups.size()) - 1;
 }
 
+/// Speed of the endpoint along the way out of the contact (m/s).
+double speed_out(const Robot& robot, const Reading& reading, const Eigen::Vector3d& outward) {
+  const Eigen::VectorXd step = kStep / 2 * reading.dq;
+  return outward.dot(endpoint(robot, reading.q + step) - endpoint(robot, reading.q - step)) / kStep;
+}
+
 void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
   rows.q.setZero(count, joints);
   rows.position.setConstant(count, 3, std::nan(""));
   rows.orientation.setConstant(count, 4, std::nan(""));
   rows.distance.setConstant(count, std::nan(""));
   rows.normal.setConstant(count, 3, std::nan(""));
+  rows.velocity.setZero(count, joints);
+  rows.temperature.setConstant(count, std::nan(""));
+  rows.time.setZero(count);
+  rows.noise_factor.setOnes(count);
 }
 
 }  // namespace
+
+Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q) {
+  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
+  Locations X;
+  robot.locate(block, values(robot), Body::endpoint, X, nullptr);
+  return X.p(0);
+}
 
 Eigen::VectorXd vector_of(const std::vector<double>& readings) {
   return Eigen::Map<const Eigen::VectorXd>(readings.data(),
@@ -149,7 +168,7 @@ Reading reading_of(const TouchRecord& touch, const Meaning& meaning) {
                          meaning.scales);
 }
 
-DataSet rows_of(const Session& session, const Meaning& meaning, Parts parts) {
+DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meaning, Parts parts) {
   DataSet data;
   data.sets = meaning.sets;
   data.target = meaning.target;
@@ -168,8 +187,15 @@ DataSet rows_of(const Session& session, const Meaning& meaning, Parts parts) {
     const StepRecord& step = session.plan[rows[i]->step];
     const int set = set_index(meaning, step.set);
     const auto row = static_cast<Eigen::Index>(i);
-    out.q.row(row) = reading_of(*rows[i], meaning).q.transpose();
+    const Reading reading = reading_of(*rows[i], meaning);
+    out.q.row(row) = reading.q.transpose();
     out.normal.row(row) = meaning.outward[set].transpose();
+    out.velocity.row(row) = reading.dq.transpose();
+    out.temperature[row] = rows[i]->temperature;
+    out.time[row] = static_cast<double>(rows[i]->unix_ms - rows[0]->unix_ms) / 1000;
+    const double noise = data.sets[set].noise > 0 ? data.sets[set].noise : kNoise;
+    out.noise_factor[row] =
+        std::hypot(1, speed_out(robot, reading, meaning.outward[set]) * reading.sigma_time / noise);
     out.set.push_back(set);
     out.group.push_back(group_index(data.sets[set], step.group));
     out.check.push_back(parts == Parts::as_planned ? step.check : parts == Parts::all_check);
@@ -189,6 +215,10 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   size_rows(out, first + check.rows.rows(), base.rows.q.cols());
   out.q << base.rows.q(fit, Eigen::all), check.rows.q;
   out.normal << base.rows.normal(fit, Eigen::all), check.rows.normal;
+  out.velocity << base.rows.velocity(fit, Eigen::all), check.rows.velocity;
+  out.temperature << base.rows.temperature(fit), check.rows.temperature;
+  out.time << base.rows.time(fit), check.rows.time;
+  out.noise_factor << base.rows.noise_factor(fit), check.rows.noise_factor;
   for (const int row : fit) {
     out.set.push_back(base.rows.set[row]);
     out.group.push_back(base.rows.group[row]);
@@ -203,13 +233,6 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   out.check.assign(fit.size(), 0);
   out.check.resize(out.set.size(), 1);
   return data;
-}
-
-Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q) {
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  robot.locate(block, values(robot), Body::endpoint, X, nullptr);
-  return X.p(0);
 }
 
 TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Meaning& meaning,

@@ -50,10 +50,13 @@ int steps_put_aside(const Session& session, int repeats, int attempts);
 /// Joint readings at the edge of a touch.
 Reading reading_of(const TouchRecord& touch, const Meaning& meaning);
 
-/// The rows that the good touches make, in the order of the plan. With `all_check` every row only
-/// judges, with `all_fit` every row identifies.
+/// The rows that the good touches make, in the order of the plan, with speed, time and temperature.
+/// With `all_check` every row only judges, with `all_fit` every row identifies. A row's noise is
+/// that of its set and, on top, what the reading leaves open (Reading::sigma_time) at the speed at
+/// which `robot`, nearly the true one, came in.
 enum class Parts { as_planned, all_check, all_fit };
-DataSet rows_of(const Session& session, const Meaning& meaning, Parts parts = Parts::as_planned);
+DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meaning,
+                Parts parts = Parts::as_planned);
 
 /// The fit rows of `base` and the rows of `check` as rows that judge; both have the same sets.
 DataSet joined(const DataSet& base, const DataSet& check);

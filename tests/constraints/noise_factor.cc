@@ -1,0 +1,69 @@
+// A row that is less certain than its set weighs less.
+#include <gtest/gtest.h>
+
+#include "constraints/identification.h"
+#include "constraints/noise.h"
+#include "tests/sim/pretend.h"
+#include "tests/support/end_position.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kRounding = 1e-9;  // relative
+
+Simulated touches() {
+  return made(
+      "robot: rx90.robot.yaml\nseed: 3\nerrors: {length: 1.0e-3, angle: 1.0e-3}\nsets:\n"
+      "  table: {method: plane, rows: 90, noise: 2.0e-5,\n"
+      "    surface: {point: [0.6, 0, 0.2], normal: [0, 0, 1]}}\n"
+      "  wall: {method: plane, rows: 90, noise: 2.0e-5,\n"
+      "    surface: {point: [0.7, 0, 0.6], normal: [-1, 0, 0]}}\n");
+}
+
+TEST(NoiseFactor, OfEveryRowIsThatOfTheSet) {
+  const Simulated simulated = touches();
+  DataSet data = simulated.data;
+  const Equations plain(rx90(), data, Use::fit);
+  DataSet uncertain = data;
+  uncertain.rows.noise_factor.setConstant(data.rows.rows(), 3);
+  const Equations factored(rx90(), uncertain, Use::fit);
+  const std::vector<char> none(data.rows.rows(), 0);
+  const Weighting wide{{{6e-5, 1}, {6e-5, 1}}, none}, narrow{{{2e-5, 1}, {2e-5, 1}}, none};
+  const State& state = simulated.truth;
+  const Eigen::MatrixXd ours_R = factored.linearise(state, narrow).R;
+  const Eigen::MatrixXd theirs_R = plain.linearise(state, wide).R;
+  EXPECT_TRUE((ours_R.transpose() * ours_R).isApprox(theirs_R.transpose() * theirs_R, kRounding));
+  EXPECT_TRUE(factored.dense(state, narrow.scale, none)
+                  .W.isApprox(plain.dense(state, wide.scale, none).W, kRounding));
+  const Noise ours = estimate_noise(factored, factored.residuals(state), {});
+  const Noise theirs = estimate_noise(plain, plain.residuals(state), {});
+  EXPECT_NEAR(3 * ours.estimated[0].length, theirs.estimated[0].length, 1e-12);
+}
+
+TEST(NoiseFactor, KeepsUncertainRowsFromSpoilingTheOthers) {
+  const Simulated simulated = made(
+      "robot: rx90.robot.yaml\nseed: 3\nerrors: {length: 1.0e-3, angle: 1.0e-3}\n"
+      "sets: {tracker: {method: position, rows: 90, noise: 2.0e-5}}\n");
+  // Every third reading is off by twenty times the noise, and says so.
+  DataSet data = simulated.data;
+  Random random(5);
+  std::normal_distribution<double> off(0, 4e-4);
+  data.rows.noise_factor.setOnes(data.rows.rows());
+  for (int row = 0; row < data.rows.rows(); row += 3) {
+    data.rows.q(row, 1) += off(random);
+    data.rows.noise_factor[row] = 12;
+  }
+  const auto error = [&](const DataSet& of) {
+    const Solution solution = identify(rx90(), of, {}, {});
+    Eigen::VectorXd found = values(rx90());
+    for (const ParameterResult& each : solution.parameters)
+      found[find_parameter(rx90(), each.parameter.name)] = each.value;
+    return aligned_errors(rx90(), found, simulated.truth.xi)[250];
+  };
+  DataSet unsaid = data;
+  unsaid.rows.noise_factor.resize(0);
+  EXPECT_LT(error(data), 0.8 * error(unsaid));
+}
+
+}  // namespace
+}  // namespace selfcal
