@@ -62,17 +62,6 @@ std::string against_simulation(const Diagnosis& real, const Diagnosis& simulated
   return text + (text.empty() || less.empty() ? "" : "; ") + less;
 }
 
-/// The rows that the next steps ask for, as a table that a person or a program takes over.
-std::string next_table(const Diagnosis& diagnosis) {
-  std::string text = "what,separates,probability_after\n";
-  for (const NextStep& step : diagnosis.next) {
-    std::string causes;
-    for (const std::string& each : step.separates) causes += (causes.empty() ? "" : " ") + each;
-    text += "\"" + step.what + "\"," + causes + "," + format_number(step.probability_after) + "\n";
-  }
-  return text;
-}
-
 int diagnose_command(const Arguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
@@ -105,7 +94,9 @@ int diagnose_command(const Arguments& arguments) {
     if (const auto written = write(arguments, diagnosis, loaded->name, json); !written)
       return tell(written.error());
   if (!arguments.next.empty())
-    if (const auto written = write_file_atomically(arguments.next, next_table(diagnosis)); !written)
+    if (const auto written = write_file_atomically(
+            arguments.next, next_json(diagnosis, loaded->data).dump(1) + "\n");
+        !written)
       return tell(written.error());
   if (arguments.json)
     std::printf("%s\n", json.c_str());

@@ -116,4 +116,28 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
   return json;
 }
 
+nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data) {
+  const auto cells = [](const Eigen::MatrixXd& values, Eigen::Index row) {
+    Json list = Json::array();
+    for (Eigen::Index i = 0; i < values.cols(); ++i) list.push_back(finite(values(row, i)));
+    return list;
+  };
+  Json json;
+  json["steps"] = array_of(diagnosis.next, [&](const NextStep& each) {
+    Json rows = Json::array();
+    for (int row = 0; row < each.rows.rows(); ++row) {
+      Json one = {{"set", data.sets[each.rows.set[row]].name}, {"q", cells(each.rows.q, row)}};
+      if (each.rows.wrench.rows() > 0) one["wrench"] = cells(each.rows.wrench, row);
+      if (each.rows.velocity.rows() > 0) one["dq"] = cells(each.rows.velocity, row);
+      if (each.rows.time.size() > 0) one["time"] = finite(each.rows.time[row]);
+      rows.push_back(std::move(one));
+    }
+    return Json::object({{"what", each.what},
+                         {"separates", each.separates},
+                         {"probability_after", finite(each.probability_after)},
+                         {"rows", rows}});
+  });
+  return json;
+}
+
 }  // namespace selfcal

@@ -11,4 +11,8 @@ namespace selfcal {
 nlohmann::ordered_json to_json(const Diagnosis& diagnosis);
 nlohmann::ordered_json to_json(const Comparison& comparison);
 
+/// The rows to measure next: {"steps": [{"what", "separates", "probability_after", "rows": [{"set",
+/// "q", and where they matter "wrench", "dq", "time"}]}]}, as a data set's columns have them.
+nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data);
+
 }  // namespace selfcal

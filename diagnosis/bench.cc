@@ -27,19 +27,29 @@ const std::vector<double>& Bench::sizes() {
   return list;
 }
 
-Bench::Bench(const Whitened& rows, const std::vector<Structure>& structures, const Candidates& all,
+Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Candidates& all,
              const std::vector<EffectParameter>& parameters, const SearchRule& rule)
-    : all_(all), rule_(rule), structures_(structures) {
-  for (const Structure& structure : structures_) workbenches_.emplace_back(rows, structure);
-  const Eigen::MatrixXd& G = workbenches_.front().gram();
+    : all_(all), rule_(rule) {
+  rows_ = std::make_shared<const Whitened>(rows);
+  auto groups = std::make_shared<Groups>();
+  for (const Candidate& candidate : all.list) {
+    groups->push_back(candidate.main);
+    groups->back().insert(groups->back().end(), candidate.slack.begin(), candidate.slack.end());
+  }
+  groups_ = std::move(groups);
+  for (Structure& structure : structures)
+    workbenches_.emplace_back(rows_, std::move(structure), groups_);
   const auto n = static_cast<double>(rows.C.rows());
   for (const Candidate& candidate : all.list) {
     Block block;
     std::vector<double> unit;
     double visible = 0, whole = 0, largest = 0;
-    for (const int k : candidate.main) {
+    const Eigen::VectorXd seen =
+        workbenches_.front().gram(candidate.main, candidate.main).diagonal();
+    for (Eigen::Index i = 0; i < seen.size(); ++i) {
+      const int k = candidate.main[static_cast<size_t>(i)];
       const double u = middle(parameters[static_cast<size_t>(k)]);
-      visible += u * u * G(k, k);
+      visible += u * u * seen[i];
       whole += u * u * rows.C.col(k).squaredNorm();
       largest = std::max(largest, u / parameters[static_cast<size_t>(k)].usual_most);
     }
@@ -59,14 +69,15 @@ Bench::Bench(const Whitened& rows, const std::vector<Structure>& structures, con
     }
     block.unit =
         Eigen::Map<const Eigen::VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));
+    block.group = static_cast<int>(blocks_.size());
     blocks_.push_back(std::move(block));
   }
-  for (int s = 0; s < static_cast<int>(structures_.size()); ++s) agree(s, rows);
+  for (int s = 0; s < this->structures(); ++s) agree(s);
 }
 
 /// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
 /// from what its best explanation leaves.
-void Bench::agree(int s, const Whitened& rows) {
+void Bench::agree(int s) {
   for (int i = 0; i < kAgreements; ++i) {
     double best = workbenches_[s].log_evidence({});
     double variance = workbenches_[s].total() / workbenches_[s].freedom();
@@ -79,9 +90,10 @@ void Bench::agree(int s, const Whitened& rows) {
       variance = workbenches_[s].estimate({&term, 1}).variance;
     }
     if (std::abs(std::log(variance)) < 0.1) return;
-    structures_[s].root *= std::sqrt(variance);
-    structures_[s].noise *= variance;
-    workbenches_[s] = Workbench(rows, structures_[s]);
+    Structure agreed = structure(s);
+    agreed.root *= std::sqrt(variance);
+    agreed.noise *= variance;
+    workbenches_[s] = Workbench(rows_, std::move(agreed), groups_);
   }
 }
 
@@ -109,8 +121,8 @@ double Bench::log_prior(const std::vector<int>& candidates, int structure) const
     else
       sum += std::log(rule_.family_odds) + (families.size() > 1 ? std::log(rule_.another) : 0);
   }
-  sum += std::log(structures_[structure].probability);
-  if (structures_[structure].kind == 0) return sum;
+  sum += std::log(this->structure(structure).probability);
+  if (this->structure(structure).kind == 0) return sum;
   return sum + std::log(rule_.unknown_odds) + (families.empty() ? 0 : std::log(rule_.another));
 }
 
@@ -145,9 +157,9 @@ double Bench::evidence(int candidate) const {
 }
 
 double Bench::best_single() const {
-  size_t home = 0;
-  for (size_t s = 1; s < structures_.size(); ++s)
-    if (structures_[s].kind == 0 &&
+  int home = 0;
+  for (int s = 1; s < structures(); ++s)
+    if (structure(s).kind == 0 &&
         workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({}))
       home = s;
   double best = -INFINITY;

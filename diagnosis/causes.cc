@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kListed = 0.005;     ///< least probability that is told
 constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
-constexpr double kAlsoThere = 0.5;    ///< of the cause's own: further places
+constexpr double kSure = 0.9;       ///< a cause so probable stands beside structure of no known one
+constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
 class Teller {
  public:
@@ -64,7 +65,6 @@ class Teller {
     if (found == posterior_.hypotheses.end()) return;
     const Workbench::Estimate estimate =
         bench_.workbench(found->structure).estimate(bench_.terms(*found));
-    const Eigen::MatrixXd& G = bench_.workbench(0).gram();
     Eigen::Index first = 0;
     double squares = 0;
     for (const int c : found->candidates) {
@@ -72,7 +72,7 @@ class Teller {
       const auto size = static_cast<Eigen::Index>(block.columns.size());
       if (candidate(c).effect == cause.effect) {
         const Eigen::VectorXd v = estimate.mean.segment(first, size);
-        squares += v.dot(G(block.columns, block.columns) * v);
+        squares += v.dot(bench_.workbench(0).gram(block.columns, block.columns) * v);
         cause.survival = std::max(cause.survival, bench_.survival(c));
         add_parameters(c, estimate, first, cause);
       }
@@ -214,7 +214,8 @@ CauseResult named_cause(const View& view, const Bench& bench, const Posterior& p
   if (!best) return unknown;
   const CauseResult known = with_look_alikes(view, bench, posterior, *best);
   if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : known;
-  if (known.probability < 0.5) return unknown;
+  // Structure that is surer than the cause: what else it is, nobody knows.
+  if (best->probability < std::min(kSure, posterior.unknown)) return unknown;
   const Shares part = shares(bench, posterior);
   return part.left > part.explained ? unknown : known;
 }

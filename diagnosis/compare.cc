@@ -208,16 +208,15 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
       equations.dense(adjusted.fitted.state, noise, adjusted.fitted.noise.put_aside);
   const Changeable changes = changeable(*geometry, equations, before, after);
   const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
-  const Eigen::VectorXd steps = reading_steps(all.rows.q);
-  Eigen::MatrixXd rounding(dense.W.rows(), steps.size());
-  for (Eigen::Index j = 0; j < steps.size(); ++j)
-    rounding.col(j) = dense.W.col(geometry->variable_parameter(static_cast<int>(j))) * steps[j] / 2;
+  std::vector<int> joints;
+  for (int j = 0; j < static_cast<int>(geometry->joints().size()); ++j)
+    joints.push_back(geometry->variable_parameter(j));
   Eigen::MatrixXd tips(all.rows.rows(), 3);
   for (int row = 0; row < all.rows.rows(); ++row)
     tips.row(row) =
         geometry->link_poses(all.rows.q.row(row).transpose()).back().translation().transpose();
-  const Bench bench(rows, structures(all.rows, dense, tips, rounding), changes.candidates,
-                    changes.parameters, options.search);
+  const Bench bench(rows, structures(all.rows, dense, tips, dense.W(Eigen::all, joints)),
+                    changes.candidates, changes.parameters, options.search);
   const Posterior posterior = bench.search();
   result.none = posterior.none;
   result.unknown = posterior.unknown;

@@ -21,6 +21,8 @@ constexpr int kPasses = 4;
 constexpr size_t kMostEffects = 60;
 constexpr double kMostGrown = 2100;  ///< equations
 constexpr double kSurelyUnknown = 0.7;
+constexpr double kTried = 0.05;  ///< least probable cause that is tried alone
+constexpr int kMostTried = 4;
 constexpr double kAbsorbed = 0.02;  ///< share that survives below which nothing can be said
 
 /// All columns of a hypothesis and the prior sigma of each.
@@ -50,7 +52,7 @@ class Diagnostician {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       const DenseEquations rows = view_.kept();
       bench_ = std::make_unique<Bench>(
-          view_.whitened(), structures(data_.rows, rows, view_.tips(), view_.rounding(rows)),
+          view_.whitened(), structures(data_.rows, rows, view_.tips(), view_.by_joint(rows)),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
       const Hypothesis& best = posterior_.hypotheses.front();
@@ -129,7 +131,7 @@ class Diagnostician {
     view_.weigh(kMostGrown);
     for (int pass = 0; pass < kPasses; ++pass) {
       const DenseEquations rows = view_.kept();
-      const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.rounding(rows)),
+      const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)),
                         view_.candidates(), view_.parameters(), options_.search);
       best.structure = 0;
       best = bench.grow(best, kMostEffects);
@@ -164,6 +166,18 @@ class Diagnostician {
                                     "no explanation comes near it: a false reading"});
     result_.model = closing.model;
     result_.values = closing.after.fitted.state.xi;
+    close_each();
+  }
+
+  /// What each of the probable causes would close alone.
+  void close_each() {
+    int tried = 0;
+    for (CauseResult& each : result_.candidates) {
+      if (each.entries.empty() || each.probability < kTried || ++tried > kMostTried) continue;
+      each.rms_after = close_gap(view_.shared_geometry(), view_.adjusted(), data_, each.entries,
+                                 view_.site(), result_.noise, options_)
+                           .gap.rms_after;
+    }
   }
 
   void tell(std::string_view stage, double share) const {

@@ -35,7 +35,7 @@ struct CauseResult {
   std::vector<std::string> where = {};
   double probability = 0;
   double survival = 0;   ///< share of it that calibration cannot absorb
-  double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where not tried
+  double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
   double visible = 0;    ///< rms of its visible part over the noise
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
@@ -78,6 +78,7 @@ struct NextStep {
   std::string what;
   std::vector<std::string> separates;
   double probability_after = 0;
+  Observations rows;  ///< to measure: readings, set, and what else shall hold (nothing measured)
 };
 
 /// What simulated sessions over the same configurations taught.

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-#include <random>
 
+#include "constraints/configurations.h"
 #include "diagnosis/causes.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/linear_algebra.h"
@@ -44,10 +43,11 @@ DataSet with_copies(const DataSet& data, const std::vector<int>& rows) {
 
 struct Step {
   const char* what;
-  void (*change)(const View&, Observations& rows, Eigen::Index first);
+  void (*change)(const View&, DataSet& more, Eigen::Index first);
 };
 
-void payload(const View& view, Observations& rows, Eigen::Index first) {
+void payload(const View& view, DataSet& more, Eigen::Index first) {
+  Observations& rows = more.rows;
   if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
   const Eigen::Vector3d weight = kPayload * view.geometry().mechanics().gravity;
   for (Eigen::Index i = first; i < rows.q.rows(); ++i) {
@@ -56,27 +56,62 @@ void payload(const View& view, Observations& rows, Eigen::Index first) {
   }
 }
 
-void other_side(const View&, Observations& rows, Eigen::Index first) {
+void other_side(const View&, DataSet& more, Eigen::Index first) {
+  Observations& rows = more.rows;
   if (rows.velocity.rows() > 0) rows.velocity.bottomRows(rows.q.rows() - first) *= -1;
 }
 
-void three_times_the_speed(const View&, Observations& rows, Eigen::Index first) {
+void three_times_the_speed(const View&, DataSet& more, Eigen::Index first) {
+  Observations& rows = more.rows;
   if (rows.velocity.rows() > 0) rows.velocity.bottomRows(rows.q.rows() - first) *= 3;
 }
 
-void again_at_the_end(const View& view, Observations& rows, Eigen::Index first) {
+void again_at_the_end(const View& view, DataSet& more, Eigen::Index first) {
+  Observations& rows = more.rows;
   if (rows.time.size() > 0) rows.time.tail(rows.q.rows() - first).setConstant(view.site().end + 1);
 }
 
-void joints_elsewhere(const View& view, Observations& rows, Eigen::Index first) {
-  std::mt19937_64 random(1);
-  for (Eigen::Index i = first; i < rows.q.rows(); ++i)
-    for (Eigen::Index j = 0; j < rows.q.cols(); ++j) {
-      const Joint& joint = view.geometry().joints()[static_cast<size_t>(j)];
-      const double low = joint.limited() ? joint.lower : -std::numbers::pi;
-      const double high = joint.limited() ? joint.upper : std::numbers::pi;
-      rows.q(i, j) = low + (high - low) * std::generate_canonical<double, 53>(random);
-    }
+/// The ball that the touches of a set so far lie in: the surface may end there.
+Patch seen_of(const View& view, const Observations& rows, int set, Eigen::Index first) {
+  const Eigen::MatrixXd tips = view.tips();
+  std::vector<int> own;
+  for (int row = 0; row < first; ++row)
+    if (rows.set[row] == set) own.push_back(row);
+  Patch patch;
+  if (own.empty()) return patch;
+  patch.centre = tips(own, Eigen::all).colwise().mean().transpose();
+  for (const int row : own)
+    patch.radius = std::max(patch.radius, (tips.row(row).transpose() - patch.centre).norm());
+  return patch;
+}
+
+/// Other configurations that touch the same surfaces, or any where nothing is touched. Rows of
+/// shared points stay: elsewhere they would be of another point.
+void joints_elsewhere(const View& view, DataSet& more, Eigen::Index first) {
+  const State& state = view.adjusted().fitted.state;
+  std::vector<std::vector<int>> rows_of(more.sets.size());
+  for (int row = static_cast<int>(first); row < more.rows.rows(); ++row)
+    rows_of[more.rows.set[row]].push_back(row);
+  DataSet found;
+  found.sets = more.sets;
+  std::vector<SampleRequest> requests;
+  for (int s = 0; s < static_cast<int>(more.sets.size()); ++s) {
+    const Method& method = *more.sets[s].method;
+    if (method.group_freedom() > 0 || method.paired()) continue;
+    SampleRequest request;
+    request.set = s;
+    request.rows = static_cast<int>(rows_of[s].size());
+    request.own = state.own[s];
+    if (method.constrains()) request.patch = seen_of(view, more.rows, s, first);
+    requests.push_back(std::move(request));
+  }
+  Random random(1);
+  sample_rows(view.geometry(), state.xi, requests, random, found);
+  std::vector<std::size_t> used(more.sets.size(), 0);
+  for (int i = 0; i < found.rows.rows(); ++i) {
+    const int s = found.rows.set[i];
+    more.rows.q.row(rows_of[s][used[s]++]) = found.rows.q.row(i);
+  }
 }
 
 constexpr Step kSteps[] = {
@@ -181,11 +216,16 @@ std::vector<NextStep> next_steps(const View& view, const DataSet& data,
   std::vector<NextStep> steps;
   for (const Step& step : kSteps) {
     DataSet more = with_copies(data, spread_rows(data));
-    step.change(view, more.rows, data.rows.rows());
+    step.change(view, more, data.rows.rows());
     const double gain = (paper.apart(more) - now) / 2;
     const double after = 1 / (1 + (1 - p) / p * std::exp(-std::max(gain, 0.0)));
-    if (after > p + kWorth)
-      steps.push_back({step.what, {first_label(diagnosis.verdict), first_label(*other)}, after});
+    if (after <= p + kWorth) continue;
+    std::vector<int> added(more.rows.rows() - data.rows.rows());
+    std::iota(added.begin(), added.end(), data.rows.rows());
+    steps.push_back({step.what,
+                     {first_label(diagnosis.verdict), first_label(*other)},
+                     after,
+                     taken(more.rows, added)});
   }
   std::sort(steps.begin(), steps.end(), [](const NextStep& a, const NextStep& b) {
     return a.probability_after > b.probability_after;

@@ -14,7 +14,7 @@ class Search {
   explicit Search(const Bench& bench)
       : bench_(bench),
         candidates_(static_cast<int>(bench.blocks_.size())),
-        kept_(bench.structures_.size(), 0) {}
+        kept_(bench.workbenches_.size(), 0) {}
 
   Posterior run() {
     visit_singles();
@@ -55,7 +55,7 @@ class Search {
         const Bench::Single single = bench_.weigh(workbench, c);
         best = std::max(best, note({{c}, s, 0, {single.size}}, single.log_sum));
       }
-      kept_[s] = bench_.structures_[s].kind == 0;
+      kept_[s] = bench_.structure(s).kind == 0;
       if (!kept_[s]) ranked.emplace_back(-best, s);
     }
     std::sort(ranked.begin(), ranked.end());
@@ -114,7 +114,7 @@ class Search {
 
   void share_out(const Hypothesis& h, Posterior& posterior) const {
     const double p = std::exp(h.log_weight);
-    const bool unknown = bench_.structures_[h.structure].kind > 0;
+    const bool unknown = bench_.structure(h.structure).kind > 0;
     if (unknown) posterior.unknown += p;
     if (!unknown && h.candidates.empty()) posterior.none += p;
     std::set<std::string> families;

@@ -46,7 +46,7 @@ struct Posterior {
 /// Everything that the search needs and that does not depend on y.
 class Bench {
  public:
-  Bench(const Whitened& rows, const std::vector<Structure>& structures, const Candidates& all,
+  Bench(const Whitened& rows, std::vector<Structure> structures, const Candidates& all,
         const std::vector<EffectParameter>& parameters, const SearchRule& rule);
 
   /// Exchanges y in every workbench.
@@ -59,10 +59,10 @@ class Bench {
   const Workbench& workbench(int structure) const { return workbenches_[structure]; }
   const Block& block(int candidate) const { return blocks_[candidate]; }
   const Candidates& candidates() const { return all_; }
-  const Structure& structure(int s) const { return structures_[s]; }
+  const Structure& structure(int s) const { return workbenches_[s].structure(); }
   /// Variance of the noise in this structure, over that of the rows' whitening.
-  double noise_variance(int s) const { return structures_[s].noise; }
-  int structures() const { return static_cast<int>(structures_.size()); }
+  double noise_variance(int s) const { return structure(s).noise; }
+  int structures() const { return static_cast<int>(workbenches_.size()); }
   /// Log evidence of one candidate beside noise alone, over that of none.
   double evidence(int candidate) const;
   /// Share of the candidate's main columns that calibration cannot absorb (0 to 1).
@@ -87,11 +87,12 @@ class Bench {
   Single weigh(const Workbench& workbench, int candidate) const;
   double plausibility(int candidate, double size) const;
   double held(const Hypothesis& h) const;
-  void agree(int structure, const Whitened& rows);
+  void agree(int structure);
 
   const Candidates& all_;
   const SearchRule rule_;
-  std::vector<Structure> structures_;
+  std::shared_ptr<const Whitened> rows_;
+  std::shared_ptr<const Groups> groups_;  ///< by candidate
   std::vector<Workbench> workbenches_;
   std::vector<Block> blocks_;
   std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1

@@ -43,7 +43,7 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
   const DiagnosisOptions options;
   const View view(robot, data, options, {});
   const DenseEquations rows = view.kept();
-  const Bench bench(view.whitened(), noise_alone(data.rows, rows, view.rounding(rows)),
+  const Bench bench(view.whitened(), noise_alone(data.rows, rows, view.by_joint(rows)),
                     view.candidates(), view.parameters(), options.search);
   for (const std::string& each : asked) {
     std::map<std::string, std::pair<double, int>> best;  // by place

@@ -1,5 +1,9 @@
 // Covariance of two equations: that of their configurations, a Gaussian bell of the distance, times
-// the cosine between the directions that they measure in.
+// the cosine between the directions that they measure in. Where a joint is off by a function of the
+// readings, it is
+//   J(1) J(2) mean_ab (1 + bell_a) (1 + bell_b) / 4
+// with J what the joint moves the equation (of mean square 1 over all equations) and bell_a that of
+// the difference of reading a: functions of one reading and of two, all of them smooth.
 #include "diagnosis/structures.h"
 
 #include <cmath>
@@ -18,14 +22,16 @@ constexpr struct {
 constexpr double kUsual = 0.4;
 constexpr double kMore[] = {1.4, 2.8, 5.6};              ///< that is structure
 constexpr double kSizes[] = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< of smooth structure, over the noise
+constexpr double kOfJoint[] = {0.7, 1.4, 2.8, 5.6};      ///< of errors of one joint
 constexpr double kJoints = 1.0;                          ///< rad
 constexpr double kPlace = 0.15;                          ///< m
 constexpr double kTime = 0.1;                            ///< of the whole
 
 class Kernel {
  public:
-  Kernel(const Observations& data, const DenseEquations& rows, Eigen::MatrixXd tips)
-      : data_(data), rows_(rows), tips_(std::move(tips)) {
+  Kernel(const Observations& data, const DenseEquations& rows, Eigen::MatrixXd tips,
+         Eigen::MatrixXd by_joint)
+      : data_(data), rows_(rows), tips_(std::move(tips)), by_joint_(std::move(by_joint)) {
     if (data.time.size() > 0) span_ = data.time.maxCoeff() - data.time.minCoeff();
     direction_ = rows.shift;
     for (auto each : direction_.rowwise())
@@ -35,7 +41,8 @@ class Kernel {
   bool possible(Closeness closeness) const { return closeness != Closeness::time || span_ > 0; }
 
   /// Covariance of noise of one and of the readings' rounding.
-  Eigen::MatrixXd rounded(const Eigen::MatrixXd& rounding) const {
+  Eigen::MatrixXd rounded() const {
+    const Eigen::MatrixXd rounding = by_joint_ * (reading_steps(data_.q) / 2).asDiagonal();
     const auto n = static_cast<Eigen::Index>(rows_.row.size());
     Eigen::MatrixXd K = Eigen::MatrixXd::Identity(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
@@ -47,6 +54,20 @@ class Kernel {
           if (data_.q(a, k) == data_.q(b, k)) shared += rounding(i, k) * rounding(j, k);
         K(i, j) += shared / 3;  // uniform within half a digit either way
         if (i != j) K(j, i) = K(i, j);
+      }
+    return K;
+  }
+
+  /// Of errors of one joint.
+  Eigen::MatrixXd of_joint(Eigen::Index joint) const {
+    const auto n = static_cast<Eigen::Index>(rows_.row.size());
+    Eigen::VectorXd J = by_joint_.col(joint);
+    if (J.norm() > 0) J *= std::sqrt(static_cast<double>(n)) / J.norm();
+    Eigen::MatrixXd K = J * J.transpose();
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        const int a = rows_.row[i], b = rows_.row[j];
+        K(i, j) = K(j, i) = a < 0 || b < 0 ? 0 : K(i, j) * alike(a, b);
       }
     return K;
   }
@@ -70,9 +91,23 @@ class Kernel {
                       data_.repeat[a] == data_.repeat[b] && data_.set[a] == data_.set[b]);
   }
 
+  static double bell(double squared) { return std::exp(-squared / 2); }
+
+  /// Covariance of one function of one or two readings, the mean over all pairs of joints.
+  double alike(int a, int b) const {
+    double sum = 0, squares = 0;
+    const Eigen::Index joints = data_.q.cols();
+    for (Eigen::Index j = 0; j < joints; ++j) {
+      const double each = (1 + bell(std::pow((data_.q(a, j) - data_.q(b, j)) / kJoints, 2))) / 2;
+      sum += each;
+      squares += each * each;
+    }
+    const auto pairs = static_cast<double>(joints * (joints - 1));
+    return pairs > 0 ? (sum * sum - squares) / pairs : sum;
+  }
+
   double close(Closeness closeness, int a, int b) const {
     if (repeats(a, b)) return 1;
-    const auto bell = [](double squared) { return std::exp(-squared / 2); };
     switch (closeness) {
       case Closeness::same:
         return 0;
@@ -80,6 +115,8 @@ class Kernel {
         return bell((data_.q.row(a) - data_.q.row(b)).squaredNorm() / (kJoints * kJoints));
       case Closeness::place:
         return bell((tips_.row(a) - tips_.row(b)).squaredNorm() / (kPlace * kPlace));
+      case Closeness::turned:
+        return 0;  // of one joint: of_joint()
       case Closeness::time:
         return bell(std::pow((data_.time[a] - data_.time[b]) / (kTime * span_), 2));
     }
@@ -88,7 +125,7 @@ class Kernel {
 
   const Observations& data_;
   const DenseEquations& rows_;
-  const Eigen::MatrixXd tips_;
+  const Eigen::MatrixXd tips_, by_joint_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
 };
@@ -105,6 +142,8 @@ std::string_view to_string(Closeness closeness) {
       return "place";
     case Closeness::time:
       return "time";
+    case Closeness::turned:
+      return "joint errors";
   }
   return "";
 }
@@ -123,14 +162,14 @@ Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q) {
 }
 
 std::vector<Structure> noise_alone(const Observations& data, const DenseEquations& rows,
-                                   const Eigen::MatrixXd& rounding) {
-  return {{0, 0, cholesky_root(Kernel(data, rows, {}).rounded(rounding)), 1, 1}};
+                                   const Eigen::MatrixXd& by_joint) {
+  return {{0, 0, cholesky_root(Kernel(data, rows, {}, by_joint).rounded()), 1, 1}};
 }
 
 std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
-                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& rounding) {
-  const Kernel kernel(data, rows, tips);
-  const Eigen::MatrixXd noise = kernel.rounded(rounding);
+                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& by_joint) {
+  const Kernel kernel(data, rows, tips, by_joint);
+  const Eigen::MatrixXd noise = kernel.rounded();
   const Eigen::MatrixXd same = kernel.of(Closeness::same);
   std::vector<Structure> list;
   for (const auto& [kappa, probability] : kShared)
@@ -145,6 +184,12 @@ std::vector<Structure> structures(const Observations& data, const DenseEquations
     for (const double kappa : sizes)
       list.push_back({static_cast<int>(closeness), kappa,
                       cholesky_root((alone ? noise : usual) + kappa * kappa * K), 1, 1});
+  }
+  for (Eigen::Index joint = 0; joint < by_joint.cols(); ++joint) {
+    const Eigen::MatrixXd K = kernel.of_joint(joint);
+    for (const double kappa : kOfJoint)
+      list.push_back({static_cast<int>(Closeness::turned), kappa,
+                      cholesky_root(usual + kappa * kappa * K), 1, 1});
   }
   double unknown = 0;
   for (const Structure& each : list) unknown += each.kind > 0;

@@ -16,20 +16,22 @@ enum class Closeness {
   joints = 2,  ///< similar joint readings
   place = 3,   ///< near each other in the cell
   time = 4,    ///< soon after each other
+  turned = 5,  ///< one joint is off by a smooth function of one or two readings
 };
 std::string_view to_string(Closeness closeness);
 
 /// Noise alone first (and noise that immediate repeats share a part of), then every closeness at
 /// several sizes over the noise. `rows` are the
 /// equations that the workbench sees, `tips` (rows of the data set x 3) where the endpoint is.
-/// `rounding` (equations x joints) is what half the last digit of each joint's reading moves an
-/// equation: rows of one reading share it, however often they are repeated.
+/// `by_joint` (equations x joints) is what an error of each joint's reading moves an equation. That
+/// of half the reading's last digit is shared by rows of one reading, however often they are
+/// repeated.
 std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
-                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& rounding);
+                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& by_joint);
 
 /// Only the first of these.
 std::vector<Structure> noise_alone(const Observations& data, const DenseEquations& rows,
-                                   const Eigen::MatrixXd& rounding);
+                                   const Eigen::MatrixXd& by_joint);
 
 /// Step to which each joint's readings are rounded (rad or m): the largest of 1, 2, 5 times a power
 /// of ten that they are all multiples of; 0 below 1e-9.

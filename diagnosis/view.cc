@@ -144,13 +144,11 @@ Eigen::MatrixXd View::tips() const {
   return tips;
 }
 
-Eigen::MatrixXd View::rounding(const DenseEquations& kept) const {
-  const Eigen::VectorXd steps = reading_steps(data_.rows.q);
-  Eigen::MatrixXd moved(kept.W.rows(), steps.size());
-  for (Eigen::Index j = 0; j < steps.size(); ++j)
-    moved.col(j) =
-        kept.W.col(geometry_->variable_parameter(static_cast<int>(j))) * (steps[j] / 2 / scale_);
-  return moved;
+Eigen::MatrixXd View::by_joint(const DenseEquations& kept) const {
+  std::vector<int> columns;
+  for (int j = 0; j < static_cast<int>(geometry_->joints().size()); ++j)
+    columns.push_back(geometry_->variable_parameter(j));
+  return kept.W(Eigen::all, columns) / scale_;
 }
 
 std::vector<Scale> View::noise_of_sets() const {

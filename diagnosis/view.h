@@ -31,8 +31,9 @@ class View {
   Whitened whitened() const;
   DenseEquations kept() const;
   Eigen::MatrixXd tips() const;
-  /// What half the last digit of each joint's reading moves each equation of kept(); whitened.
-  Eigen::MatrixXd rounding(const DenseEquations& kept) const;
+  /// What an error of each joint's reading moves each equation of kept() (equations x joints, 1/rad
+  /// or 1/m); whitened.
+  Eigen::MatrixXd by_joint(const DenseEquations& kept) const;
   /// What the geometry alone leaves of `rows` (as whitened()).
   Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
   const std::vector<char>& put_aside() const { return put_aside_; }

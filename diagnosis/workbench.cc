@@ -6,41 +6,62 @@
 
 namespace selfcal {
 
-Workbench::Workbench(const Whitened& rows, const Structure& structure) : root_(structure.root) {
-  equations_ = rows.A.rows();
-  const Eigen::Index n = rows.A.cols();
-  Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(equations_ + n, n);
-  stacked.topRows(equations_) = whitened(rows.A);
-  stacked.bottomRows(n).diagonal() = rows.weight;
+Workbench::Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
+                     std::shared_ptr<const Groups> groups) {
+  Fixed fixed{std::move(rows), std::move(groups), std::move(structure), {}, {}, {}};
+  const Eigen::MatrixXd& root = fixed.structure.root;
+  const Eigen::Index equations = fixed.rows->A.rows(), n = fixed.rows->A.cols();
+  Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(equations + n, n);
+  stacked.topRows(equations) = solve_lower(root, fixed.rows->A);
+  stacked.bottomRows(n).diagonal() = fixed.rows->weight;
   const OrthogonalColumns qr = orthogonal_columns(stacked);
-  Q_ = qr.Q;
+  fixed.Q = qr.Q;
   constant_ = -qr.log_volume;
-  for (Eigen::Index i = 0; i < root_.rows(); ++i) constant_ -= std::log(root_(i, i));
+  for (Eigen::Index i = 0; i < root.rows(); ++i) constant_ -= std::log(root(i, i));
   // Freedom of the rows alone: each prior determines the share of its parameter that they do not.
-  nu_ = static_cast<double>(equations_) - Q_.topRows(equations_).squaredNorm();
-  C_ = whitened(rows.C);
-  const Eigen::MatrixXd QC = Q_.topRows(equations_).transpose() * C_;
-  G_.noalias() = C_.transpose() * C_;
-  G_.noalias() -= QC.transpose() * QC;
-  look_at(rows.y, rows.pull);
-}
-
-Eigen::MatrixXd Workbench::whitened(const Eigen::MatrixXd& x) const {
-  return solve_lower(root_, x);
+  nu_ = static_cast<double>(equations) - fixed.Q.topRows(equations).squaredNorm();
+  const Eigen::MatrixXd C = solve_lower(root, fixed.rows->C);
+  fixed.QC = fixed.Q.topRows(equations).transpose() * C;
+  for (const std::vector<int>& group : *fixed.groups) {
+    fixed.at.push_back(kept_.size());
+    for (const int i : group)
+      for (const int j : group)
+        kept_.push_back(C.col(i).dot(C.col(j)) - fixed.QC.col(i).dot(fixed.QC.col(j)));
+  }
+  fixed_ = std::make_shared<const Fixed>(std::move(fixed));
+  look_at(fixed_->rows->y, fixed_->rows->pull);
 }
 
 Eigen::VectorXd Workbench::beyond_geometry(const Eigen::VectorXd& x,
                                            const Eigen::VectorXd& pull) const {
-  Eigen::VectorXd z(Q_.rows());
-  z << whitened(x), pull;
-  z -= Q_ * (Q_.transpose() * z).eval();
+  const Eigen::MatrixXd& Q = fixed_->Q;
+  Eigen::VectorXd z(Q.rows());
+  z << solve_lower(fixed_->structure.root, x), pull;
+  z -= Q * (Q.transpose() * z).eval();
   return z;
 }
 
 void Workbench::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull) {
   const Eigen::VectorXd left = beyond_geometry(y, pull);
-  g_ = C_.transpose() * left.head(equations_);
+  const Eigen::VectorXd back =
+      fixed_->structure.root.transpose().triangularView<Eigen::Upper>().solve(
+          left.head(fixed_->rows->A.rows()));
+  g_ = fixed_->rows->C.transpose() * back;
   yy_ = left.squaredNorm();  // the strain on the priors too: a cause relieves both
+}
+
+Eigen::MatrixXd Workbench::products(const std::vector<int>& a) const {
+  const Eigen::MatrixXd back =
+      fixed_->structure.root.transpose().triangularView<Eigen::Upper>().solve(
+          solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a)));
+  return back.transpose() * fixed_->rows->C - fixed_->QC(Eigen::all, a).transpose() * fixed_->QC;
+}
+
+Eigen::MatrixXd Workbench::gram(const std::vector<int>& a, const std::vector<int>& b) const {
+  const Eigen::MatrixXd left = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a));
+  const Eigen::MatrixXd right = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, b));
+  return left.transpose() * right -
+         fixed_->QC(Eigen::all, a).transpose() * fixed_->QC(Eigen::all, b);
 }
 
 namespace {
@@ -79,10 +100,18 @@ double Workbench::log_evidence(std::span<const Term> terms) const {
       s.column[s.n] = term.block->columns[k];
       s.scale[s.n++] = term.size * term.block->unit[static_cast<Eigen::Index>(k)];
     }
+  // G of the columns: kept for one block of the groups, worked out for any others.
+  const bool kept = terms.size() == 1 && terms.front().block->group >= 0;
+  Eigen::MatrixXd worked_out;
+  if (!kept && s.n > 0) {
+    const std::vector<int> columns(s.column, s.column + s.n);
+    worked_out = gram(columns, columns);
+  }
+  const double* G = kept ? block(terms.front().block->group) : worked_out.data();
   double half_log_det = 0, explained = 0;
   for (int i = 0; i < s.n; ++i) {
     for (int j = 0; j <= i; ++j) {
-      double sum = s.scale[i] * s.scale[j] * G_(s.column[i], s.column[j]) + (i == j ? 1 : 0);
+      double sum = s.scale[i] * s.scale[j] * G[i * s.n + j] + (i == j ? 1 : 0);
       for (int k = 0; k < j; ++k) sum -= s.L[i][k] * s.L[j][k];
       s.L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / s.L[j][j];
     }
@@ -96,20 +125,20 @@ double Workbench::log_evidence(std::span<const Term> terms) const {
 }
 
 Workbench Workbench::given(std::span<const Term> terms) const {
-  Workbench rest;
-  rest.G_ = G_;
-  rest.g_ = g_;
-  rest.yy_ = yy_;
-  rest.nu_ = nu_;
-  rest.constant_ = constant_;
+  Workbench rest = *this;
   if (terms.empty()) return rest;
   const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
-                            Eigen::MatrixXd(D.asDiagonal() * G_(columns, columns) * D.asDiagonal());
+  const Eigen::MatrixXd G = products(columns);
+  const Eigen::MatrixXd H =
+      Eigen::MatrixXd::Identity(D.size(), D.size()) +
+      Eigen::MatrixXd(D.asDiagonal() * G(Eigen::all, columns) * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
-  const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * G_(columns, Eigen::all));
+  const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * G);
   const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
-  rest.G_.noalias() -= seen.transpose() * seen;
+  std::size_t at = 0;
+  for (const std::vector<int>& group : *fixed_->groups)
+    for (const int i : group)
+      for (const int j : group) rest.kept_[at++] -= seen.col(i).dot(seen.col(j));
   rest.g_ -= seen.transpose() * z;
   rest.yy_ -= z.squaredNorm();
   rest.constant_ -= L.diagonal().array().log().sum();
@@ -118,8 +147,9 @@ Workbench Workbench::given(std::span<const Term> terms) const {
 
 Workbench::Estimate Workbench::estimate(std::span<const Term> terms) const {
   const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
-                            Eigen::MatrixXd(D.asDiagonal() * G_(columns, columns) * D.asDiagonal());
+  const Eigen::MatrixXd H =
+      Eigen::MatrixXd::Identity(D.size(), D.size()) +
+      Eigen::MatrixXd(D.asDiagonal() * gram(columns, columns) * D.asDiagonal());
   const Eigen::MatrixXd inverse = inverse_of_positive(H);
   Estimate estimate;
   const Eigen::VectorXd g = D.cwiseProduct(g_(columns));

@@ -5,12 +5,14 @@
 // that no known effect explains, of covariance s^2 kappa^2 K. For a set S of candidates with prior
 // v ~ N(0, s^2 V) the integral over a, v and s (prior 1/s) is
 //   log p(y | S) = const(K) - 1/2 log|I + V G| - nu/2 log Q,   Q = y'My - g'(V^-1 + G)^-1 g
-// with M the projection beyond the whitened geometry, G = C'MC, g = C'My. So G and g are made
-// once for each K, and any set costs a Cholesky factor of its own size. nu counts what the rows
-// alone determine; the noise of each K is taken to be right already (Bench::agree).
+// with M the projection beyond the whitened geometry, G = C'MC, g = C'My. g is made once for each K
+// and y, and of G, which is far larger than the rows, only the blocks of what is weighed alone; a
+// set of several adds the products between them. nu counts what the rows alone determine; the noise
+// of each K is taken to be right already (Bench::agree).
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,11 +40,17 @@ struct Structure {
 struct Block {
   std::vector<int> columns;
   Eigen::VectorXd unit;  ///< prior sigma of each at a size of one
+  int group = -1;        ///< its place in the workbench's groups; -1: it is in none
 };
+
+/// Columns of C that are weighed together: a workbench keeps their products.
+using Groups = std::vector<std::vector<int>>;
 
 class Workbench {
  public:
-  Workbench(const Whitened& rows, const Structure& structure);
+  Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
+            std::shared_ptr<const Groups> groups);
+  const Structure& structure() const { return fixed_->structure; }
 
   /// Exchanges y (for a null distribution); `y` and `pull` as in Whitened.
   void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
@@ -51,8 +59,8 @@ class Workbench {
     const Block* block;
     double size;
   };
-  /// The same rows with `terms` integrated out as the geometry is: what they leave for others. It
-  /// cannot look at another y.
+  /// The same rows with `terms` integrated out as the geometry is: what they leave for one other
+  /// block of its groups. It can neither look at another y nor be given more.
   Workbench given(std::span<const Term> terms) const;
   /// log p(y | terms), without the constant that all structures and terms share.
   double log_evidence(std::span<const Term> terms) const;
@@ -64,7 +72,8 @@ class Workbench {
   };
   Estimate estimate(std::span<const Term> terms) const;
 
-  const Eigen::MatrixXd& gram() const { return G_; }
+  /// Of G, rows a by columns b.
+  Eigen::MatrixXd gram(const std::vector<int>& a, const std::vector<int>& b) const;
   const Eigen::VectorXd& right() const { return g_; }
   double total() const { return yy_; }
   double freedom() const { return nu_; }
@@ -72,12 +81,23 @@ class Workbench {
   Eigen::VectorXd beyond_geometry(const Eigen::VectorXd& x, const Eigen::VectorXd& pull) const;
 
  private:
+  /// What does not depend on y.
+  struct Fixed {
+    std::shared_ptr<const Whitened> rows;
+    std::shared_ptr<const Groups> groups;
+    Structure structure;
+    Eigen::MatrixXd Q;            ///< of the whitened geometry and its priors
+    Eigen::MatrixXd QC;           ///< geometry x columns: what the geometry holds of each column
+    std::vector<std::size_t> at;  ///< of each group's block in `kept_`
+  };
   Workbench() = default;
-  Eigen::MatrixXd whitened(const Eigen::MatrixXd& x) const;
+  /// a by all columns of G.
+  Eigen::MatrixXd products(const std::vector<int>& a) const;
+  const double* block(int group) const { return &kept_[fixed_->at[group]]; }
 
-  Eigen::MatrixXd root_, Q_, C_, G_;
+  std::shared_ptr<const Fixed> fixed_;
+  std::vector<double> kept_;  ///< the groups' blocks of G, one after the other
   Eigen::VectorXd g_;
-  Eigen::Index equations_ = 0;
   double yy_ = 0, nu_ = 0, constant_ = 0;
 };
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace selfcal {
 namespace {
 
@@ -19,8 +22,7 @@ TEST(ReadingSteps, SaysNothingOfReadingsThatAreNotRounded) {
   EXPECT_EQ(reading_steps(Eigen::MatrixXd::Constant(3, 1, 0.12345678912345))[0], 0);
 }
 
-/// Three touches of one plane, the last two one configuration; readings are whole multiples of 10
-/// urad.
+/// Three touches of one plane, the last two one configuration.
 struct Touches {
   Touches() {
     data.q.resize(3, 1);
@@ -40,8 +42,8 @@ struct Touches {
 
 TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
   const Touches t;
-  // Half a digit moves every equation by 0.6 sigma: a variance of 0.36 / 3.
-  const auto list = noise_alone(t.data, t.rows, Eigen::MatrixXd::Constant(3, 1, 0.6));
+  // Readings are whole multiples of 0.05 rad: half of it moves every equation by 0.6 sigma.
+  const auto list = noise_alone(t.data, t.rows, Eigen::MatrixXd::Constant(3, 1, 24));
   const Eigen::MatrixXd S = list.front().root * list.front().root.transpose();
   EXPECT_NEAR(S(0, 0), 1.12, 1e-12);
   EXPECT_NEAR(S(1, 2), 0.12, 1e-12);
@@ -61,6 +63,26 @@ TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   }
   EXPECT_NEAR(noise, 1, 1e-12);
   EXPECT_NEAR(unknown, 1, 1e-12);
+}
+
+TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
+  Observations data;
+  data.q.resize(2, 2);
+  data.q << 0.1234567891, 0.2, 1.1234567891, 0.2;
+  data.set = {0, 0};
+  DenseEquations rows;
+  rows.row = {0, 1};
+  rows.shift = Eigen::MatrixXd::Identity(2, 3);
+  Eigen::MatrixXd by_joint(2, 2);
+  by_joint << 3, 0, 4, 5;
+  const auto list = structures(data, rows, Eigen::MatrixXd::Zero(2, 3), by_joint);
+  const auto found = std::ranges::find(list, static_cast<int>(Closeness::turned), &Structure::kind);
+  ASSERT_NE(found, list.end());
+  const Eigen::MatrixXd S = found->root * found->root.transpose();
+  // The first joint's column of mean square 1 is (3, 4) sqrt 2 / 5; its reading differs by a
+  // radian, the other's does not.
+  const double both = 12 * 2.0 / 25, alike = (1 + std::exp(-0.5)) / 2;
+  EXPECT_NEAR(S(0, 1), found->kappa * found->kappa * both * alike, 1e-12);
 }
 
 }  // namespace

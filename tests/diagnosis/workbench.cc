@@ -29,9 +29,14 @@ struct Case {
     rows.y = random_matrix(14, 1, random);
     structure.root = cholesky_root(Eigen::MatrixXd::Identity(14, 14));
   }
+  Workbench bench() const {
+    return {std::make_shared<const Whitened>(rows), structure,
+            std::make_shared<const Groups>(Groups{first.columns, second.columns})};
+  }
   Whitened rows;
   Structure structure;
-  Block first{{0, 1}, Eigen::Vector2d(0.5, 2)}, second{{3}, Eigen::VectorXd::Constant(1, 1.5)};
+  Block first{{0, 1}, Eigen::Vector2d(0.5, 2), 0};
+  Block second{{3}, Eigen::VectorXd::Constant(1, 1.5), 1};
 };
 
 double worked_out_whole(const Whitened& rows, const Eigen::MatrixXd& noise,
@@ -56,7 +61,7 @@ constexpr double kRounding = 1e-9;
 
 TEST(Workbench, GivesTheEvidenceThatTheWholeIntegralGives) {
   const Case one;
-  const Workbench bench(one.rows, one.structure);
+  const Workbench bench = one.bench();
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(14, 14);
   const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
   EXPECT_NEAR(bench.log_evidence(none), worked_out_whole(one.rows, I, none), kRounding);
@@ -69,14 +74,14 @@ TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
   const Eigen::MatrixXd B = random_matrix(14, 14, random);
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(14, 14) + B * B.transpose() / 14;
   one.structure = {1, 1, cholesky_root(noise), 1, 1};
-  const Workbench bench(one.rows, one.structure);
+  const Workbench bench = one.bench();
   const std::vector<Workbench::Term> terms{{&one.first, 1}};
   EXPECT_NEAR(bench.log_evidence(terms), worked_out_whole(one.rows, noise, terms), kRounding);
 }
 
 TEST(Workbench, GivenSomeCausesWeighsOthersAsTogether) {
   const Case one;
-  const Workbench bench(one.rows, one.structure);
+  const Workbench bench = one.bench();
   const std::vector<Workbench::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}};
   std::vector<Workbench::Term> both = first;
   both.push_back(second.front());
@@ -91,7 +96,7 @@ TEST(Workbench, NeverExplainsMoreThanThereIs) {
   one.rows.pull.setConstant(20);
   one.rows.y = 50 * one.rows.C.col(0) + 40 * one.rows.A.col(1);
   one.first.unit = Eigen::Vector2d(100, 100);
-  const Workbench bench(one.rows, one.structure);
+  const Workbench bench = one.bench();
   const std::vector<Workbench::Term> first{{&one.first, 16}};
   EXPECT_GT(bench.estimate(first).variance, 0);
   EXPECT_GE(bench.given(first).total(), 0);
@@ -104,7 +109,7 @@ TEST(Workbench, EstimatesACauseThatIsThereWithinItsSigma) {
   one.rows.y = 3.0 * one.rows.C.col(0) - 1.0 * one.rows.C.col(1) +
                1e-3 * random_matrix(14, 1, random).col(0);
   one.first.unit = Eigen::Vector2d(1e5, 1e5);  // over the noise
-  const Workbench bench(one.rows, one.structure);
+  const Workbench bench = one.bench();
   const std::vector<Workbench::Term> terms{{&one.first, 1}};
   const Workbench::Estimate estimate = bench.estimate(terms);
   const Eigen::VectorXd sigma =
