@@ -97,8 +97,9 @@ void Bench::agree(int s) {
   }
 }
 
-void Bench::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull) {
-  for (Workbench& workbench : workbenches_) workbench.look_at(y, pull);
+void Bench::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone) {
+  for (Workbench& workbench : workbenches_)
+    if (!noise_alone || workbench.structure().kind == 0) workbench.look_at(y, pull);
 }
 
 double Bench::plausibility(int candidate, double size) const {

@@ -25,7 +25,7 @@ double resampled_p(const View& view, Bench& bench, const Observations& data, int
       if (made) found->second = (random() & 1) ? 1 : -1;
       flipped[e] *= found->second;
     }
-    bench.look_at(flipped, no_pull);
+    bench.look_at(flipped, no_pull, true);
     if (bench.best_single() >= observed) ++as_good;
   }
   bench.look_at(rows.y, rows.pull);

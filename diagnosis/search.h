@@ -49,8 +49,8 @@ class Bench {
   Bench(const Whitened& rows, std::vector<Structure> structures, const Candidates& all,
         const std::vector<EffectParameter>& parameters, const SearchRule& rule);
 
-  /// Exchanges y in every workbench.
-  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
+  /// Exchanges y in every workbench, or in those of noise alone: enough for best_single().
+  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone = false);
   Posterior search() const;
   /// Largest log evidence of one candidate over that of none, in the noise that explains the rows
   /// best without any: the statistic of the null distribution.
