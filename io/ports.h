@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/result.h"
@@ -41,6 +42,12 @@ struct EncoderScale {
   std::int64_t zero = 0;
 };
 
+/// What a port has met, and how often.
+struct Tally {
+  std::string_view name;
+  std::uint64_t count = 0;
+};
+
 class EncoderSource {
  public:
   virtual ~EncoderSource() = default;
@@ -49,6 +56,9 @@ class EncoderSource {
   /// source is broken for good; silence is no failure, the service notices it.
   virtual Result<void> take(std::vector<EncoderSample>& out) = 0;
   virtual std::uint64_t dropped() const = 0;  ///< samples lost since the start
+  virtual std::vector<Tally> tallies() const {
+    return {};
+  }  ///< of what went wrong, since the start
   /// Senders heard at the moment, where the transport can tell: more than one are two robots.
   virtual int senders() const { return 1; }
   /// What is wrong at the moment, in a sentence for a person; empty when nothing is.

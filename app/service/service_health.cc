@@ -52,12 +52,16 @@ HealthMessage Service::health_of_encoders() const {
   const bool alive = senses_.encoders_alive(now_);
   const std::string trouble = ports_.encoders->trouble();
   const Health level = !alive ? Health::error : trouble.empty() ? Health::ok : Health::warn;
-  return {"selfcal: encoders",
-          level,
-          with_trouble(alive ? "readings come in" : "silent", trouble),
-          {{"rate_hz", text(senses_.rate())},
-           {"dropped", std::to_string(senses_.samples_dropped())},
-           {"out_of_order", std::to_string(senses_.samples().out_of_order())}}};
+  HealthMessage message{"selfcal: encoders",
+                        level,
+                        with_trouble(alive ? "readings come in" : "silent", trouble),
+                        {{"rate_hz", text(senses_.rate())},
+                         {"dropped", std::to_string(senses_.samples_dropped())},
+                         {"out_of_order", std::to_string(senses_.samples().out_of_order())}}};
+  for (const Tally& each : ports_.encoders->tallies())
+    if (each.count > 0)
+      message.values.emplace_back("met_" + std::string(each.name), std::to_string(each.count));
+  return message;
 }
 
 HealthMessage Service::health_of_trigger() const {

@@ -91,7 +91,7 @@ std::string CanEncoders::trouble() const {
   return faults_.trouble(monotonic_now());
 }
 
-std::vector<CanTally> CanEncoders::tallies() const {
+std::vector<Tally> CanEncoders::tallies() const {
   const std::lock_guard lock(mutex_);
   return faults_.tallies();
 }

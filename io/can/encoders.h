@@ -37,7 +37,7 @@ class CanEncoders : public EncoderSource {
   std::string trouble() const override;
 
   /// Every fault and how often it was met.
-  std::vector<CanTally> tallies() const;
+  std::vector<Tally> tallies() const override;
   /// Cycles that gave no sample.
   std::uint64_t incomplete() const;
 

@@ -80,8 +80,8 @@ void CanFaults::note_error_frame(const CanFrame& frame, Nanoseconds now) {
   }
 }
 
-std::vector<CanTally> CanFaults::tallies() const {
-  std::vector<CanTally> tallies;
+std::vector<Tally> CanFaults::tallies() const {
+  std::vector<Tally> tallies;
   for (int i = 0; i < kCanFaults; ++i) tallies.push_back({kTellings[i].name, entries_[i].count});
   return tallies;
 }

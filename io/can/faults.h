@@ -32,12 +32,6 @@ enum class CanFault : std::uint8_t {
 inline constexpr int kCanFaults = 15;
 std::string_view to_string(CanFault fault);
 
-/// A fault's name and how often it was met.
-struct CanTally {
-  std::string_view name;
-  std::uint64_t count = 0;
-};
-
 /// Not thread-safe. Times are of the time base.
 class CanFaults {
  public:
@@ -56,7 +50,7 @@ class CanFaults {
   void note_error_frame(const CanFrame& frame, Nanoseconds now);
 
   std::uint64_t count(CanFault fault) const { return of(fault).count; }
-  std::vector<CanTally> tallies() const;
+  std::vector<Tally> tallies() const;
   /// What an owner should know of the readings at the moment, in a sentence; empty when there is
   /// nothing. A single lost frame or error is not told: what it touches is no sample.
   std::string trouble(Nanoseconds now) const;

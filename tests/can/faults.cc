@@ -77,7 +77,7 @@ TEST_F(CanFaultsTest, TallyEveryFaultByItsName) {
   faults.note(CanFault::overrun, now, "", 5);
   const auto tallies = faults.tallies();
   ASSERT_EQ(tallies.size(), static_cast<std::size_t>(kCanFaults));
-  for (const CanTally& tally : tallies) {
+  for (const Tally& tally : tallies) {
     EXPECT_FALSE(tally.name.empty());
     EXPECT_EQ(tally.count, tally.name == "overrun" ? 5u : 0u);
   }

@@ -275,7 +275,10 @@ TEST_F(Faults, LeadToAStateASentenceAndNoLoss) {
     if (HasFatalFailure()) return;
   }
   cell->listen();
-  std::printf("%s", text_of_health().c_str());
+  const std::string health = text_of_health();
+  std::printf("%s", health.c_str());
+  for (const char* met : {"met_overrun=", "met_bus_off=1", "met_missing=", "met_time_stepped=2"})
+    EXPECT_NE(health.find(met), std::string::npos) << met;
 
   EXPECT_TRUE(cell->command("abort").accepted);
   const std::vector<Fault> at_start = {

@@ -97,7 +97,7 @@ Pairs Pairing::pair(int touches, int step_every) {
     }
   }
   std::string faults;
-  for (const CanTally& tally : encoders->tallies())
+  for (const Tally& tally : encoders->tallies())
     if (tally.count > 0)
       faults += " " + std::string(tally.name) + " " + std::to_string(tally.count);
   std::ranges::sort(pairs.off_us);
