@@ -91,7 +91,9 @@ class Diagnostician {
     if (posterior_.unknown > kSurelyUnknown)
       result_.verdict = {.effect = "unknown", .probability = posterior_.unknown};
     else
-      result_.verdict = {.effect = "none", .probability = std::max(posterior_.none, 0.5)};
+      result_.verdict = {
+          .effect = "none",
+          .probability = std::max(posterior_.none, least_probability_of_none(result_.p_value))};
   }
 
   /// Noise of a new configuration over that of an immediate repeat.

@@ -1,6 +1,8 @@
 #include "diagnosis/null.h"
 
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 
 namespace selfcal {
@@ -30,6 +32,11 @@ double resampled_p(const View& view, Bench& bench, const Observations& data, int
   }
   bench.look_at(rows.y, rows.pull);
   return (1.0 + as_good) / (1.0 + resamples);
+}
+
+double least_probability_of_none(double p) {
+  if (p >= 1 / std::numbers::e) return 0.5;
+  return 1 / (1 - 1 / (std::numbers::e * p * std::log(p)));
 }
 
 }  // namespace selfcal

@@ -11,4 +11,8 @@ namespace selfcal {
 double resampled_p(const View& view, Bench& bench, const Observations& data, int resamples,
                    unsigned long long seed);
 
+/// How probable noise alone remains at least, at even odds before, where it does as well with
+/// probability `p`: 1 / (1 - 1 / (e p ln p)), 0.5 from 1/e on (Sellke, Bayarri and Berger 2001).
+double least_probability_of_none(double p);
+
 }  // namespace selfcal
