@@ -139,12 +139,46 @@ class Search {
 
 Posterior Bench::search() const { return Search(*this).run(); }
 
-Hypothesis Bench::grow(Hypothesis h, size_t most) const {
-  const auto log_weight = [&](const Hypothesis& of) {
-    return workbenches_[of.structure].given(terms(of)).log_evidence({}) + held(of) +
-           log_prior(of.candidates, of.structure);
+namespace {
+
+std::vector<int> columns_of(std::span<const Workbench::Term> terms) {
+  std::vector<int> columns;
+  for (const Workbench::Term& term : terms)
+    columns.insert(columns.end(), term.block->columns.begin(), term.block->columns.end());
+  return columns;
+}
+
+}  // namespace
+
+/// Without one candidate after the other, as long as that makes it more probable.
+Hypothesis Bench::pruned(Hypothesis h) const {
+  const Workbench& workbench = workbenches_[h.structure];
+  const std::vector<int> all = columns_of(terms(h));
+  const Eigen::MatrixXd G = workbench.gram(all, all);
+  const auto weigh_again = [&](Hypothesis& of) {
+    const std::vector<Workbench::Term> list = terms(of);
+    std::vector<int> at;  // of its columns, among all
+    for (const int column : columns_of(list))
+      at.push_back(static_cast<int>(std::ranges::find(all, column) - all.begin()));
+    of.log_weight =
+        workbench.log_evidence(list, G(at, at)) + held(of) + log_prior(of.candidates, of.structure);
   };
-  h.log_weight = log_weight(h);
+  weigh_again(h);
+  for (size_t i = 0; i + 1 < h.candidates.size(); ++i) {
+    Hypothesis less = h;
+    less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+    less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    weigh_again(less);
+    if (less.log_weight <= h.log_weight) continue;
+    h = less;
+    --i;
+  }
+  return h;
+}
+
+Hypothesis Bench::grow(Hypothesis h, size_t most) const {
+  h.log_weight = workbenches_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
+                 log_prior(h.candidates, h.structure);
   while (h.candidates.size() < most) {
     const Workbench rest = workbenches_[h.structure].given(terms(h));
     std::set<std::string> families;
@@ -162,18 +196,7 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
       if (more.log_weight > best.log_weight + 1) best = more;
     }
     if (best.candidates.size() == h.candidates.size()) break;
-    best.log_weight = log_weight(best);
-    for (size_t i = 0; i + 1 < best.candidates.size(); ++i) {
-      Hypothesis less = best;
-      less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
-      less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
-      less.log_weight = log_weight(less);
-      if (less.log_weight > best.log_weight) {
-        best = less;
-        --i;
-      }
-    }
-    h = best;
+    h = pruned(std::move(best));
   }
   return h;
 }

@@ -87,6 +87,7 @@ class Bench {
   Single weigh(const Workbench& workbench, int candidate) const;
   double plausibility(int candidate, double size) const;
   double held(const Hypothesis& h) const;
+  Hypothesis pruned(Hypothesis h) const;
   void agree(int structure);
 
   const Candidates& all_;

@@ -124,6 +124,16 @@ double Workbench::log_evidence(std::span<const Term> terms) const {
   return constant_ - half_log_det - nu_ / 2 * std::log(std::max(yy_ - explained, 1e-300));
 }
 
+double Workbench::log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const {
+  const auto [columns, D] = unfold(terms);
+  const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
+                            Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
+  const Eigen::MatrixXd L = cholesky_root(H);
+  const double explained = solve_lower(L, D.cwiseProduct(g_(columns))).squaredNorm();
+  return constant_ - L.diagonal().array().log().sum() -
+         nu_ / 2 * std::log(std::max(yy_ - explained, 1e-300));
+}
+
 Workbench Workbench::given(std::span<const Term> terms) const {
   Workbench rest = *this;
   if (terms.empty()) return rest;

@@ -64,6 +64,8 @@ class Workbench {
   Workbench given(std::span<const Term> terms) const;
   /// log p(y | terms), without the constant that all structures and terms share.
   double log_evidence(std::span<const Term> terms) const;
+  /// The same for any number of terms, from G of their columns (as gram() gives it) in their order.
+  double log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const;
   /// Posterior means of the terms' columns, one after the other, and their covariance over s^2.
   struct Estimate {
     Eigen::VectorXd mean;

@@ -66,6 +66,8 @@ TEST(Workbench, GivesTheEvidenceThatTheWholeIntegralGives) {
   const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
   EXPECT_NEAR(bench.log_evidence(none), worked_out_whole(one.rows, I, none), kRounding);
   EXPECT_NEAR(bench.log_evidence(both), worked_out_whole(one.rows, I, both), kRounding);
+  EXPECT_NEAR(bench.log_evidence(both, bench.gram({0, 1, 3}, {0, 1, 3})), bench.log_evidence(both),
+              kRounding);
 }
 
 TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
