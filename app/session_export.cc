@@ -60,17 +60,15 @@ Result<std::string> description_text(const SessionRecord& record) {
          date_time(record.started_ms) + ".\n" + write_yaml(node);
 }
 
-Result<DataSet> stored_rows(Store& store, const SessionRecord& record, const Robot& robot) {
+Result<Session> stored_session(Store& store, const SessionRecord& record) {
   auto plan = store.plan(record.id);
   if (!plan) return tl::unexpected(plan.error());
   auto touches = store.touches(record.id);
   if (!touches) return tl::unexpected(touches.error());
-  const auto meaning = read_meaning(record.config);
-  if (!meaning) return tl::unexpected(meaning.error());
-  DataSet data = rows_of(robot, {record, std::move(*plan), std::move(*touches)}, *meaning);
-  if (data.rows.rows() == 0)
-    return bad_input(name_of(record.id) + ": has no rows (none were taken, or they were pruned)");
-  return data;
+  Session session{record, std::move(*plan), std::move(*touches)};
+  for (const StepRecord& step : session.plan)
+    if (!good_touches(session, step.index).empty()) return session;
+  return bad_input(name_of(record.id) + ": has no rows (none were taken, or they were pruned)");
 }
 
 }  // namespace
@@ -79,23 +77,26 @@ Result<int> export_session(Store& store, std::int64_t session, const std::string
                            const fs::path& folder) {
   const auto record = store.session(session);
   if (!record) return tl::unexpected(record.error());
+  const auto kept = stored_session(store, *record);
+  if (!kept) return tl::unexpected(kept.error());
+  const auto meaning = read_meaning(record->config);
+  if (!meaning) return tl::unexpected(meaning.error());
   const auto robot_file = nominal_text(store, *record, robot_text);
   if (!robot_file) return tl::unexpected(robot_file.error());
   const auto robot = robot_of(*robot_file, name_of(session));
   if (!robot) return tl::unexpected(robot.error());
-  const auto data = stored_rows(store, *record, **robot);
-  if (!data) return tl::unexpected(data.error());
+  const DataSet data = rows_of(**robot, *kept, *meaning);
   const auto description = description_text(*record);
   if (!description) return tl::unexpected(description.error());
   if (auto made = make_empty_folder(folder); !made) return tl::unexpected(made.error());
   const std::pair<const char*, std::string> files[] = {
       {"robot.yaml", *robot_file},
-      {"observations.csv", observations_text(*data)},
+      {"observations.csv", observations_text(data)},
       {"dataset.yaml", *description}};
   for (const auto& [name, text] : files)
     if (auto written = write_file_atomically(folder / name, text); !written)
       return tl::unexpected(written.error());
-  return data->rows.rows();
+  return data.rows.rows();
 }
 
 }  // namespace selfcal

@@ -22,7 +22,7 @@ struct Observations {
   Eigen::MatrixXd velocity;      ///< rows x joints, just before the reading (rad/s, m/s)
   Eigen::VectorXd temperature;   ///< rows (C)
   Eigen::VectorXd time;          ///< rows (s)
-  Eigen::VectorXd noise_factor;  ///< rows, a row's noise over its set's, at least 1; not in a file
+  Eigen::VectorXd noise_factor;  ///< rows, a row's noise over its set's, at least 1
   std::vector<int> set;          ///< rows, index into the data set's sets
   std::vector<int> group;        ///< rows, index into its set's group names; -1 without a group
   std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column

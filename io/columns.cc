@@ -12,16 +12,20 @@ struct Known {
   CellKind kind;
 };
 
-constexpr Known kKnown[] = {
-    {"set", CellKind::text},           {"group", CellKind::text},  {"repeat", CellKind::text},
-    {"part", CellKind::text},          {"x", CellKind::metres},    {"y", CellKind::metres},
-    {"z", CellKind::metres},           {"qw", CellKind::number},   {"qx", CellKind::number},
-    {"qy", CellKind::number},          {"qz", CellKind::number},   {"distance", CellKind::metres},
-    {"alpha", CellKind::number},       {"beta", CellKind::number}, {"phi", CellKind::number},
-    {"fx", CellKind::number},          {"fy", CellKind::number},   {"fz", CellKind::number},
-    {"tx", CellKind::number},          {"ty", CellKind::number},   {"tz", CellKind::number},
-    {"nx", CellKind::number},          {"ny", CellKind::number},   {"nz", CellKind::number},
-    {"temperature", CellKind::number}, {"time", CellKind::number}};
+constexpr Known kKnown[] = {{"set", CellKind::text},           {"group", CellKind::text},
+                            {"repeat", CellKind::text},        {"part", CellKind::text},
+                            {"x", CellKind::metres},           {"y", CellKind::metres},
+                            {"z", CellKind::metres},           {"qw", CellKind::number},
+                            {"qx", CellKind::number},          {"qy", CellKind::number},
+                            {"qz", CellKind::number},          {"distance", CellKind::metres},
+                            {"alpha", CellKind::number},       {"beta", CellKind::number},
+                            {"phi", CellKind::number},         {"fx", CellKind::number},
+                            {"fy", CellKind::number},          {"fz", CellKind::number},
+                            {"tx", CellKind::number},          {"ty", CellKind::number},
+                            {"tz", CellKind::number},          {"nx", CellKind::number},
+                            {"ny", CellKind::number},          {"nz", CellKind::number},
+                            {"temperature", CellKind::number}, {"time", CellKind::number},
+                            {"noise_factor", CellKind::number}};
 
 /// The whole of `text` as a count without leading zeros, else nothing.
 std::optional<int> parse_count(std::string_view text) {
@@ -119,6 +123,7 @@ tl::expected<Layout, RowFault> read_header(Cells names, int joints) {
   layout.part = layout.find("part");
   layout.distance = layout.find("distance");
   layout.temperature = layout.find("temperature");
+  layout.noise_factor = layout.find("noise_factor");
   layout.time = layout.find("time");
   for (int joint = 1; joint <= joints; ++joint)
     if (const auto place = layout.find("dq" + std::to_string(joint))) layout.dq.push_back(*place);

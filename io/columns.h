@@ -35,6 +35,7 @@ struct Layout {
   std::vector<std::size_t> q;
   std::vector<std::size_t> dq;  ///< one place a joint, or none at all
   std::optional<std::size_t> group, repeat, part, distance, temperature, time;
+  std::optional<std::size_t> noise_factor;
   Columns<3> position, normal;
   Columns<6> wrench;
   Columns<4> orientation;

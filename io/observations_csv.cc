@@ -88,6 +88,7 @@ class RowReader {
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
     rows.temperature = to_matrix(std::move(temperature_), 1);
     rows.time = to_matrix(std::move(time_), 1);
+    rows.noise_factor = to_matrix(std::move(noise_factor_), 1);
     rows.set = std::move(set_);
     rows.group = std::move(group_);
     rows.repeat = std::move(repeat_);
@@ -106,6 +107,9 @@ class RowReader {
                           "', which is " + (need.place ? "empty" : "missing from the file"),
                       need.place};
     }
+    // A NaN is an empty cell.
+    if (layout_.noise_factor && numbers_.value(*layout_.noise_factor) < 1)
+      return RowFault{"expected a factor of at least 1", layout_.noise_factor};
     return std::nullopt;
   }
 
@@ -120,6 +124,10 @@ class RowReader {
     for (const std::size_t column : layout_.dq) velocity_.push_back(numbers_.value(column));
     if (layout_.wrench) extend(wrench_, numbers_.wrench());
     if (layout_.temperature) temperature_.push_back(numbers_.value(*layout_.temperature));
+    if (layout_.noise_factor) {
+      const double factor = numbers_.value(*layout_.noise_factor);
+      noise_factor_.push_back(std::isnan(factor) ? 1 : factor);
+    }
     if (layout_.time) time_.push_back(numbers_.value(*layout_.time));
     if (layout_.distance) distance_.push_back(numbers_.value(*layout_.distance));
     if (layout_.repeat) repeat_.push_back(labels.repeat);
@@ -135,7 +143,7 @@ class RowReader {
   NumberReader numbers_;
   std::vector<std::vector<Need>> needs_;  // per set
   std::vector<double> q_, position_, orientation_, distance_, normal_;
-  std::vector<double> wrench_, velocity_, temperature_, time_;
+  std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
 };

@@ -78,6 +78,8 @@ std::string observations_text(const DataSet& data) {
   const Eigen::MatrixXd temperature = rows.temperature, time = rows.time;
   add_numbers(temperature, {"temperature"}, columns);
   add_numbers(time, {"time"}, columns);
+  const Eigen::MatrixXd noise_factor = rows.noise_factor;
+  if ((noise_factor.array() != 1).any()) add_numbers(noise_factor, {"noise_factor"}, columns);
   std::string text = line(columns, [](const Column& column) { return column.name; });
   for (int row = 0; row < rows.rows(); ++row)
     text += line(columns, [row](const Column& column) { return column.cell(row); });

@@ -67,6 +67,16 @@ TEST_F(ObservationsCsv, LeavesColumnsThatTheFileLacksWithoutRows) {
   EXPECT_THAT(rows.group, ElementsAre(-1));
 }
 
+TEST_F(ObservationsCsv, ReadsHowMuchNoisierARowIsThanItsSet) {
+  const auto loaded = load("set,q1,q2,noise_factor\ntable,0.1,0.2,\ntable,0.3,0.4,1.5\n");
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_EQ(loaded->data.rows.factor(0), 1);
+  EXPECT_EQ(loaded->data.rows.factor(1), 1.5);
+  const auto refused = load("set,q1,q2,noise_factor\ntable,0.1,0.2,0.5\n");
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(refused.error().what, HasSubstr("expected a factor of at least 1"));
+}
+
 TEST_F(ObservationsCsv, RefusesAHeaderThatDoesNotFitTheRobot) {
   EXPECT_EQ(error("q1,q2\n0,0\n"), "observations.csv: header: column 'set' is missing");
   EXPECT_EQ(error("set,q1\ntable,0\n"),
