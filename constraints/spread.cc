@@ -71,8 +71,7 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
         W.middleCols(own.column, 3) = -Eigen::Matrix3d::Identity();
       else
         W.middleCols(own.column, 3) << X.p(lane).transpose() * across(own.normal), -1;
-      const double noise = sets[each.set].noise > 0 ? sets[each.set].noise : kNoise;
-      rows.push_back(W / noise);
+      rows.push_back(W / touch_noise(sets[each.set]));
     }
   }
   return rows;
@@ -88,6 +87,8 @@ Eigen::MatrixXd prior(const Robot& robot, int columns) {
 }
 
 }  // namespace
+
+double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; }
 
 std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,

@@ -5,6 +5,7 @@
 
 #include "constraints/adjustment.h"
 #include "diagnosis/structures.h"
+#include "diagnosis/view.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
@@ -208,15 +209,13 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
       equations.dense(adjusted.fitted.state, noise, adjusted.fitted.noise.put_aside);
   const Changeable changes = changeable(*geometry, equations, before, after);
   const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
-  std::vector<int> joints;
-  for (int j = 0; j < static_cast<int>(geometry->joints().size()); ++j)
-    joints.push_back(geometry->variable_parameter(j));
   Eigen::MatrixXd tips(all.rows.rows(), 3);
   for (int row = 0; row < all.rows.rows(); ++row)
     tips.row(row) =
         geometry->link_poses(all.rows.q.row(row).transpose()).back().translation().transpose();
-  const Bench bench(rows, structures(all.rows, dense, tips, dense.W(Eigen::all, joints)),
-                    changes.candidates, changes.parameters, options.search);
+  const Bench bench(
+      rows, structures(all.rows, dense, tips, dense.W(Eigen::all, reading_columns(*geometry))),
+      changes.candidates, changes.parameters, options.search);
   const Posterior posterior = bench.search();
   result.none = posterior.none;
   result.unknown = posterior.unknown;

@@ -25,19 +25,6 @@ constexpr double kTried = 0.05;  ///< least probable cause that is tried alone
 constexpr int kMostTried = 4;
 constexpr double kAbsorbed = 0.02;  ///< share that survives below which nothing can be said
 
-/// All columns of a hypothesis and the prior sigma of each.
-std::pair<std::vector<int>, Eigen::VectorXd> columns_of(const Bench& bench, const Hypothesis& h) {
-  std::vector<int> columns;
-  std::vector<double> sigma;
-  for (const Workbench::Term& term : bench.terms(h))
-    for (size_t k = 0; k < term.block->columns.size(); ++k) {
-      columns.push_back(term.block->columns[k]);
-      sigma.push_back(term.size * term.block->unit[static_cast<Eigen::Index>(k)]);
-    }
-  return {columns,
-          Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))};
-}
-
 class Diagnostician {
  public:
   Diagnostician(const std::shared_ptr<const Robot>& robot, const DataSet& data,
@@ -56,7 +43,7 @@ class Diagnostician {
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
       const Hypothesis& best = posterior_.hypotheses.front();
-      const auto [columns, sigma] = columns_of(*bench_, best);
+      const auto [columns, sigma] = Workbench::unfold(bench_->terms(best));
       const double variance =
           bench_->workbench(best.structure).estimate(bench_->terms(best)).variance *
           bench_->noise_variance(best.structure);
@@ -137,7 +124,7 @@ class Diagnostician {
                         view_.candidates(), view_.parameters(), options_.search);
       best.structure = 0;
       best = bench.grow(best, kMostEffects);
-      const auto [columns, sigma] = columns_of(bench, best);
+      const auto [columns, sigma] = Workbench::unfold(bench.terms(best));
       const double variance =
           bench.workbench(0).estimate(bench.terms(best)).variance * bench.noise_variance(0);
       if (!view_.refine(view_.residuals(columns, sigma), variance)) break;

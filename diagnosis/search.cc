@@ -139,26 +139,15 @@ class Search {
 
 Posterior Bench::search() const { return Search(*this).run(); }
 
-namespace {
-
-std::vector<int> columns_of(std::span<const Workbench::Term> terms) {
-  std::vector<int> columns;
-  for (const Workbench::Term& term : terms)
-    columns.insert(columns.end(), term.block->columns.begin(), term.block->columns.end());
-  return columns;
-}
-
-}  // namespace
-
 /// Without one candidate after the other, as long as that makes it more probable.
 Hypothesis Bench::pruned(Hypothesis h) const {
   const Workbench& workbench = workbenches_[h.structure];
-  const std::vector<int> all = columns_of(terms(h));
+  const std::vector<int> all = Workbench::unfold(terms(h)).first;
   const Eigen::MatrixXd G = workbench.gram(all, all);
   const auto weigh_again = [&](Hypothesis& of) {
     const std::vector<Workbench::Term> list = terms(of);
     std::vector<int> at;  // of its columns, among all
-    for (const int column : columns_of(list))
+    for (const int column : Workbench::unfold(list).first)
       at.push_back(static_cast<int>(std::ranges::find(all, column) - all.begin()));
     of.log_weight =
         workbench.log_evidence(list, G(at, at)) + held(of) + log_prior(of.candidates, of.structure);

@@ -144,11 +144,15 @@ Eigen::MatrixXd View::tips() const {
   return tips;
 }
 
-Eigen::MatrixXd View::by_joint(const DenseEquations& kept) const {
+std::vector<int> reading_columns(const Robot& robot) {
   std::vector<int> columns;
-  for (int j = 0; j < static_cast<int>(geometry_->joints().size()); ++j)
-    columns.push_back(geometry_->variable_parameter(j));
-  return kept.W(Eigen::all, columns) / scale_;
+  for (int j = 0; j < static_cast<int>(robot.joints().size()); ++j)
+    columns.push_back(robot.variable_parameter(j));
+  return columns;
+}
+
+Eigen::MatrixXd View::by_joint(const DenseEquations& kept) const {
+  return kept.W(Eigen::all, reading_columns(*geometry_)) / scale_;
 }
 
 std::vector<Scale> View::noise_of_sets() const {

@@ -12,6 +12,9 @@ namespace selfcal {
 
 struct DiagnosisOptions;
 
+/// Parameter that each joint's reading is added to, by joint.
+std::vector<int> reading_columns(const Robot& robot);
+
 class View {
  public:
   /// Fits the geometry and linearises the equations of all candidates there.

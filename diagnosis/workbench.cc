@@ -68,19 +68,6 @@ namespace {
 
 constexpr int kMost = 64;
 
-/// Columns of a few terms, and the prior sigma of each.
-std::pair<std::vector<int>, Eigen::VectorXd> unfold(std::span<const Workbench::Term> terms) {
-  std::vector<int> columns;
-  std::vector<double> sigma;
-  for (const Workbench::Term& term : terms)
-    for (size_t k = 0; k < term.block->columns.size(); ++k) {
-      columns.push_back(term.block->columns[k]);
-      sigma.push_back(term.size * term.block->unit[static_cast<Eigen::Index>(k)]);
-    }
-  return {columns,
-          Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))};
-}
-
 /// At most kMost columns: one or two blocks, so small that plain loops on the stack beat any
 /// library.
 struct Small {
@@ -92,6 +79,18 @@ struct Small {
 };
 
 }  // namespace
+
+std::pair<std::vector<int>, Eigen::VectorXd> Workbench::unfold(std::span<const Term> terms) {
+  std::vector<int> columns;
+  std::vector<double> sigma;
+  for (const Term& term : terms)
+    for (size_t k = 0; k < term.block->columns.size(); ++k) {
+      columns.push_back(term.block->columns[k]);
+      sigma.push_back(term.size * term.block->unit[static_cast<Eigen::Index>(k)]);
+    }
+  return {columns,
+          Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))};
+}
 
 double Workbench::log_evidence(std::span<const Term> terms) const {
   Small s;

@@ -76,6 +76,8 @@ class Workbench {
 
   /// Of G, rows a by columns b.
   Eigen::MatrixXd gram(const std::vector<int>& a, const std::vector<int>& b) const;
+  /// Columns of the terms, one after the other, and the prior sigma of each.
+  static std::pair<std::vector<int>, Eigen::VectorXd> unfold(std::span<const Term> terms);
   const Eigen::VectorXd& right() const { return g_; }
   double total() const { return yy_; }
   double freedom() const { return nu_; }

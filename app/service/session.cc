@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "constraints/equations.h"
+#include "constraints/spread.h"
 #include "io/yaml.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
-constexpr double kNoise = 2e-5;      // m, where a set does not say its own
 constexpr double kStep = 1e-3;       // s, over which a speed is taken
 
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
@@ -193,7 +193,7 @@ DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meani
     out.velocity.row(row) = reading.dq.transpose();
     out.temperature[row] = rows[i]->temperature;
     out.time[row] = static_cast<double>(rows[i]->unix_ms - rows[0]->unix_ms) / 1000;
-    const double noise = data.sets[set].noise > 0 ? data.sets[set].noise : kNoise;
+    const double noise = touch_noise(data.sets[set]);
     out.noise_factor[row] =
         std::hypot(1, speed_out(robot, reading, meaning.outward[set]) * reading.sigma_time / noise);
     out.set.push_back(set);
