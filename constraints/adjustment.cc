@@ -25,6 +25,9 @@ class Adjustment {
     adjusted_.prior.sigma.resize(adjusted_.prior.centre.size());
     for (Eigen::Index i = 0; i < adjusted_.prior.sigma.size(); ++i)
       adjusted_.prior.sigma[i] = robot_.parameters()[i].tolerance;
+    const auto effects = static_cast<Eigen::Index>(options.effect_sigma.size());
+    adjusted_.prior.sigma.tail(effects) =
+        Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
     choose_free();
   }
 

@@ -133,7 +133,9 @@ struct Options {
   bool priors = true;  ///< false: the rows alone (tests); needs every direction determined
   double most_rejected =
       0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it, 0 to 0.5
-  int most_iterations = 200;    ///< 1 to 1000
+  int most_iterations = 200;  ///< 1 to 1000
+  /// 1 sigma of each of the effects' parameters; empty: what the robot says of them.
+  std::vector<double> effect_sigma = {};
   unsigned long long seed = 1;  ///< of the poses at which the endpoint is judged
 };
 

@@ -72,7 +72,7 @@ Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Cand
     block.group = static_cast<int>(blocks_.size());
     blocks_.push_back(std::move(block));
   }
-  for (int s = 0; s < this->structures(); ++s) agree(s);
+  for (int s = 0; s < this->structures() && !rule_.noise_is_known; ++s) agree(s);
 }
 
 /// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
@@ -174,6 +174,11 @@ std::vector<Workbench::Term> Bench::terms(const Hypothesis& hypothesis) const {
   for (size_t i = 0; i < hypothesis.candidates.size(); ++i)
     list.push_back({&blocks_[hypothesis.candidates[i]], hypothesis.sizes[i]});
   return list;
+}
+
+void Bench::add_sigma(int candidate, double size, std::vector<double>& to) const {
+  for (size_t i = 0; i < all_.list[candidate].main.size(); ++i)
+    to.push_back(size * blocks_[candidate].unit[static_cast<Eigen::Index>(i)]);
 }
 
 double Bench::detectable(int candidate, double log_evidence) const {

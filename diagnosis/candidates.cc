@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kMoments = 24;    ///< at which a step may have happened
 constexpr int kMostWaves = 40;  ///< a turn
+constexpr int kProfile = 30;    ///< waves a turn, of a profile over the whole turn
 constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
 
 Node entry(std::string_view effect, const std::string& at) {
@@ -89,9 +90,7 @@ class Maker {
       add({with(entry("joint_compliance", at), "lumps", std::string("true"))});
       cannot("link_compliance", at, "the robot file gives no masses and the rows no loads");
     }
-    for (int k = 1; k <= kMostWaves; ++k)
-      add({with_waves(entry("transmission_error", at), {1.0 * k})});
-    add({with_waves(entry("transmission_error", at), {1, 2})});
+    of_waves(at);
     if (site_.velocities)
       add({entry("backlash", at)});
     else
@@ -102,6 +101,27 @@ class Maker {
       if (other.name != at) add({with(entry("joint_coupling", at), "from", other.name)});
     for (const double moment : moments(-1)) add({with(entry("zero_shift", at), "moment", moment)});
     if (moments(-1).empty()) cannot("zero_shift", at, "the rows carry no time");
+  }
+
+  void of_waves(const std::string& at) {
+    const size_t first = all_.list.size();
+    for (int k = 1; k <= kMostWaves; ++k)
+      add({with_waves(entry("transmission_error", at), {1.0 * k})});
+    all_.list.push_back(together(first, 2));
+    all_.profiles.push_back(together(first, kProfile));
+  }
+
+  /// The waves 1 to `count` of one joint as one shape; `first` is the one of a single wave.
+  Candidate together(size_t first, int count) const {
+    Candidate sum{.effect = all_.list[first].effect, .at = all_.list[first].at};
+    std::vector<double> waves;
+    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+      waves.push_back(static_cast<double>(i + 1));
+      const std::vector<int>& own = all_.list[first + i].main;
+      sum.main.insert(sum.main.end(), own.begin(), own.end());
+    }
+    sum.entries = {with_waves(entry(sum.effect, sum.at), waves)};
+    return sum;
   }
 
   void of_time() {
@@ -175,6 +195,12 @@ class Maker {
       }
       each.log_prior = -std::log(static_cast<double>(places.size())) - std::log(shapes);
     }
+    // As probable as one of the shapes that it holds.
+    for (Candidate& profile : all_.profiles)
+      profile.log_prior =
+          std::ranges::find(all_.list, profile.main.front(), [](const Candidate& each) {
+            return each.main.front();
+          })->log_prior;
   }
 
   const Robot& robot_;
@@ -185,6 +211,12 @@ class Maker {
 };
 
 }  // namespace
+
+Candidates with_profiles(Candidates all) {
+  all.list.insert(all.list.end(), all.profiles.begin(), all.profiles.end());
+  all.profiles.clear();
+  return all;
+}
 
 Candidates candidates(const Robot& robot, const DataSet& data, const Site& site) {
   return Maker(robot, data, site).run();

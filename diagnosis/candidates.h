@@ -15,11 +15,12 @@
 namespace selfcal {
 
 struct Candidate {
-  std::string effect, at;     ///< at is empty for the whole robot
-  std::vector<Node> entries;  ///< of a robot file, that make it; the first one is the cause itself
-  std::vector<int> main;      ///< its parameters, counted over all candidates' effects
-  std::vector<int> slack;     ///< parameters that only take up what the main ones have wrong
-  double log_prior = 0;       ///< of the place and the shape within the family
+  std::string effect, at;  ///< at is empty for the whole robot
+  /// Of a robot file, that make it; the first one is the cause itself.
+  std::vector<Node> entries = {};
+  std::vector<int> main = {};   ///< its parameters, counted over all candidates' effects
+  std::vector<int> slack = {};  ///< parameters that only take up what the main ones have wrong
+  double log_prior = 0;         ///< of the place and the shape within the family
 };
 
 /// A cause that these rows cannot test at all.
@@ -29,10 +30,16 @@ struct Untestable {
 
 struct Candidates {
   std::vector<Candidate> list;
+  /// Many shapes of one cause at once: too many parameters to ask whether it is there, but once it
+  /// is, they close more of the gap. Their parameters are those of candidates in `list`.
+  std::vector<Candidate> profiles;
   std::vector<Untestable> untestable;
   std::vector<Node>
       entries;  ///< of all candidates in order: what a robot that has them all is made of
 };
+
+/// The same with the profiles at the end of the list.
+Candidates with_profiles(Candidates all);
 
 /// Every candidate whose circumstances the rows carry.
 Candidates candidates(const Robot& robot, const DataSet& data, const Site& site);

@@ -67,7 +67,8 @@ class Teller {
         bench_.workbench(found->structure).estimate(bench_.terms(*found));
     Eigen::Index first = 0;
     double squares = 0;
-    for (const int c : found->candidates) {
+    for (size_t i = 0; i < found->candidates.size(); ++i) {
+      const int c = found->candidates[i];
       const Block& block = bench_.block(c);
       const auto size = static_cast<Eigen::Index>(block.columns.size());
       if (candidate(c).effect == cause.effect) {
@@ -75,6 +76,7 @@ class Teller {
         squares += v.dot(bench_.workbench(0).gram(block.columns, block.columns) * v);
         cause.survival = std::max(cause.survival, bench_.survival(c));
         add_parameters(c, estimate, first, cause);
+        bench_.add_sigma(c, found->sizes[i], cause.correction.sigma);
       }
       first += size;
     }
@@ -95,7 +97,7 @@ class Teller {
            p.usual_least, p.usual_most});
       entry.set(p.name, Node::of(estimate.mean[i]));
     }
-    cause.entries.push_back(std::move(entry));
+    cause.correction.entries.push_back(std::move(entry));
   }
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.

@@ -60,10 +60,12 @@ double largest(const std::vector<Row>& rows, double Row::*square) {
   return std::sqrt(most);
 }
 
-Adjusted adjusted_model(const Equations& equations, const DiagnosisOptions& options) {
+Adjusted adjusted_model(const Equations& equations, const std::vector<double>& effect_sigma,
+                        const DiagnosisOptions& options) {
   Options free;
   free.most_rejected = options.most_rejected;
   free.seed = options.seed;
+  free.effect_sigma = effect_sigma;
   free.free = {"K*"};
   for (const Parameter& p : equations.robot().parameters())
     if (p.part == Part::effect) free.free.push_back(p.name);
@@ -73,13 +75,13 @@ Adjusted adjusted_model(const Equations& equations, const DiagnosisOptions& opti
 }  // namespace
 
 Closing close_gap(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
-                  const DataSet& data, const std::vector<Node>& entries, const Site& site,
-                  double noise, const DiagnosisOptions& options) {
+                  const DataSet& data, const Correction& correction, const Site& site, double noise,
+                  const DiagnosisOptions& options) {
   Closing closing;
   Problems problems;
-  closing.model = correct(geometry, entries, site, problems);
+  closing.model = correct(geometry, correction.entries, site, problems);
   const Equations plain(*geometry, data, Use::fit), corrected(*closing.model, data, Use::fit);
-  closing.after = adjusted_model(corrected, options);
+  closing.after = adjusted_model(corrected, correction.sigma, options);
   const Judged nominal = judge(*geometry, data, plain, before.before);
   const Judged geometric = judge(*geometry, data, plain, before.fitted);
   const Judged whole = judge(*closing.model, data, corrected, closing.after.fitted);

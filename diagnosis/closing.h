@@ -17,10 +17,10 @@ struct Closing {
   std::vector<Rejected> rejected;      ///< judging rows that neither model explains
 };
 
-/// `before` is the geometry's own adjustment; `entries` describe the effects, whose parameters are
-/// identified. `noise` is 1 sigma of one scalar (m).
+/// `before` is the geometry's own adjustment; the parameters of `correction` are identified.
+/// `noise` is 1 sigma of one scalar (m).
 Closing close_gap(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
-                  const DataSet& data, const std::vector<Node>& entries, const Site& site,
-                  double noise, const DiagnosisOptions& options);
+                  const DataSet& data, const Correction& correction, const Site& site, double noise,
+                  const DiagnosisOptions& options);
 
 }  // namespace selfcal

@@ -116,36 +116,44 @@ class Diagnostician {
 
   /// All that the rows say of the named causes and their like: from more rows than were weighed for
   /// the name, and again with the noise that it leaves.
-  Hypothesis grown(Hypothesis best) {
+  Correction grown(Hypothesis best) {
     view_.weigh(kMostGrown);
+    const Candidates all = with_profiles(view_.candidates());
+    SearchRule rule = options_.search;
+    rule.noise_is_known = true;  // each pass takes it from what the one before leaves
+    Correction correction;
     for (int pass = 0; pass < kPasses; ++pass) {
       const DenseEquations rows = view_.kept();
-      const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)),
-                        view_.candidates(), view_.parameters(), options_.search);
+      const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
+                        view_.parameters(), rule);
       best.structure = 0;
       best = bench.grow(best, kMostEffects);
       const auto [columns, sigma] = Workbench::unfold(bench.terms(best));
       const double variance =
           bench.workbench(0).estimate(bench.terms(best)).variance * bench.noise_variance(0);
-      if (!view_.refine(view_.residuals(columns, sigma), variance)) break;
+      const bool again = view_.refine(view_.residuals(columns, sigma), variance);
+      if (again && pass + 1 < kPasses) continue;
+      for (size_t i = 0; i < best.candidates.size(); ++i) {
+        correction.entries.push_back(all.list[best.candidates[i]].entries.front());
+        bench.add_sigma(best.candidates[i], best.sizes[i], correction.sigma);
+      }
+      break;
     }
     result_.noise = view_.noise();
-    return best;
+    return correction;
   }
 
   /// Geometry alone against geometry with the effects that are there.
   void close() {
-    std::vector<Node> entries;
+    Correction correction;
     Hypothesis best;
     for (const Hypothesis& h : posterior_.hypotheses)
       if (result_.verdict.effect != "none" && !h.candidates.empty()) {
         best = h;
         break;
       }
-    if (!best.candidates.empty()) best = grown(best);
-    for (const int c : best.candidates)
-      entries.push_back(view_.candidates().list[c].entries.front());
-    Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, entries,
+    if (!best.candidates.empty()) correction = grown(best);
+    Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, correction,
                                 view_.site(), result_.noise, options_);
     result_.gap = closing.gap;
     result_.rejected = std::move(closing.rejected);
@@ -156,14 +164,34 @@ class Diagnostician {
     result_.model = closing.model;
     result_.values = closing.after.fitted.state.xi;
     close_each();
+    warn();
+  }
+
+  /// What the rows kept aside say of the named cause, where that is not plain.
+  void warn() {
+    const Gap& gap = result_.gap;
+    if (result_.verdict.effect == "none" || gap.rows == 0) return;
+    if (gap.rms_after >= gap.rms_before)
+      result_.warnings.push_back(
+          "the rows kept aside do not confirm it: they are met no better with the effects than "
+          "without; do not use the corrected model");
+    else if (!gap.closed_fraction)
+      result_.warnings.push_back(
+          "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
+          "closes");
+    else if (gap.closed_least <= 0)
+      result_.warnings.push_back(
+          "the rows kept aside are too few to confirm it: as far as they tell, nothing may have "
+          "closed; measure more before the corrected model is used");
   }
 
   /// What each of the probable causes would close alone.
   void close_each() {
     int tried = 0;
     for (CauseResult& each : result_.candidates) {
-      if (each.entries.empty() || each.probability < kTried || ++tried > kMostTried) continue;
-      each.rms_after = close_gap(view_.shared_geometry(), view_.adjusted(), data_, each.entries,
+      if (each.correction.entries.empty() || each.probability < kTried || ++tried > kMostTried)
+        continue;
+      each.rms_after = close_gap(view_.shared_geometry(), view_.adjusted(), data_, each.correction,
                                  view_.site(), result_.noise, options_)
                            .gap.rms_after;
     }

@@ -30,6 +30,12 @@ struct NamedValue {
   double value = 0, sigma = 0, usual_least = 0, usual_most = 0;
 };
 
+/// Effects that are put into the model.
+struct Correction {
+  std::vector<Node> entries;  ///< of a robot file
+  std::vector<double> sigma;  ///< prior 1 sigma of each parameter: the size that the rows speak for
+};
+
 struct CauseResult {
   std::string effect;
   std::vector<std::string> where = {};
@@ -39,7 +45,7 @@ struct CauseResult {
   double visible = 0;    ///< rms of its visible part over the noise
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
-  std::vector<Node> entries = {};  ///< of a robot file, with its values
+  Correction correction = {};  ///< with its values
 };
 
 struct Gap {

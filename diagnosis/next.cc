@@ -191,7 +191,7 @@ class Paper {
 const CauseResult* look_alike(const Diagnosis& diagnosis) {
   for (const CauseResult& each : diagnosis.candidates)
     for (const std::string& name : diagnosis.verdict.confounded_with)
-      if (each.effect != diagnosis.verdict.effect && !each.entries.empty() &&
+      if (each.effect != diagnosis.verdict.effect && !each.correction.entries.empty() &&
           name.substr(0, name.find('@')) == each.effect)
         return &each;
   return nullptr;
@@ -206,8 +206,8 @@ std::string first_label(const CauseResult& cause) {
 std::vector<NextStep> next_steps(const View& view, const DataSet& data,
                                  const Diagnosis& diagnosis) {
   const CauseResult* other = look_alike(diagnosis);
-  if (!other || diagnosis.verdict.entries.empty()) return {};
-  const Paper paper(view, diagnosis.verdict.entries, other->entries);
+  if (!other || diagnosis.verdict.correction.entries.empty()) return {};
+  const Paper paper(view, diagnosis.verdict.correction.entries, other->correction.entries);
   double own = diagnosis.verdict.probability;  // without that of its look-alikes
   for (const CauseResult& each : diagnosis.candidates)
     if (each.effect == diagnosis.verdict.effect) own = each.probability;

@@ -165,6 +165,26 @@ Hypothesis Bench::pruned(Hypothesis h) const {
   return h;
 }
 
+bool Bench::overlap(int a, int b) const {
+  const std::vector<int>&p = all_.list[static_cast<size_t>(a)].main,
+        &q = all_.list[static_cast<size_t>(b)].main;
+  const auto within = [](const std::vector<int>& less, const std::vector<int>& more) {
+    return std::ranges::all_of(less, [&](int i) { return std::ranges::count(more, i) > 0; });
+  };
+  return within(p, q) || within(q, p);
+}
+
+/// Without those that the last one holds.
+Hypothesis Bench::without_parts(Hypothesis h) const {
+  const int last = h.candidates.back();
+  for (size_t i = h.candidates.size() - 1; i-- > 0;)
+    if (overlap(h.candidates[i], last)) {
+      h.candidates.erase(h.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+      h.sizes.erase(h.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  return h;
+}
+
 Hypothesis Bench::grow(Hypothesis h, size_t most) const {
   h.log_weight = workbenches_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
                  log_prior(h.candidates, h.structure);
@@ -174,7 +194,11 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
     for (const int c : h.candidates) families.insert(all_.list[static_cast<size_t>(c)].effect);
     Hypothesis best = h;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
-      if (!seen_[c] || std::count(h.candidates.begin(), h.candidates.end(), c)) continue;
+      // What a part of it has is dropped below; what holds it already needs no part again.
+      if (!seen_[c] || std::ranges::any_of(h.candidates, [&](int have) {
+            return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
+          }))
+        continue;
       if (families.size() >= 3 && !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = h;
@@ -185,7 +209,7 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
       if (more.log_weight > best.log_weight + 1) best = more;
     }
     if (best.candidates.size() == h.candidates.size()) break;
-    h = pruned(std::move(best));
+    h = pruned(without_parts(std::move(best)));
   }
   return h;
 }

@@ -23,6 +23,9 @@ struct SearchRule {
   double same_family = 0.3;    ///< odds that a cause acts at one more place
   int extended_singles = 14, extended_pairs = 14;
   int most_structures = 4;  ///< kept for pairs and triples
+  /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
+  /// its noise from what its own best cause leaves.
+  bool noise_is_known = false;
 };
 
 /// One hypothesis: candidates (ascending) and a structure (0: none).
@@ -71,6 +74,8 @@ class Bench {
   /// would stand out, in its own unit.
   double detectable(int candidate, double log_evidence) const;
   std::vector<Workbench::Term> terms(const Hypothesis& hypothesis) const;
+  /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.
+  void add_sigma(int candidate, double size, std::vector<double>& to) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
   /// at most three families.
   Hypothesis grow(Hypothesis h, size_t most) const;
@@ -88,6 +93,9 @@ class Bench {
   double plausibility(int candidate, double size) const;
   double held(const Hypothesis& h) const;
   Hypothesis pruned(Hypothesis h) const;
+  Hypothesis without_parts(Hypothesis h) const;
+  /// One of them holds all that the other has.
+  bool overlap(int a, int b) const;
   void agree(int structure);
 
   const Candidates& all_;

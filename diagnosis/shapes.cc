@@ -43,12 +43,13 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
   const DiagnosisOptions options;
   const View view(robot, data, options, {});
   const DenseEquations rows = view.kept();
-  const Bench bench(view.whitened(), noise_alone(data.rows, rows, view.by_joint(rows)),
-                    view.candidates(), view.parameters(), options.search);
+  const Candidates all = with_profiles(view.candidates());
+  const Bench bench(view.whitened(), noise_alone(data.rows, rows, view.by_joint(rows)), all,
+                    view.parameters(), options.search);
   for (const std::string& each : asked) {
     std::map<std::string, std::pair<double, int>> best;  // by place
-    for (int c = 0; c < static_cast<int>(view.candidates().list.size()); ++c) {
-      const Candidate& candidate = view.candidates().list[c];
+    for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {
+      const Candidate& candidate = all.list[c];
       if (!is_asked(candidate, each) || candidate.entries.size() > 1) continue;
       const double evidence = bench.evidence(c);
       const auto [slot, made] =
@@ -57,7 +58,7 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
     }
     if (best.empty()) chosen.problem = why_not(view, each);
     for (const auto& [place, found] : best)
-      chosen.entries.push_back(view.candidates().list[found.second].entries.front());
+      chosen.entries.push_back(all.list[found.second].entries.front());
   }
   return chosen;
 }
