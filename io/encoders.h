@@ -9,6 +9,7 @@
 
 #include "io/transport.h"
 #include "kinematics/description.h"
+#include "kinematics/robot.h"
 
 namespace selfcal {
 
@@ -29,6 +30,7 @@ using EncoderKindPtr = std::shared_ptr<const EncoderKind>;
 struct EncoderEntry {
   const Node& node;                        ///< the kind's own keys; it refuses any other
   const std::vector<std::string>& joints;  ///< names, by joint
+  const std::vector<Joint>& of_robot;      ///< the same joints, with their limits
   const std::filesystem::path& folder;     ///< where relative paths begin
   Problems& problems;
 };

@@ -34,6 +34,7 @@ struct EncoderSample {
   Nanoseconds time = 0;
   int joints = 0;
   std::array<std::int64_t, kMostJoints> counts{};
+  bool follows = true;  ///< false: something broke off before it, and nothing lies between the two
 };
 
 /// What a count of one joint means: reading = (counts - zero) * step (rad or m); step < 0 turns it.

@@ -29,7 +29,7 @@ void read_encoders(const Node& node, const std::filesystem::path& folder, Config
   config.silence = number_within(f, "silence", config.silence, 0.01, 60);
   const Node own = without(node, {"kind", mapped ? "kind" : "joints", "silence"});
   const std::string kind = f.text("kind", "dds");
-  config.encoders = make_encoders(kind, {own, config.joint_names, folder, problems});
+  config.encoders = make_encoders(kind, {own, config.joint_names, of_robot, folder, problems});
   refuse_unknown_kind(f, kind, encoder_kinds());
 }
 

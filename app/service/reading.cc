@@ -49,6 +49,7 @@ std::optional<std::pair<EncoderSample, EncoderSample>> SampleHistory::around(Nan
   if (after == samples_.end()) return std::nullopt;
   if (after->time == t) return std::pair{*after, *after};
   if (after == samples_.begin()) return std::nullopt;
+  if (!after->follows) return std::nullopt;
   const EncoderSample& before = *std::prev(after);
   if (after->time - before.time > std::max(kMostPeriods * period(), kLeastGap)) return std::nullopt;
   return std::pair{before, *after};

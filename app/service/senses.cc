@@ -41,10 +41,12 @@ void Senses::listen_to_encoders(Nanoseconds now, std::deque<Event>& events) {
 
 void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
   new_edges_.clear();
+  // Before the edges are taken: one that comes between the two must not look like a lost one.
+  const std::optional<bool> closed = ports_.trigger->closed();
   if (const auto taken = ports_.trigger->take(new_edges_); !taken)
     events.push_back(event_of(Event::What::broken, now, taken.error().what));
   if (!level_) {
-    known_ = level_ = ports_.trigger->closed();
+    known_ = level_ = closed;
     if (!level_) return;
     debouncer_.begin(*level_);
     events.push_back(event_of(*level_ ? Event::What::closed : Event::What::opened, now));
@@ -52,12 +54,12 @@ void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
   }
   for (const Edge& edge : new_edges_) debouncer_.add(edge, now);
   // An edge that was lost on the way shows in the level; a trigger that is gone shows in nothing.
-  known_ = ports_.trigger->closed();
+  known_ = closed;
   if (known_ && new_edges_.empty()) debouncer_.reconcile(*known_, now);
   const std::optional<Edge> edge = debouncer_.settled(now);
   if (!edge) return;
   level_ = edge->closed;
-  if (edge->closed) closing_ = edge;
+  if (edge->closed && !closing_) closing_ = edge;
   events.push_back(event_of(edge->closed ? Event::What::closed : Event::What::opened, now));
 }
 

@@ -31,7 +31,9 @@ class Senses {
   bool moving() const { return at_rest() == false; }
   /// The debounced level; nothing while the trigger is not known or gone.
   std::optional<bool> closed() const { return known_ ? level_ : std::nullopt; }
-  const std::optional<Edge>& closing() const { return closing_; }  ///< the last one
+  /// The first closing since forget_closing(): a probe may bounce while the robot brakes.
+  const std::optional<Edge>& closing() const { return closing_; }
+  void forget_closing() { closing_.reset(); }
   bool trigger_chatters(Nanoseconds now) const { return debouncer_.chatters(now); }
   std::optional<double> celsius() const {
     return ports_.thermometer ? ports_.thermometer->celsius() : std::nullopt;

@@ -47,6 +47,7 @@ class Service {
   void begin_test();
   void check_self();
   std::string missing() const;
+  std::string beyond_limits() const;
   void check_rest();
   void check_stop();
   void check_schedule();

@@ -6,7 +6,8 @@ namespace selfcal {
 namespace {
 
 constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
-constexpr Nanoseconds kStopAgain = kSecond / 2;       // until the robot stands
+constexpr Nanoseconds kStopAgain = kSecond / 10;      // until the robot stands
+constexpr double kBeyond = 0.02;  // rad or m past its limits that a joint may stand
 constexpr const char* kChatters = "the trigger chatters: a loose wire, or no bias?";
 constexpr const char* kTwoSenders = "two senders of encoder readings: are they of two robots?";
 
@@ -39,6 +40,7 @@ std::string Service::missing() const {
   if (senses_.samples().last().joints != joints)
     return "the encoders give " + std::to_string(senses_.samples().last().joints) +
            " joints, the robot has " + std::to_string(joints);
+  if (const std::string beyond = beyond_limits(); !beyond.empty()) return beyond;
   const std::string trouble = ports_.trigger->trouble();
   if (!senses_.closed()) return because("the trigger's level is not known", trouble);
   if (!trouble.empty()) return trouble;
@@ -46,6 +48,18 @@ std::string Service::missing() const {
   if (*senses_.closed() && !situation_.unfinished)
     return "the trigger is closed while the robot stands: in contact, stuck, or inverted (`active` "
            "of a GPIO line)";
+  return {};
+}
+
+/// A joint that reads what it cannot: its zero or its turns are wrong.
+std::string Service::beyond_limits() const {
+  const Eigen::VectorXd q = *senses_.q();
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Joint& joint = config_.robot->joints()[j];
+    if (joint.limited() && (q[j] < joint.lower - kBeyond || q[j] > joint.upper + kBeyond))
+      return joint.name + " reads " + format_number(std::round(1e3 * q[j]) / 1e3) +
+             ", beyond its limits: are its zero, its sign and its turns right?";
+  }
   return {};
 }
 
@@ -82,7 +96,10 @@ void Service::check_stop() {
     outstanding_ = false;
     return;
   }
-  if (now_ - stopped_ < kStopAgain || may_move(situation_.state)) return;
+  // Where the robot may move only the stop of a touch is still wanted; a move takes it back.
+  const bool touching =
+      situation_.state == ServiceState::collecting && situation_.phase == Phase::settle;
+  if (now_ - stopped_ < kStopAgain || (may_move(situation_.state) && !touching)) return;
   stop("until it stands");
 }
 

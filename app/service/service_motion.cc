@@ -54,6 +54,7 @@ void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
   outstanding_ = true;
   stopped_ = 0;
   senses_.expect(request.id);
+  senses_.forget_closing();
   if (const auto sent = ports_.motion->request(request); !sent)
     put(Event::What::broken, false, sent.error().what);
 }

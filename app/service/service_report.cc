@@ -69,7 +69,10 @@ void Service::report() {
   }
   report_health(changed || second);
   if (second) last_report_ = now_;
-  if (now_ - last_remembered_ >= kRemember) remember_use();
+  // Writing may take long: not while the robot is to be stopped at a touch.
+  const bool touching = situation_.state == ServiceState::collecting &&
+                        (situation_.phase == Phase::touch || situation_.phase == Phase::settle);
+  if (now_ - last_remembered_ >= kRemember && !touching) remember_use();
 }
 
 void Service::tell_progress(const TouchRecord* touch, const std::string& note) {

@@ -151,6 +151,13 @@ std::vector<StepState> step_states(const Session& session, int repeats, int atte
   return states;
 }
 
+/// By the edges, which no step of the wall clock moves; by that clock where the computer has
+/// started anew in between.
+double seconds_between(const TouchRecord& before, const TouchRecord& after) {
+  if (after.edge >= before.edge) return seconds(after.edge - before.edge);
+  return std::max(0.0, static_cast<double>(after.unix_ms - before.unix_ms) / 1000);
+}
+
 }  // namespace
 
 int next_step(const Session& session, int repeats, int attempts) {
@@ -192,7 +199,7 @@ DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meani
     out.normal.row(row) = meaning.outward[set].transpose();
     out.velocity.row(row) = reading.dq.transpose();
     out.temperature[row] = rows[i]->temperature;
-    out.time[row] = static_cast<double>(rows[i]->unix_ms - rows[0]->unix_ms) / 1000;
+    out.time[row] = i == 0 ? 0 : out.time[row - 1] + seconds_between(*rows[i - 1], *rows[i]);
     const double noise = touch_noise(data.sets[set]);
     out.noise_factor[row] =
         std::hypot(1, speed_out(robot, reading, meaning.outward[set]) * reading.sigma_time / noise);

@@ -139,7 +139,14 @@ void CanEncoders::listen() {
 }
 
 void CanEncoders::reopen() {
-  if (auto receiver = CanReceiver::open(options_)) receiver_ = *std::move(receiver);
+  auto receiver = CanReceiver::open(options_);
+  const std::lock_guard lock(mutex_);
+  if (receiver) {
+    receiver_ = *std::move(receiver);
+    failure_.reset();
+  } else {
+    faults_.set(CanFault::interface_down, true, monotonic_now(), receiver.error().what);
+  }
 }
 
 void CanEncoders::digest(CanRead end) {

@@ -24,7 +24,9 @@ constexpr std::array<Telling, kCanFaults> kTellings = {{
     {"out_of_order", "frames come out of order", kSeveral},
     {"malformed", "frames are not as the map says", kOne},
     {"jumped", "a counter jumped", kOne},
-    {"turns_unknown", "turns may have been missed", kOne},
+    {"zero_lost", "a counter jumped and stayed: find its zero, then restart the service", 0},
+    {"turns_unknown",
+     "turns may have been missed: bring it near its zero, then restart the service", 0},
     {"second_sender", "a second sender", 0},
     {"overrun", "frames were lost in the queue", kOne},
     {"error_frame", "errors on the bus", kMany},
@@ -68,9 +70,11 @@ void CanFaults::note_error_frame(const CanFrame& frame, Nanoseconds now) {
     const std::uint8_t state = frame.data[1];
     if (state & CAN_ERR_CRTL_RX_OVERFLOW)
       note(CanFault::overrun, now, "in the controller, how many is not known");
-    if (state & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE))
-      set(CanFault::error_passive, true, now);
-    if (state & CAN_ERR_CRTL_ACTIVE) set(CanFault::error_passive, false, now);
+    const bool warning = state & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING);
+    const bool passive = state & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE);
+    if (passive) set(CanFault::error_passive, true, now);
+    if ((state & CAN_ERR_CRTL_ACTIVE) || (warning && !passive))
+      set(CanFault::error_passive, false, now);
   }
   if (classes & CAN_ERR_BUSOFF) set(CanFault::bus_off, true, now);
   if (classes & CAN_ERR_RESTARTED) {

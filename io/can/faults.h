@@ -19,6 +19,7 @@ enum class CanFault : std::uint8_t {
   out_of_order,    ///< a frame stamped before the one that came before it
   malformed,       ///< a payload too short, or FD where classic was said or the reverse
   jumped,          ///< a count moved faster than the joint can
+  zero_lost,       ///< a count jumped and went on from there: its zero is another one
   turns_unknown,   ///< a counter may have begun anew unseen while its joint was silent
   second_sender,   ///< an id has two frames cycle after cycle
   overrun,         ///< frames lost in the socket's queue or in the controller
@@ -29,7 +30,7 @@ enum class CanFault : std::uint8_t {
   interface_down,  ///< the interface is down or gone
   time_stepped,    ///< the wall clock stepped: frames around it are dropped
 };
-inline constexpr int kCanFaults = 15;
+inline constexpr int kCanFaults = 16;
 std::string_view to_string(CanFault fault);
 
 /// Not thread-safe. Times are of the time base.
@@ -42,10 +43,15 @@ class CanFaults {
 
   /// `what` is the joint or the id it concerns, or more of it; `times` may be above 1.
   void note(CanFault fault, Nanoseconds now, std::string what = {}, std::uint64_t times = 1);
-  /// Begins or ends what lasts: bus_off, error_passive, interface_down, second_sender. Each
-  /// beginning is counted.
+  /// Begins or ends what lasts: bus_off, error_passive, interface_down, second_sender; zero_lost
+  /// and turns_unknown never end. Each beginning is counted.
   void set(CanFault fault, bool lasts, Nanoseconds now, std::string what = {});
   bool lasts(CanFault fault) const { return of(fault).lasts; }
+  /// While these last no sample can be trusted.
+  bool readings_are_doubtful() const {
+    return lasts(CanFault::second_sender) || lasts(CanFault::zero_lost) ||
+           lasts(CanFault::turns_unknown);
+  }
   /// Reads the controller's report.
   void note_error_frame(const CanFrame& frame, Nanoseconds now);
 

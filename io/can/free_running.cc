@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace selfcal {
 namespace {
@@ -46,6 +47,7 @@ void FreeRunning::interrupt() {
   pending_.clear();
   for (Stream& stream : streams_) stream.broken = true;
   started_.reset();
+  broke_off_ = true;
 }
 
 // Makes the frame the newest of its stream; false when it cannot be used.
@@ -118,7 +120,7 @@ bool FreeRunning::follow(std::size_t message, const CanFrame& frame, Nanoseconds
   for (const int j : map_->messages[message].joints) {
     const JointTrack::Step step = tracks_[j].add(raw_counts(map_->joints[j], frame), t);
     note_step(*faults_, step, map_->joints[j].name, t);
-    follows = follows && step != JointTrack::Step::jumped;
+    follows = follows && step != JointTrack::Step::jumped && step != JointTrack::Step::back;
     stream.counts.push_back(tracks_[j].counts());
   }
   stream.last = frame;
@@ -175,11 +177,12 @@ void FreeRunning::give_up(Nanoseconds t) {
 void FreeRunning::emit(std::vector<EncoderSample>& out) {
   for (; !pending_.empty() && pending_.front().waits_for == 0; pending_.pop_front()) {
     Pending& done = pending_.front();
-    if (done.spoilt || faults_->lasts(CanFault::second_sender)) {
+    if (done.spoilt || faults_->readings_are_doubtful()) {
       ++incomplete_;
       continue;
     }
     done.sample.time -= delay_;
+    done.sample.follows = !std::exchange(broke_off_, false);
     out.push_back(done.sample);
   }
 }

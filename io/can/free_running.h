@@ -67,6 +67,7 @@ class FreeRunning {
   std::deque<Pending> pending_;
   std::optional<Nanoseconds> started_;  ///< silence before it says nothing
   std::uint64_t incomplete_ = 0;
+  bool broke_off_ = false;  ///< since the last sample
 };
 
 }  // namespace selfcal

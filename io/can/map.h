@@ -24,7 +24,10 @@ struct CanJoint {
   BitField field;
   EncoderScale scale;
   std::int64_t wraps_at = 0;  ///< counts after which the counter begins anew; 0: never
-  double most_speed = 10;     ///< rad/s or m/s: faster is a counter that jumps
+  /// The joint's limits lie within half a turn of the counter to either side of its zero, so that a
+  /// count alone tells where it is.
+  bool within_one_turn = false;
+  double most_speed = 10;  ///< rad/s or m/s: faster is a counter that jumps
 };
 
 /// The frames of one id and the joints in them.

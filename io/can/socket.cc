@@ -35,17 +35,19 @@ ifreq request_for(const std::string& interface) {
   return request;
 }
 
-// A raw socket that is bound to nothing yet, with FD frames where asked for.
+// A raw socket that is bound to nothing yet, with FD frames where the interface has them; an error
+// where it has none and they are asked for.
 Result<Descriptor> make_socket(const std::string& interface, bool fd) {
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
   if (!socket.open()) return can_failed(interface, "no CAN sockets in this kernel", errno);
-  if (!fd) return socket;
   ifreq request = request_for(interface);
   if (::ioctl(socket.handle(), SIOCGIFMTU, &request) != 0)
     return can_failed(interface, "cannot be opened", errno);
-  if (request.ifr_mtu < static_cast<int>(CANFD_MTU))
+  const bool carries_fd = request.ifr_mtu >= static_cast<int>(CANFD_MTU);
+  if (fd && !carries_fd)
     return device_failed("CAN interface " + interface + " carries no FD frames");
-  if (!set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1))
+  // Also where none are meant: one with a joint's id is to be told, not to be missed.
+  if (carries_fd && !set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1))
     return can_failed(interface, "FD frames", errno);
   return socket;
 }

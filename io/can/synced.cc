@@ -35,6 +35,7 @@ void SyncedCycles::add(const CanFrame& frame, Nanoseconds t, std::vector<Encoder
 
 void SyncedCycles::interrupt() {
   if (sync_) ++incomplete_;
+  broke_off_ = true;
   sync_.reset();
   period_ = 0;
   for (Slot& slot : slots_) slot.filled = slot.doubled = false;
@@ -75,7 +76,10 @@ void SyncedCycles::put(std::size_t message, const CanFrame& frame, Nanoseconds t
 bool SyncedCycles::in_window(std::size_t message, Nanoseconds t) {
   const Nanoseconds since = t - *sync_;
   // A SYNC may have been lost before it: whose cycle it is nobody can tell.
-  if (period_ > 0 && since > period_ * 9 / 10) spoilt_ = true;
+  if (period_ > 0 && since > period_ * 9 / 10 && since <= window_) {
+    spoilt_ = true;
+    faults_->note(CanFault::late, t, name(message) + ", hardly before the next SYNC");
+  }
   if (since <= window_) return true;
   spoilt_ = true;
   const bool no_sync = since > 2 * std::max(period_, window_);
@@ -93,10 +97,11 @@ void SyncedCycles::end(std::vector<EncoderSample>& out) {
   sample.time = *sync_ - delay_;
   sample.joints = static_cast<int>(map_->joints.size());
   const bool there = all_there();
-  if (!there || spoilt_ || faults_->lasts(CanFault::second_sender) || !follow(sample)) {
+  if (!there || spoilt_ || !follow(sample) || faults_->readings_are_doubtful()) {
     ++incomplete_;
     return;
   }
+  sample.follows = !std::exchange(broke_off_, false);
   out.push_back(sample);
 }
 

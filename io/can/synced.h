@@ -46,7 +46,7 @@ class SyncedCycles {
   std::optional<Nanoseconds> sync_;  ///< when the cycle began
   Nanoseconds period_ = 0;           ///< of the last SYNCs, smoothed; 0: not known
   Nanoseconds newest_ = 0;
-  bool spoilt_ = false;
+  bool spoilt_ = false, broke_off_ = false;
   std::uint64_t incomplete_ = 0;
 };
 

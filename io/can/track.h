@@ -8,11 +8,13 @@ namespace selfcal {
 
 class JointTrack {
  public:
-  /// What a count means against the one before it.
+  /// What a count means against the ones before it.
   enum class Step : std::uint8_t {
     first,    ///< nothing to compare with
     follows,  ///< the joint can have moved so far
-    jumped,   ///< it cannot; the next count is compared with this one
+    jumped,   ///< it cannot: either this count is wrong, or all from now on are of another zero
+    back,     ///< the one before was wrong: this follows the last one that did
+    stayed,   ///< the count after a jump went on from there: the joint's zero is not known any more
     guessed,  ///< it was silent so long that it may have passed more than half a turn of its
               ///< counter
   };
@@ -25,10 +27,15 @@ class JointTrack {
   double reach(Nanoseconds span) const;
 
  private:
+  /// Whether a joint can have come from `before` to `after` in `span`.
+  bool reachable(std::int64_t before, std::int64_t after, Nanoseconds span) const;
+  std::int64_t nearest(std::int64_t raw, std::int64_t near) const;
+  void trust(std::int64_t counts);
+
   const CanJoint* joint_;
-  bool known_ = false;
-  std::int64_t counts_ = 0;
-  Nanoseconds time_ = 0;
+  bool known_ = false, jumped_ = false;
+  std::int64_t counts_ = 0, trusted_ = 0;  ///< trusted: of the last one that followed
+  Nanoseconds time_ = 0, trusted_time_ = 0;
 };
 
 /// Tells the fault that a step is, if it is one.

@@ -11,7 +11,21 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST_F(Synced, AreNoneForACountThatJumpsAndGoOnFromThere) {
+TEST_F(Synced, AreNoneForACountThatJumpsAndGoOnWhereItWas) {
+  good(0);
+  bus.sync(t(1));
+  bus.frame(0, 1'000'000, t(1) + 200);
+  bus.frame(1, -1010, t(1) + 400);
+  good(2);
+  good(3);
+  end(4);
+  ASSERT_EQ(bus.samples.size(), 3u);
+  EXPECT_EQ(bus.samples[1].time, static_cast<Nanoseconds>(t(2) * 1e3));
+  EXPECT_EQ(bus.count(CanFault::jumped), 1u);
+  EXPECT_EQ(bus.count(CanFault::zero_lost), 0u);
+}
+
+TEST_F(Synced, EndWhereACountJumpsAndGoesOnFromThere) {
   good(0);
   // 10 rad/s in 10 ms are 0.1 rad: 100 000 counts.
   for (int k = 1; k < 4; ++k) {
@@ -20,10 +34,10 @@ TEST_F(Synced, AreNoneForACountThatJumpsAndGoOnFromThere) {
     bus.frame(1, -1010, t(k) + 400);
   }
   end(4);
-  ASSERT_EQ(bus.samples.size(), 3u);
-  EXPECT_EQ(bus.samples[1].time, static_cast<Nanoseconds>(t(2) * 1e3));
+  EXPECT_EQ(bus.samples.size(), 1u);
   EXPECT_EQ(bus.count(CanFault::jumped), 1u);
-  EXPECT_EQ(bus.trouble(t(4)), "can0: a counter jumped (a)");
+  EXPECT_EQ(bus.count(CanFault::zero_lost), 1u);
+  EXPECT_THAT(bus.trouble(t(4)), HasSubstr("a counter jumped and stayed"));
 }
 
 TEST_F(Synced, FollowTheFastestMotionThatIsAllowed) {
@@ -134,7 +148,25 @@ TEST_F(Synced, SayThatTurnsMayHaveBeenMissed) {
     wrapping.frame(1, 1, t(k) + 400);
   }
   EXPECT_EQ(wrapping.count(CanFault::turns_unknown), 1u);
-  EXPECT_THAT(wrapping.trouble(t(9)), HasSubstr("turns may have been missed (a)"));
+  EXPECT_THAT(wrapping.trouble(t(9)), HasSubstr("turns may have been missed"));
+  EXPECT_EQ(wrapping.samples.size(), 2u);
+}
+
+TEST_F(Synced, KnowTheTurnOfAJointWhoseLimitsLeaveNoOther) {
+  CanMap map = two_joints(true);
+  map.joints[0].wraps_at = 1'000'000;
+  map.joints[0].within_one_turn = true;
+  ASSERT_EQ(map.finish(), std::nullopt);
+  Bus wrapping{map, kTiming};
+  for (const int k : {0, 1, 8, 9}) {
+    wrapping.sync(t(k));
+    wrapping.frame(0, k < 5 ? 400'000 : 600'000, t(k) + 200);
+    wrapping.frame(1, 1, t(k) + 400);
+  }
+  EXPECT_EQ(wrapping.count(CanFault::turns_unknown), 0u);
+  ASSERT_EQ(wrapping.samples.size(), 3u);
+  EXPECT_EQ(wrapping.samples[1].counts[0], 400'000);
+  EXPECT_EQ(wrapping.samples[2].counts[0], -400'000);
 }
 
 }  // namespace

@@ -91,6 +91,18 @@ TEST(SampleHistory, HasNothingAcrossAGap) {
   EXPECT_TRUE(history.around(17 * kPeriod)) << "the sample of the very moment";
 }
 
+TEST(SampleHistory, HasNothingAcrossWhatBrokeOff) {
+  SampleHistory history;
+  for (int k = 0; k < 5; ++k) history.add(sample_of(k * kMillisecond, {100 + k}));
+  EncoderSample after = sample_of(5 * kMillisecond, {105});
+  after.follows = false;
+  history.add(after);
+  history.add(sample_of(6 * kMillisecond, {106}));
+  EXPECT_TRUE(history.around(7 * kMillisecond / 2));
+  EXPECT_FALSE(history.around(9 * kMillisecond / 2));
+  EXPECT_TRUE(history.around(11 * kMillisecond / 2));
+}
+
 TEST(SampleHistory, DropsAndCountsSamplesThatDoNotFollowInTime) {
   SampleHistory history;
   history.add(sample_of(10, {1}));

@@ -58,7 +58,7 @@ TEST(RowsOf, WeighsATouchByWhatItsReadingLeavesOpen) {
   moving.before.counts[1] = standing.before.counts[1] - 1000;
   moving.after.counts[1] = standing.after.counts[1] + 1000;
   moving.temperature = 31;
-  moving.unix_ms = standing.unix_ms + 2500;
+  moving.unix_ms = standing.unix_ms + 3'600'000;  // the wall clock stepped: the edges did not
   session.touches = {standing, moving};
   const DataSet data = rows_of(rx90(), session, meaning_of(two_planes()));
   ASSERT_EQ(data.rows.rows(), 2);
@@ -73,7 +73,16 @@ TEST(RowsOf, WeighsATouchByWhatItsReadingLeavesOpen) {
   const double open = speed * 0.02 / 4 / std::sqrt(3);
   EXPECT_NEAR(data.rows.factor(1), std::hypot(1, open / 2e-5), 1e-4 * data.rows.factor(1));
   EXPECT_EQ(data.rows.temperature[1], 31);
-  EXPECT_EQ(data.rows.time[1], 2.5);
+  EXPECT_EQ(data.rows.time[1], 1e-3);
+}
+
+TEST(RowsOf, TakeTheWallClockForTheTimeThatTheComputerWasOff) {
+  Session session = session_of(2);
+  TouchRecord before = touch_of(0), after = touch_of(0);
+  after.edge = before.edge - kMillisecond;
+  after.unix_ms = before.unix_ms + 2500;
+  session.touches = {before, after};
+  EXPECT_EQ(rows_of(rx90(), session, meaning_of(two_planes())).rows.time[1], 2.5);
 }
 
 TEST(RowsOf, MakesNoRowsOfNoTouches) {
