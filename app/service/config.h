@@ -9,8 +9,9 @@
 //   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted (1 sigma)
 //   domain           0          0 to 230        of DDS
 //   encoders         {}                         where joint readings come from:
-//     kind           dds                        one of io/encoders.def; its own keys are listed at
-//                                               the head of io/encoders/KIND.cc
+//     kind           dds                        one of io/encoders.def; its own keys are listed in
+//                                               io/encoders/dds.cc, those of socketcan in
+//                                               io/can/settings.h
 //     joints         frames' names              names, in the robot's order, or a mapping by the
 //                                               frames' names where the kind says so
 //     silence        0.5        0.01 to 60 s    without a sample they count as lost

@@ -1,11 +1,11 @@
 // Encoders on a CAN bus, as CONFIG.yaml describes them.
 //
+// clang-format off
 //   key              default    range            meaning
-//   interface        required                    "can0"
-//   sync             see below                   the frame at which all joints take their
-//   positions:
+//   interface        required   1 to 15 chars    "can0"
+//   sync             see below                   at this frame all joints take their positions:
 //     id             0x80       a CAN id
-//     extended       false
+//     extended       false                       its id has 29 bits
 //     send_period    none       0.0005 to 1 s    the service itself sends SYNC; else it is silent
 //   cycle            see below  1e-4 to 1 s      without sync: from a joint's frame to its next
 //   window           0.005      1e-4 to 1 s      with sync: a joint's frame comes within it
@@ -13,33 +13,37 @@
 //   delay            0          0 to 0.1 s       from the taking of a position to the stamp
 //   dbc              none                        file with the messages and signals named below
 //   joints           required                    NAME: {where its count stands, one of:
-//     id             a CAN id                    0x181 or 385, with
-//       extended     false                       29 bits
+//     id                        a CAN id         0x181 or 385, with
+//       extended     false                       its id has 29 bits
 //       byte         0          0 to 63          first byte, and
 //       length       4          1 to 8           bytes; or
 //       bit          none       0 to 511         first bit as DBC files have it, and
-//       bits         none       1 to 64
+//       bits         required   1 to 64          number of bits
 //       signed       true
 //       endian       little     little, big
-//     cia402                                     {node: 1 to 127, tpdo: 1 to 4 (1), byte: 0 to 4
-//     (0)}:
-//                                                position actual value 0x6064 in a TPDO at its
-//                                                predefined id
+//     cia402                                     position actual value 0x6064 in a TPDO at its
+//                                                predefined id:
+//       node         required   1 to 127
+//       tpdo         1          1 to 4
+//       byte         0          0 to 4           first of its four bytes
 //     message, signal                            names in the DBC file, with
-//       unit         required   deg, rad, m, mm, counts of the physical value
+//       unit         required   deg, rad, m,     of the physical value
+//                               mm, counts
 //                                                and what a count means:
 //     counts_per_turn required  above 0          unless the DBC's unit says it
 //     gear           1          above 0          turns of the counter for one of the joint
 //     pitch          none       above 0 (m)      way of one turn behind the gear; a linear joint
 //     zero           0          whole counts     reading of the joint's zero
 //     sign           1          1, -1
-//     wraps_at       none       2 to 2^48 counts the counter begins anew there: turns are counted
-//     on speed          10         1e-3 to 1e4      rad/s or m/s: a faster count is a jump fd false
-//     FD frames
+//     wraps_at       none       2 to 2^48 counts the counter begins anew there; turns are added
+//     speed          10         1e-3 to 1e4      rad/s or m/s: a faster count is a jump
+//     fd             false                       FD frames
 //   }
+// clang-format on
 //
 // Without `sync` there must be `cycle`; but joints by `cia402` are taken with SYNC 0x80 unless
-// `cycle` is there.
+// `cycle` is there. With `wraps_at` the first count is taken in the turn nearest to the joint's
+// zero: a joint that travels farther than half a turn of its counter must stand there at the start.
 #pragma once
 
 #include <filesystem>
