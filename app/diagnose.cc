@@ -72,6 +72,8 @@ int diagnose_command(const Arguments& arguments) {
   {
     ProgressLine line;
     diagnosis = diagnose(robot, loaded->data, {}, shown_on(line));
+    if (!diagnosis.problem.empty())
+      return tell({kBadInput, arguments.data_set + ": " + diagnosis.problem});
     if (!arguments.simulated.empty()) {
       auto simulated = load_data_set(arguments.simulated);
       if (!simulated) return tell(simulated.error());
@@ -102,7 +104,7 @@ int diagnose_command(const Arguments& arguments) {
     std::printf("%s\n", json.c_str());
   else
     std::fputs((summary(diagnosis) + changed).c_str(), stdout);
-  return kDone;
+  return diagnosis.converged ? kDone : kAnswerIsNo;
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ Json of_value(const NamedValue& p) {
 Json of_candidate(const CauseResult& cause, double p_value) {
   return Json::object({{"effect", cause.effect},
                        {"where", cause.where},
+                       {"shape", cause.shape},
                        {"probability", finite(cause.probability)},
                        {"p_value", finite(p_value)},
                        {"rms_after", cause.rms_after > 0 ? finite(cause.rms_after) : Json(nullptr)},

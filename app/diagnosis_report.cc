@@ -72,6 +72,7 @@ std::string cause_table(const std::vector<CauseResult>& causes) {
   for (const CauseResult& each : causes) {
     if (each.probability < 0.01) continue;
     text += "<tr><td>" + spaced(each.effect) + "<td>" + joined(each.where) +
+            (each.shape.empty() ? "" : " " + each.shape) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) + "<td>";
     if (each.visible > 0) text += printed("%.2g &times; noise", each.visible);
     text += "<td class=muted>" + joined(each.confounded_with);

@@ -41,6 +41,7 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     const CauseResult& each = causes[i];
     if (i > 2 && each.probability < 0.02) break;
     text += printed("  %9.3f    ", each.probability) + spaced(each.effect) + places(each.where);
+    if (!each.shape.empty()) text += " " + each.shape;
     if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
     text += "\n";
     for (size_t p = 0; p < each.parameters.size() && each.probability > 0.5 && p < kMostListed;

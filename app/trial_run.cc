@@ -71,7 +71,9 @@ class Runner {
     const std::shared_ptr<const Robot> robot = std::move(loaded->robot);
     if (const auto baseline = find_baseline(arguments_.baseline))
       return (*baseline)(robot, loaded->data);
-    return answer_of(diagnose(robot, loaded->data));
+    const Diagnosis diagnosis = diagnose(robot, loaded->data);
+    if (!diagnosis.problem.empty()) return bad_input(name + ": " + diagnosis.problem);
+    return answer_of(diagnosis);
   }
 
   const RunArguments& arguments_;

@@ -184,11 +184,7 @@ void Bench::add_sigma(int candidate, double size, std::vector<double>& to) const
 double Bench::detectable(int candidate, double log_evidence) const {
   // A cause of visible size r adds about n r^2 / 2 to the log evidence.
   const double r = std::sqrt(2 * log_evidence / workbenches_.front().freedom());
-  return r *
-         blocks_[candidate]
-             .unit
-             .head(static_cast<Eigen::Index>(all_.list[static_cast<size_t>(candidate)].main.size()))
-             .maxCoeff();
+  return r * blocks_[candidate].unit[0];
 }
 
 }  // namespace selfcal

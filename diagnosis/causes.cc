@@ -9,8 +9,24 @@ namespace {
 
 constexpr double kListed = 0.005;     ///< least probability that is told
 constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
-constexpr double kSure = 0.9;       ///< a cause so probable stands beside structure of no known one
-constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
+constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
+constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
+constexpr double kAlsoThere = 0.5;     ///< of the cause's own: further places
+
+/// What the linear parameters do not say of an entry.
+std::string shape_in_words(const Node& entry) {
+  constexpr std::pair<const char*, const char*> kTold[] = {
+      {"moment", "from %.0f s on"}, {"settle", "settling in %.0f s"}, {"lag", "lagging by %.0f s"}};
+  for (const auto& [key, words] : kTold) {
+    const Node* field = entry.find(key);
+    const auto value = field ? parse_number(field->text) : std::nullopt;
+    if (!value) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, words, *value);
+    return text;
+  }
+  return {};
+}
 
 class Teller {
  public:
@@ -88,6 +104,7 @@ class Teller {
   void add_parameters(int c, const Workbench::Estimate& estimate, Eigen::Index first,
                       CauseResult& cause) const {
     Node entry = candidate(c).entries.front();
+    if (cause.shape.empty()) cause.shape = shape_in_words(entry);
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);
@@ -102,6 +119,7 @@ class Teller {
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.
   void confound(CauseResult& cause) const {
+    if (cause.probability < kWorthTelling) return;
     std::map<Cause, double> instead;
     double with = 0;
     for (const Hypothesis& h : posterior_.hypotheses) {
@@ -169,11 +187,14 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   const CauseResult& verdict = diagnosis.verdict;
   char text[200];
   if (verdict.effect == "none") {
-    std::snprintf(
-        text, sizeof text,
-        "no cause is named: noise alone explains what calibration leaves (as much is found "
-        "in %.2g of resampled rows)",
-        diagnosis.p_value);
+    const bool noise = diagnosis.p_value > DiagnosisOptions{}.name_below_p;
+    std::snprintf(text, sizeof text,
+                  noise
+                      ? "no cause is named: noise alone explains what calibration leaves (as much "
+                        "is found in %.2g of resampled rows)"
+                      : "no cause is named: none is probable enough, though resampled rows show "
+                        "as much in %.2g of cases only",
+                  diagnosis.p_value);
     return text;
   }
   if (verdict.effect == "unknown")
@@ -182,6 +203,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   std::string words = verdict.effect;
   for (size_t i = 0; i < verdict.where.size(); ++i)
     words += (i == 0 ? " at " : " and ") + verdict.where[i];
+  if (!verdict.shape.empty()) words += " (" + verdict.shape + ")";
   for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
     words +=
         (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + verdict.confounded_with[i];

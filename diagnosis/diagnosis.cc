@@ -6,11 +6,13 @@
 
 #include "diagnosis/causes.h"
 #include "diagnosis/closing.h"
+#include "diagnosis/detectable.h"
 #include "diagnosis/next.h"
 #include "diagnosis/null.h"
 #include "diagnosis/practice.h"
 #include "diagnosis/structures.h"
 #include "diagnosis/view.h"
+#include "diagnosis/warnings.h"
 #include "diagnosis/whereabouts.h"
 #include "kinematics/corrected_robot.h"
 
@@ -18,12 +20,12 @@ namespace selfcal {
 namespace {
 
 constexpr int kPasses = 4;
+constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
 constexpr size_t kMostEffects = 60;
 constexpr double kMostGrown = 2100;  ///< equations
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kTried = 0.05;  ///< least probable cause that is tried alone
 constexpr int kMostTried = 4;
-constexpr double kAbsorbed = 0.02;  ///< share that survives below which nothing can be said
 
 class Diagnostician {
  public:
@@ -35,21 +37,8 @@ class Diagnostician {
         view_(robot, data, options, progress) {}
 
   Diagnosis run() {
-    for (int pass = 0; pass < kPasses; ++pass) {
-      tell("weighing the causes", 0.2 + 0.2 * pass);
-      const DenseEquations rows = view_.kept();
-      bench_ = std::make_unique<Bench>(
-          view_.whitened(), structures(data_.rows, rows, view_.tips(), view_.by_joint(rows)),
-          view_.candidates(), view_.parameters(), options_.search);
-      posterior_ = bench_->search();
-      const Hypothesis& best = posterior_.hypotheses.front();
-      const auto [columns, sigma] = Workbench::unfold(bench_->terms(best));
-      const double variance =
-          bench_->workbench(best.structure).estimate(bench_->terms(best)).variance *
-          bench_->noise_variance(best.structure);
-      // The bench and the view must end up with the same rows.
-      if (pass + 1 == kPasses || !view_.refine(view_.residuals(columns, sigma), variance)) break;
-    }
+    weigh();
+    if (!result_.problem.empty()) return std::move(result_);
     result_.noise = view_.noise() * shared_noise();
     result_.candidates = cause_results(view_, *bench_, posterior_);
     tell("asking noise the same question", 0.75);
@@ -60,7 +49,7 @@ class Diagnostician {
     result_.verdict.probability = calibrated(result_.verdict.probability, result_.practice);
     result_.where = whereabouts(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
-    list_detectable();
+    list_detectable(view_, *bench_, options_, result_);
     result_.next = next_steps(view_, data_, result_);
     tell("closing the gap", 0.85);
     close();
@@ -69,6 +58,33 @@ class Diagnostician {
   }
 
  private:
+  /// Every cause on rows without the false ones, until neither these nor the noise change.
+  void weigh() {
+    for (int pass = 0; pass < kPasses; ++pass) {
+      tell("weighing the causes", 0.2 + 0.2 * pass);
+      const DenseEquations rows = view_.kept();
+      bench_ = std::make_unique<Bench>(
+          view_.whitened(), structures(data_.rows, rows, view_.tips(), view_.by_joint(rows)),
+          view_.candidates(), view_.parameters(), options_.search);
+      posterior_ = bench_->search();
+      if (bench_->workbench(0).freedom() < kFewestFreedoms ||
+          !std::isfinite(posterior_.log_total)) {
+        result_.problem =
+            "too few rows for a diagnosis: beyond what calibration takes they leave " +
+            format_number(std::floor(bench_->workbench(0).freedom())) +
+            " equations, at least 10 are needed";
+        return;
+      }
+      const Hypothesis& best = posterior_.hypotheses.front();
+      const auto [columns, sigma] = Workbench::unfold(bench_->terms(best));
+      const double variance =
+          bench_->workbench(best.structure).estimate(bench_->terms(best)).variance *
+          bench_->noise_variance(best.structure);
+      // The bench and the view must end up with the same rows.
+      if (pass + 1 == kPasses || !view_.refine(view_.residuals(columns, sigma), variance)) break;
+    }
+  }
+
   void decide() {
     result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
     if (result_.verdict.effect == "unknown") return;
@@ -89,29 +105,6 @@ class Diagnostician {
       if (bench_->structure(h.structure).kind == 0)
         return std::hypot(1.0, bench_->structure(h.structure).kappa);
     return 1;
-  }
-
-  /// The smallest that would have been named, of each cause in its best seen shape.
-  void list_detectable() {
-    std::map<Cause, Detectable> best;
-    const std::vector<Candidate>& list = view_.candidates().list;
-    for (int c = 0; c < static_cast<int>(list.size()); ++c) {
-      if (bench_->survival(c) < kAbsorbed) continue;
-      const double needed = -std::log(options_.name_below_none) -
-                            std::log(options_.search.family_odds) - list[c].log_prior;
-      const Detectable each{list[c].effect, list[c].at,
-                            view_.parameters()[list[c].main.front()].unit,
-                            bench_->detectable(c, needed)};
-      const auto [at, made] = best.try_emplace({list[c].effect, list[c].at}, each);
-      if (!made && each.smallest < at->second.smallest) at->second = each;
-    }
-    for (auto& [cause, each] : best) result_.detectable.push_back(std::move(each));
-    for (int c = 0; c < static_cast<int>(list.size()); ++c)
-      if (!best.contains({list[c].effect, list[c].at})) {
-        best[{list[c].effect, list[c].at}] = {};
-        result_.untestable.push_back(
-            {list[c].effect, list[c].at, "absorbed by calibration on these rows"});
-      }
   }
 
   /// All that the rows say of the named causes and their like: from more rows than were weighed for
@@ -143,16 +136,30 @@ class Diagnostician {
     return correction;
   }
 
+  /// The best explanation with what is named; beside an unknown one, of what is probable all the
+  /// same.
+  Hypothesis believed() const {
+    const std::string& named = result_.verdict.effect;
+    if (named == "none") return {};
+    const auto effect = [&](int c) { return view_.candidates().list[c].effect; };
+    for (const Hypothesis& h : posterior_.hypotheses)
+      if (!h.candidates.empty() &&
+          (named == "unknown"
+               ? std::ranges::all_of(h.candidates,
+                                     [&](int c) { return posterior_.family.at(effect(c)) > 0.5; })
+               : std::ranges::any_of(h.candidates, [&](int c) { return effect(c) == named; })))
+        return h;
+    return {};
+  }
+
   /// Geometry alone against geometry with the effects that are there.
   void close() {
+    const Hypothesis best = believed();
+    const double noise = result_.noise;
     Correction correction;
-    Hypothesis best;
-    for (const Hypothesis& h : posterior_.hypotheses)
-      if (result_.verdict.effect != "none" && !h.candidates.empty()) {
-        best = h;
-        break;
-      }
     if (!best.candidates.empty()) correction = grown(best);
+    // What nobody knows is no noise.
+    if (posterior_.unknown > 0.5) result_.noise = noise;
     Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, correction,
                                 view_.site(), result_.noise, options_);
     result_.gap = closing.gap;
@@ -163,26 +170,9 @@ class Diagnostician {
                                     "no explanation comes near it: a false reading"});
     result_.model = closing.model;
     result_.values = closing.after.fitted.state.xi;
+    result_.converged = view_.adjusted().fitted.converged && closing.after.fitted.converged;
     close_each();
-    warn();
-  }
-
-  /// What the rows kept aside say of the named cause, where that is not plain.
-  void warn() {
-    const Gap& gap = result_.gap;
-    if (result_.verdict.effect == "none" || gap.rows == 0) return;
-    if (gap.rms_after >= gap.rms_before)
-      result_.warnings.push_back(
-          "the rows kept aside do not confirm it: they are met no better with the effects than "
-          "without; do not use the corrected model");
-    else if (!gap.closed_fraction)
-      result_.warnings.push_back(
-          "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
-          "closes");
-    else if (gap.closed_least <= 0)
-      result_.warnings.push_back(
-          "the rows kept aside are too few to confirm it: as far as they tell, nothing may have "
-          "closed; measure more before the corrected model is used");
+    result_.warnings = warnings_of(view_, closing.after, result_);
   }
 
   /// What each of the probable causes would close alone.
@@ -214,6 +204,11 @@ class Diagnostician {
 
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
                    const DiagnosisOptions& options, const Progress& progress) {
+  if (std::ranges::all_of(data.rows.check, [](auto check) { return check != 0; })) {
+    Diagnosis nothing;
+    nothing.problem = "every row is `part: check`: there is none to find a cause with";
+    return nothing;
+  }
   return Diagnostician(robot, data, options, progress).run();
 }
 

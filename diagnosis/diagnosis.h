@@ -43,6 +43,7 @@ struct CauseResult {
   double survival = 0;   ///< share of it that calibration cannot absorb
   double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
   double visible = 0;    ///< rms of its visible part over the noise
+  std::string shape = {};  ///< since when, how fast: "from 1840 s on"; empty where there is no such
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
   Correction correction = {};  ///< with its values
@@ -96,6 +97,9 @@ struct Practice {
 };
 
 struct Diagnosis {
+  /// Why these rows cannot be diagnosed; all else is empty then. Empty: they can.
+  std::string problem;
+  bool converged = true;  ///< both fits that the gap is taken between
   Gap gap;
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   std::string why;      ///< the verdict in words

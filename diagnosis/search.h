@@ -70,8 +70,8 @@ class Bench {
   double evidence(int candidate) const;
   /// Share of the candidate's main columns that calibration cannot absorb (0 to 1).
   double survival(int candidate) const { return survival_[candidate]; }
-  /// Smallest amplitude (of the first main parameter, or the largest of several) whose evidence
-  /// would stand out, in its own unit.
+  /// Smallest amplitude whose evidence would stand out, of the first main parameter and in its
+  /// unit.
   double detectable(int candidate, double log_evidence) const;
   std::vector<Workbench::Term> terms(const Hypothesis& hypothesis) const;
   /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.

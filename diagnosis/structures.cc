@@ -32,7 +32,10 @@ class Kernel {
   Kernel(const Observations& data, const DenseEquations& rows, Eigen::MatrixXd tips,
          Eigen::MatrixXd by_joint)
       : data_(data), rows_(rows), tips_(std::move(tips)), by_joint_(std::move(by_joint)) {
-    if (data.time.size() > 0) span_ = data.time.maxCoeff() - data.time.minCoeff();
+    std::vector<double> times;  // a row need not have one
+    std::ranges::copy_if(data.time, std::back_inserter(times),
+                         [](double t) { return std::isfinite(t); });
+    if (!times.empty()) span_ = std::ranges::max(times) - std::ranges::min(times);
     direction_ = rows.shift;
     for (auto each : direction_.rowwise())
       if (each.norm() > 0) each /= each.norm();
@@ -118,6 +121,7 @@ class Kernel {
       case Closeness::turned:
         return 0;  // of one joint: of_joint()
       case Closeness::time:
+        if (!std::isfinite(data_.time[a] + data_.time[b])) return 0;
         return bell(std::pow((data_.time[a] - data_.time[b]) / (kTime * span_), 2));
     }
     return 0;

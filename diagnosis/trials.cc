@@ -12,12 +12,6 @@ namespace {
 
 bool is_named(const std::string& effect) { return effect != "none" && effect != "unknown"; }
 
-/// `effect` or `effect@place` is of a true cause.
-bool is_true(const TrialTruth& truth, const std::string& named) {
-  const std::string effect = named.substr(0, named.find('@'));
-  return effect == truth.effect || (!truth.second.empty() && effect == truth.second);
-}
-
 bool names(const TrialCauseNamed& cause, const std::string& effect) {
   if (cause.effect == effect) return true;
   return cause.probability <= kMostWhenConfounded &&
@@ -73,7 +67,7 @@ class Table {
       const TrialCauseNamed& verdict = trial.answer->verdict;
       Bin& bin = bins[static_cast<size_t>(std::clamp(verdict.probability * 10, 0.0, 9.0))];
       bin.stated += verdict.probability;
-      bin.right += is_true(trial.truth, verdict.effect) ? 1 : 0;
+      bin.right += right_cause(trial.truth, *trial.answer) ? 1 : 0;
       bin.trials += 1;
       ++line.of;
     }

@@ -195,14 +195,28 @@ Eigen::VectorXd View::residuals(const std::vector<int>& effects,
          every.C(Eigen::all, effects) * prior.cwiseProduct(x.tail(prior.size()));
 }
 
-Eigen::VectorXd View::geometry_residuals(const Whitened& rows) const {
+namespace {
+
+/// The geometry's columns over its priors.
+Eigen::MatrixXd with_priors(const Whitened& rows) {
   const Eigen::Index n = rows.A.cols();
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(rows.A.rows() + n, n);
   M.topRows(rows.A.rows()) = rows.A;
   M.bottomRows(n).diagonal() = rows.weight;
-  Eigen::VectorXd z(M.rows());
+  return M;
+}
+
+}  // namespace
+
+Eigen::VectorXd View::geometry_residuals(const Whitened& rows) const {
+  Eigen::VectorXd z(rows.y.size() + rows.pull.size());
   z << rows.y, rows.pull;
-  return rows.y - rows.A * least_squares(M, z);
+  return rows.y - rows.A * least_squares(with_priors(rows), z);
+}
+
+Eigen::VectorXd View::geometry_leaves(const Whitened& rows) const {
+  const Eigen::MatrixXd Q = orthogonal_columns(with_priors(rows)).Q.topRows(rows.A.rows());
+  return (1 - Q.rowwise().squaredNorm().array()).max(0);
 }
 
 bool View::refine(const Eigen::VectorXd& residuals, double variance) {

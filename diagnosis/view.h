@@ -39,6 +39,9 @@ class View {
   Eigen::MatrixXd by_joint(const DenseEquations& kept) const;
   /// What the geometry alone leaves of `rows` (as whitened()).
   Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
+  /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
+  /// leverage.
+  Eigen::VectorXd geometry_leaves(const Whitened& rows) const;
   const std::vector<char>& put_aside() const { return put_aside_; }
   /// As known so far, by set.
   std::vector<Scale> noise_of_sets() const;

@@ -38,35 +38,38 @@ std::vector<Share> by_joint(const View& view, const Bench& bench) {
   return list;
 }
 
-/// Squared residuals by row of the data set, and how many scalars each has.
+/// Squared residuals by row of the data set, and what noise alone would leave there once the
+/// geometry has taken its part.
 struct RowSquares {
   std::vector<int> row;
-  std::vector<double> squares, scalars;
+  std::vector<double> squares, noise;
   double total = 0;
 
-  /// Share of the rows that `in` picks, beyond the noise (1 a scalar).
+  /// Share of the rows that `in` picks, beyond the noise.
   template <class In>
   double share(In in) const {
     double sum = 0;
     for (size_t i = 0; i < row.size(); ++i)
-      if (in(row[i])) sum += squares[i] - scalars[i];
+      if (in(row[i])) sum += squares[i] - noise[i];
     return total > 0 ? std::clamp(sum / total, 0.0, 1.0) : 0;
   }
 };
 
 RowSquares row_squares(const View& view) {
   const DenseEquations kept = view.kept();
-  const Eigen::VectorXd e = view.geometry_residuals(view.whitened());
+  const Whitened whitened = view.whitened();
+  const Eigen::VectorXd e = view.geometry_residuals(whitened);
+  const Eigen::VectorXd noise = view.geometry_leaves(whitened);
   RowSquares rows;
   for (size_t i = 0; i < kept.row.size(); ++i) {
     if (kept.row[i] < 0) continue;
     if (rows.row.empty() || rows.row.back() != kept.row[i]) {
       rows.row.push_back(kept.row[i]);
       rows.squares.push_back(0);
-      rows.scalars.push_back(0);
+      rows.noise.push_back(0);
     }
     rows.squares.back() += std::pow(e[static_cast<Eigen::Index>(i)], 2);
-    rows.scalars.back() += 1;
+    rows.noise.back() += noise[static_cast<Eigen::Index>(i)];
   }
   for (const double s : rows.squares) rows.total += s;
   return rows;
