@@ -27,8 +27,9 @@ std::string gap_line(const Gap& gap) {
   if (gap.rows == 0) return "No rows are kept aside: how far the gap closes was not judged.\n";
   std::string text = printed("Gap: %.4g mm with the maker's figures, %.4g mm calibrated",
                              1e3 * gap.rms_nominal, 1e3 * gap.rms_before);
-  text += printed(", %.4g mm with the named effects; noise %.4g mm (rms, %d rows kept aside)\n",
-                  1e3 * gap.rms_after, 1e3 * gap.noise_floor, gap.rows);
+  text += printed(", %.4g mm with the named effects; noise %.4g mm (rms, %d rows %s)\n",
+                  1e3 * gap.rms_after, 1e3 * gap.noise_floor, gap.rows,
+                  gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
   if (gap.closed_fraction)
     text += printed("     %.0f %% of what calibration leaves is closed (%.0f to %.0f %%)\n",
                     100 * *gap.closed_fraction, 100 * gap.closed_least, 100 * gap.closed_most);

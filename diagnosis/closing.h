@@ -11,7 +11,7 @@
 namespace selfcal {
 
 struct Closing {
-  Gap gap;
+  std::vector<JudgedRow> judged;
   Adjusted after;
   std::shared_ptr<const Robot> model;  ///< of `after`
   std::vector<Rejected> rejected;      ///< judging rows that neither model explains

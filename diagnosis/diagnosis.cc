@@ -7,6 +7,7 @@
 #include "diagnosis/causes.h"
 #include "diagnosis/closing.h"
 #include "diagnosis/detectable.h"
+#include "diagnosis/folds.h"
 #include "diagnosis/next.h"
 #include "diagnosis/null.h"
 #include "diagnosis/practice.h"
@@ -162,7 +163,8 @@ class Diagnostician {
     if (posterior_.unknown > 0.5) result_.noise = noise;
     Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, correction,
                                 view_.site(), result_.noise, options_);
-    result_.gap = closing.gap;
+    result_.judged = std::move(closing.judged);
+    result_.gap = gap_of(result_.judged, options_.seed);
     result_.rejected = std::move(closing.rejected);
     for (int row = 0; row < data_.rows.rows(); ++row)
       if (view_.put_aside()[row])
@@ -172,7 +174,7 @@ class Diagnostician {
     result_.values = closing.after.fitted.state.xi;
     result_.converged = view_.adjusted().fitted.converged && closing.after.fitted.converged;
     close_each();
-    result_.warnings = warnings_of(view_, closing.after, result_);
+    result_.warnings = warnings_of(view_, closing.after);
   }
 
   /// What each of the probable causes would close alone.
@@ -181,9 +183,9 @@ class Diagnostician {
     for (CauseResult& each : result_.candidates) {
       if (each.correction.entries.empty() || each.probability < kTried || ++tried > kMostTried)
         continue;
-      each.rms_after = close_gap(view_.shared_geometry(), view_.adjusted(), data_, each.correction,
-                                 view_.site(), result_.noise, options_)
-                           .gap.rms_after;
+      const Closing alone = close_gap(view_.shared_geometry(), view_.adjusted(), data_,
+                                      each.correction, view_.site(), result_.noise, options_);
+      each.rms_after = gap_of(alone.judged, options_.seed).rms_after;
     }
   }
 
@@ -200,6 +202,19 @@ class Diagnostician {
   Diagnosis result_;
 };
 
+void judge_by_folds(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                    DiagnosisOptions options, const Progress& progress, Diagnosis& diagnosis) {
+  options.practice = 0;
+  for (int fold = 0; fold < kFolds; ++fold) {
+    if (progress) progress("judging by folds", 0.9 + 0.1 * fold / kFolds);
+    const DataSet part = with_fold(data, fold);
+    const Diagnosis of_fold = Diagnostician(robot, part, options, {}).run();
+    diagnosis.judged.insert(diagnosis.judged.end(), of_fold.judged.begin(), of_fold.judged.end());
+  }
+  diagnosis.gap = gap_of(diagnosis.judged, options.seed);
+  diagnosis.gap.judged_on = "folds";
+}
+
 }  // namespace
 
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
@@ -209,7 +224,12 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
     nothing.problem = "every row is `part: check`: there is none to find a cause with";
     return nothing;
   }
-  return Diagnostician(robot, data, options, progress).run();
+  Diagnosis diagnosis = Diagnostician(robot, data, options, progress).run();
+  if (!diagnosis.problem.empty()) return diagnosis;
+  if (diagnosis.judged.empty()) judge_by_folds(robot, data, options, progress, diagnosis);
+  if (std::string warning = warning_of_gap(diagnosis); !warning.empty())
+    diagnosis.warnings.push_back(std::move(warning));
+  return diagnosis;
 }
 
 }  // namespace selfcal

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "constraints/identification.h"
+#include "diagnosis/gap.h"
 #include "diagnosis/search.h"
 
 namespace selfcal {
@@ -47,15 +48,6 @@ struct CauseResult {
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
   Correction correction = {};  ///< with its values
-};
-
-struct Gap {
-  double rms_nominal = 0, rms_before = 0, rms_after = 0, max_before = 0, max_after = 0;  ///< m
-  double noise_floor = 0;
-  std::optional<double> closed_fraction;
-  double closed_least = 0, closed_most = 1;  ///< 95 % interval
-  std::string judged_on = "check";           ///< or "folds"
-  int rows = 0;
 };
 
 struct Detectable {
@@ -101,6 +93,7 @@ struct Diagnosis {
   std::string problem;
   bool converged = true;  ///< both fits that the gap is taken between
   Gap gap;
+  std::vector<JudgedRow> judged;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   std::string why;      ///< the verdict in words
   double p_value = 1;   ///< of the verdict's evidence under a resampled null

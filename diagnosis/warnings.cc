@@ -32,12 +32,15 @@ std::string of_gears(const View& view) {
          gears;
 }
 
-std::string of_gap(const Diagnosis& diagnosis) {
+}  // namespace
+
+std::string warning_of_gap(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
   if (diagnosis.verdict.effect == "none") return {};
   if (gap.rows == 0)
-    return "no rows were kept aside (`part: check`): nothing confirms it, and how far the gap "
-           "closes is not known";
+    return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
+           "not "
+           "known";
   if (diagnosis.verdict.effect != "unknown" && gap.rms_after >= gap.rms_before)
     return "the rows kept aside do not confirm it: they are met no better with the effects than "
            "without; do not use the corrected model";
@@ -50,13 +53,9 @@ std::string of_gap(const Diagnosis& diagnosis) {
   return {};
 }
 
-}  // namespace
-
-std::vector<std::string> warnings_of(const View& view, const Adjusted& after,
-                                     const Diagnosis& diagnosis) {
+std::vector<std::string> warnings_of(const View& view, const Adjusted& after) {
   std::vector<std::string> list;
-  for (const std::string& each :
-       {of_fits(view.adjusted(), after), of_gears(view), of_gap(diagnosis)})
+  for (const std::string& each : {of_fits(view.adjusted(), after), of_gears(view)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

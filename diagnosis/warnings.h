@@ -10,9 +10,10 @@ namespace selfcal {
 
 struct Diagnosis;
 
-/// Fits that failed, gear ratios that were off, and what the rows kept aside say of the named cause
-/// where that is not plain. `after` is the geometry's fit with the named effects.
-std::vector<std::string> warnings_of(const View& view, const Adjusted& after,
-                                     const Diagnosis& diagnosis);
+/// Fits that failed and gear ratios that were off. `after` is the fit with the named effects.
+std::vector<std::string> warnings_of(const View& view, const Adjusted& after);
+
+/// What the judging rows say of the named cause where that is not plain; empty where it is.
+std::string warning_of_gap(const Diagnosis& diagnosis);
 
 }  // namespace selfcal

@@ -8,30 +8,37 @@ namespace selfcal {
 namespace {
 
 constexpr int kRegions = 6, kTimes = 6;
+constexpr double kAbsorbed = 0.02;  ///< share that survives below which an effect takes no part
 
+/// The joint that a candidate acts at; -1 of one that acts elsewhere.
+int joint_of(const Candidate& candidate, const std::vector<Joint>& joints) {
+  if (candidate.effect == "plane_form_error" || candidate.effect == "fixture_shift") return -1;
+  for (size_t j = 0; j < joints.size(); ++j)
+    if (candidate.at == joints[j].name) return static_cast<int>(j);
+  return -1;
+}
+
+/// What each joint's own effects take of the residual when all effects there are share it.
 std::vector<Share> by_joint(const View& view, const Bench& bench) {
   std::vector<Workbench::Term> terms;
-  std::vector<int> joint_of;
+  std::vector<int> joint;
   const std::vector<Joint>& joints = view.geometry().joints();
-  int blocks = 0;
-  for (size_t c = 0; c < view.candidates().list.size(); ++c) {
-    const Candidate& each = view.candidates().list[c];
-    for (size_t j = 0; j < joints.size(); ++j)
-      if (each.at == joints[j].name && each.effect != "zero_shift" &&
-          bench.survival(static_cast<int>(c)) > 0.02) {
-        terms.push_back({&bench.block(static_cast<int>(c)), 1});
-        joint_of.push_back(static_cast<int>(j));
-        ++blocks;
-      }
+  const std::vector<Candidate>& all = view.candidates().list;
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (bench.survival(static_cast<int>(c)) <= kAbsorbed) continue;
+    terms.push_back({&bench.block(static_cast<int>(c)), 1});
+    joint.push_back(joint_of(all[c], joints));
   }
-  for (Workbench::Term& term : terms) term.size = 2 / std::sqrt(static_cast<double>(blocks));
+  for (Workbench::Term& term : terms) term.size = 2 / std::sqrt(static_cast<double>(terms.size()));
   const Workbench& plain = bench.workbench(0);
   const Eigen::VectorXd v = plain.estimate(terms).mean;
   std::vector<double> share(joints.size(), 0);
   Eigen::Index at = 0;
   for (size_t t = 0; t < terms.size(); ++t)
-    for (const int column : terms[t].block->columns)
-      share[joint_of[t]] += v[at++] * plain.right()[column] / plain.total();
+    for (const int column : terms[t].block->columns) {
+      const double part = v[at++] * plain.right()[column] / plain.total();
+      if (joint[t] >= 0) share[joint[t]] += part;
+    }
   std::vector<Share> list;
   for (size_t j = 0; j < joints.size(); ++j)
     list.push_back({joints[j].name, std::clamp(share[j], 0.0, 1.0)});
