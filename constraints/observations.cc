@@ -1,7 +1,12 @@
 #include "constraints/observations.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace selfcal {
 namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <class Column>
 Column picked(const Column& column, const std::vector<int>& rows) {
@@ -14,6 +19,25 @@ std::vector<T> picked(const std::vector<T>& column, const std::vector<int>& rows
   for (const int row : rows)
     if (!column.empty()) list.push_back(column[row]);
   return list;
+}
+
+/// Two parts of one column, of n and m rows.
+template <class Column>
+Column stacked(const Column& a, const Column& b, Eigen::Index n, Eigen::Index m, double absent) {
+  if (a.rows() == 0 && b.rows() == 0) return {};
+  Column all = Column::Constant(n + m, std::max(a.cols(), b.cols()), absent);
+  if (a.rows() > 0) all.topRows(n) = a;
+  if (b.rows() > 0) all.bottomRows(m) = b;
+  return all;
+}
+
+template <class T>
+std::vector<T> stacked(std::vector<T> a, std::vector<T> b, int n, int m, T absent) {
+  if (a.empty() && b.empty()) return {};
+  a.resize(static_cast<size_t>(n), absent);
+  b.resize(static_cast<size_t>(m), absent);
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
 }
 
 }  // namespace
@@ -35,6 +59,29 @@ Observations taken(const Observations& data, const std::vector<int>& rows) {
   some.repeat = picked(data.repeat, rows);
   some.check = picked(data.check, rows);
   return some;
+}
+
+Observations joined(const Observations& a, const Observations& b) {
+  const int n = a.rows(), m = b.rows();
+  const auto both = [&](auto column, double absent = kNaN) {
+    return stacked(a.*column, b.*column, n, m, absent);
+  };
+  Observations all;
+  all.q = both(&Observations::q);
+  all.position = both(&Observations::position);
+  all.orientation = both(&Observations::orientation);
+  all.distance = both(&Observations::distance);
+  all.normal = both(&Observations::normal);
+  all.wrench = both(&Observations::wrench);
+  all.velocity = both(&Observations::velocity);
+  all.temperature = both(&Observations::temperature);
+  all.time = both(&Observations::time);
+  all.noise_factor = both(&Observations::noise_factor, 1);
+  all.set = stacked(a.set, b.set, n, m, 0);
+  all.group = stacked(a.group, b.group, n, m, -1);
+  all.repeat = stacked(a.repeat, b.repeat, n, m, -1);
+  all.check = stacked(a.check, b.check, n, m, char{0});
+  return all;
 }
 
 Conditions conditions(const Observations& data, const std::vector<int>& rows) {

@@ -35,6 +35,10 @@ struct Observations {
 /// The given rows, in their order; one may come several times.
 Observations taken(const Observations& data, const std::vector<int>& rows);
 
+/// The rows of `a`, then those of `b`, of as many joints. In a column that one of them lacks its
+/// cells are NaN, -1 of a repeat, 1 of a noise factor; what both lack is lacking.
+Observations joined(const Observations& a, const Observations& b);
+
 /// What else held when `rows` were taken, a lane each.
 Conditions conditions(const Observations& data, const std::vector<int>& rows);
 

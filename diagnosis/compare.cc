@@ -13,58 +13,47 @@ namespace {
 
 constexpr double kListed = 0.02;
 
-void append(Eigen::MatrixXd& to, const Eigen::MatrixXd& rows, Eigen::Index before,
-            Eigen::Index after, Eigen::Index columns) {
-  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(before + after, columns, std::nan(""));
-  if (to.rows() > 0) all.topRows(before) = to;
-  if (rows.rows() > 0) all.bottomRows(after) = rows;
-  to = to.rows() > 0 || rows.rows() > 0 ? all : Eigen::MatrixXd();
+/// The set among `sets` that `set` is one surface or instrument with; -1 without.
+int same_set(const std::vector<Set>& sets, const Set& set) {
+  const auto same = std::find_if(sets.begin(), sets.end(), [&](const Set& other) {
+    return other.name == set.name && other.method->name() == set.method->name();
+  });
+  return same == sets.end() ? -1 : static_cast<int>(same - sets.begin());
 }
 
-/// Rows of both, the first ones first. Sets of one name become one; groups stay apart.
+/// Puts what the second has of sets and groups behind the first's, and its rows into these terms.
+void adopt(DataSet& first, const std::vector<Set>& sets, Observations& rows) {
+  const std::vector<Set> own = first.sets;
+  std::vector<int> set_of, first_group;
+  for (const Set& set : sets) {
+    const int same = same_set(own, set);
+    set_of.push_back(same >= 0 ? same : static_cast<int>(first.sets.size()));
+    first_group.push_back(same >= 0 ? static_cast<int>(first.sets[same].groups.size()) : 0);
+    if (same < 0) first.sets.push_back(set);
+    if (same < 0) continue;
+    for (const std::string& group : set.groups) first.sets[same].groups.push_back(group + "'");
+  }
+  for (size_t s = own.size(); s < first.sets.size(); ++s)
+    if (first.sets[s].reference >= 0) first.sets[s].reference = set_of[first.sets[s].reference];
+  for (size_t row = 0; row < rows.set.size(); ++row) {
+    if (rows.group[row] >= 0) rows.group[row] += first_group[rows.set[row]];
+    rows.set[row] = set_of[rows.set[row]];
+  }
+}
+
+/// Rows of both, the first ones first. Sets of one name become one; groups and repeats stay apart,
+/// and the second begins when the first ends.
 DataSet merged(const DataSet& before, const DataSet& after) {
   DataSet all = before;
-  const Eigen::Index n = before.rows.rows(), m = after.rows.rows(), joints = before.rows.q.cols();
-  const auto join = [&](auto member, Eigen::Index columns) {
-    Eigen::MatrixXd to = all.rows.*member;
-    append(to, after.rows.*member, n, m, columns);
-    all.rows.*member = to;
-  };
-  join(&Observations::q, joints);
-  join(&Observations::position, 3);
-  join(&Observations::orientation, 4);
-  join(&Observations::distance, 1);
-  join(&Observations::normal, 3);
-  std::vector<int> set_of;
-  std::vector<int> first_group;
-  for (const Set& set : after.sets) {
-    const auto same = std::find_if(before.sets.begin(), before.sets.end(), [&](const Set& other) {
-      return other.name == set.name && other.method->name() == set.method->name();
-    });
-    if (same != before.sets.end()) {
-      set_of.push_back(static_cast<int>(same - before.sets.begin()));
-      first_group.push_back(static_cast<int>(all.sets[set_of.back()].groups.size()));
-      auto& groups = all.sets[set_of.back()].groups;
-      for (const std::string& group : set.groups) groups.push_back(group + "'");
-      continue;
-    }
-    set_of.push_back(static_cast<int>(all.sets.size()));
-    first_group.push_back(0);
-    all.sets.push_back(set);
-    if (set.reference >= 0) all.sets.back().reference = set_of[static_cast<size_t>(set.reference)];
-  }
+  Observations later = after.rows;
+  adopt(all, after.sets, later);
   int most_repeat = 0;
   for (const int repeat : before.rows.repeat) most_repeat = std::max(most_repeat, repeat + 1);
-  all.rows.repeat.resize(static_cast<size_t>(n), -1);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const auto row = static_cast<size_t>(i);
-    const int set = after.rows.set[row], group = after.rows.group[row];
-    all.rows.set.push_back(set_of[set]);
-    all.rows.group.push_back(group < 0 ? -1 : group + first_group[set]);
-    const int repeat = after.rows.repeat.empty() ? -1 : after.rows.repeat[row];
-    all.rows.repeat.push_back(repeat < 0 ? -1 : repeat + most_repeat);
-    all.rows.check.push_back(after.rows.check[row]);
-  }
+  for (int& repeat : later.repeat)
+    if (repeat >= 0) repeat += most_repeat;
+  if (before.rows.time.size() > 0 && later.time.size() > 0)
+    later.time.array() += before.rows.time.maxCoeff() - later.time.minCoeff();
+  all.rows = joined(before.rows, later);
   return all;
 }
 
@@ -106,8 +95,7 @@ Changeable changeable(const Robot& robot, const Equations& equations, const Data
   if (!base.empty()) all.add("base_moved", "base", base, base_names);
   if (!probe.empty()) all.add("probe_changed", "probe", probe, probe_names);
   for (size_t s = 0; s < before.sets.size(); ++s) {
-    const bool both = std::any_of(after.sets.begin(), after.sets.end(),
-                                  [&](const Set& set) { return set.name == before.sets[s].name; });
+    const bool both = same_set(after.sets, before.sets[s]) >= 0;
     const int freedom = equations.own_freedom(static_cast<int>(s));
     if (!both || freedom == 0) continue;
     std::vector<int> columns;

@@ -1,0 +1,55 @@
+// What changed between two sessions of one robot.
+#include "diagnosis/compare.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/diagnosis/two_sessions.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kShift = 1e-3;  // rad: 0.5 mm at half a metre, 25 times the noise
+
+void expect_zero_of_j3(const Comparison& comparison) {
+  ASSERT_FALSE(comparison.changes.empty()) << comparison.why;
+  const Change& change = comparison.changes.front();
+  EXPECT_EQ(change.effect, "zero_shift");
+  EXPECT_EQ(change.where, "j3");
+  EXPECT_GT(change.probability, 0.95);
+  ASSERT_EQ(change.values.size(), 1U);
+  // The reading says more, so that the zero is less.
+  EXPECT_NEAR(change.values[0].value, -kShift, 4 * change.values[0].sigma);
+  EXPECT_LT(comparison.none, 0.01);
+  EXPECT_LE(comparison.unknown, 1);
+}
+
+TEST(Compare, NamesTheJointWhoseZeroShifted) {
+  TwoSessions sessions;
+  sessions.after.rows.q.col(2).array() += kShift;
+  expect_zero_of_j3(compare(sessions.robot, sessions.before, sessions.after));
+}
+
+TEST(Compare, IsNotMisledByATimeThatOneOfThemLacks) {
+  TwoSessions sessions;
+  const int rows = sessions.before.rows.rows();
+  sessions.before.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows);
+  sessions.after.rows.q.col(2).array() += kShift;
+  expect_zero_of_j3(compare(sessions.robot, sessions.before, sessions.after));
+}
+
+TEST(Compare, TakesEachSessionsTimeForItsOwn) {
+  TwoSessions sessions;
+  const int rows = sessions.before.rows.rows();
+  sessions.before.rows.time = sessions.after.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows);
+  sessions.after.rows.q.col(2).array() += kShift;
+  expect_zero_of_j3(compare(sessions.robot, sessions.before, sessions.after));
+}
+
+TEST(Compare, SaysThatNothingChangedWhereNothingDid) {
+  const TwoSessions sessions;
+  const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
+  EXPECT_GT(comparison.none, 0.5) << comparison.why;
+}
+
+}  // namespace
+}  // namespace selfcal
