@@ -86,8 +86,10 @@ int diagnose_command(const Arguments& arguments) {
   if (!arguments.since.empty()) {
     auto before = load_data_set(arguments.since);
     if (!before) return tell(before.error());
-    const Comparison comparison = compare(robot, before->data, loaded->data);
-    if (!comparison.problem.empty()) return wrong_usage("--since: " + comparison.problem);
+    if (const std::string why = incomparable(*before->robot, *robot); !why.empty())
+      return tell(bad_input(arguments.since + " " + why).value());
+    ProgressLine line;
+    const Comparison comparison = compare(robot, before->data, loaded->data, {}, shown_on(line));
     whole["since"] = to_json(comparison);
     changed = "Since " + before->name + ": " + comparison.why + "\n";
   }

@@ -94,6 +94,51 @@ void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
   }
 }
 
+int same_set(const std::vector<Set>& sets, const Set& set) {
+  const auto same = std::find_if(sets.begin(), sets.end(), [&](const Set& other) {
+    return other.name == set.name && other.method->name() == set.method->name();
+  });
+  return same == sets.end() ? -1 : static_cast<int>(same - sets.begin());
+}
+
+namespace {
+
+/// Puts what the second has of sets and groups behind the first's, and its rows into these terms.
+void adopt(DataSet& first, const std::vector<Set>& sets, Observations& rows) {
+  const std::vector<Set> own = first.sets;
+  std::vector<int> set_of, first_group;
+  for (const Set& set : sets) {
+    const int same = same_set(own, set);
+    set_of.push_back(same >= 0 ? same : static_cast<int>(first.sets.size()));
+    first_group.push_back(same >= 0 ? static_cast<int>(first.sets[same].groups.size()) : 0);
+    if (same < 0) first.sets.push_back(set);
+    if (same < 0) continue;
+    for (const std::string& group : set.groups) first.sets[same].groups.push_back(group + "'");
+  }
+  for (size_t s = own.size(); s < first.sets.size(); ++s)
+    if (first.sets[s].reference >= 0) first.sets[s].reference = set_of[first.sets[s].reference];
+  for (size_t row = 0; row < rows.set.size(); ++row) {
+    if (rows.group[row] >= 0) rows.group[row] += first_group[rows.set[row]];
+    rows.set[row] = set_of[rows.set[row]];
+  }
+}
+
+}  // namespace
+
+DataSet merged(const DataSet& before, const DataSet& after) {
+  DataSet all = before;
+  Observations later = after.rows;
+  adopt(all, after.sets, later);
+  int most_repeat = 0;
+  for (const int repeat : before.rows.repeat) most_repeat = std::max(most_repeat, repeat + 1);
+  for (int& repeat : later.repeat)
+    if (repeat >= 0) repeat += most_repeat;
+  if (before.rows.time.size() > 0 && later.time.size() > 0)
+    later.time.array() += before.rows.time.maxCoeff() - later.time.minCoeff();
+  all.rows = joined(before.rows, later);
+  return all;
+}
+
 std::vector<std::string_view> method_names() {
   std::vector<std::string_view> names;
   for (const Kind& kind : kKinds) names.push_back(kind.name);

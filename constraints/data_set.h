@@ -34,6 +34,14 @@ Set make_set(const std::string& name, const Node& node, Problems& problems);
 /// Resolves references between sets and checks that they are possible.
 void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems);
 
+/// The set among `sets` of the same name and method as `set`; -1 without.
+int same_set(const std::vector<Set>& sets, const Set& set);
+
+/// Rows of two sessions with one robot, the first ones first. Sets of one name and method become
+/// one, as `before` has it; groups and repeats stay apart, and the second begins when the first
+/// ends.
+DataSet merged(const DataSet& before, const DataSet& after);
+
 /// The methods that make_set knows.
 std::vector<std::string_view> method_names();
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "constraints/adjustment.h"
+#include "diagnosis/rows.h"
 #include "diagnosis/structures.h"
 #include "diagnosis/view.h"
 #include "kinematics/corrected_robot.h"
@@ -12,50 +13,6 @@ namespace selfcal {
 namespace {
 
 constexpr double kListed = 0.02;
-
-/// The set among `sets` that `set` is one surface or instrument with; -1 without.
-int same_set(const std::vector<Set>& sets, const Set& set) {
-  const auto same = std::find_if(sets.begin(), sets.end(), [&](const Set& other) {
-    return other.name == set.name && other.method->name() == set.method->name();
-  });
-  return same == sets.end() ? -1 : static_cast<int>(same - sets.begin());
-}
-
-/// Puts what the second has of sets and groups behind the first's, and its rows into these terms.
-void adopt(DataSet& first, const std::vector<Set>& sets, Observations& rows) {
-  const std::vector<Set> own = first.sets;
-  std::vector<int> set_of, first_group;
-  for (const Set& set : sets) {
-    const int same = same_set(own, set);
-    set_of.push_back(same >= 0 ? same : static_cast<int>(first.sets.size()));
-    first_group.push_back(same >= 0 ? static_cast<int>(first.sets[same].groups.size()) : 0);
-    if (same < 0) first.sets.push_back(set);
-    if (same < 0) continue;
-    for (const std::string& group : set.groups) first.sets[same].groups.push_back(group + "'");
-  }
-  for (size_t s = own.size(); s < first.sets.size(); ++s)
-    if (first.sets[s].reference >= 0) first.sets[s].reference = set_of[first.sets[s].reference];
-  for (size_t row = 0; row < rows.set.size(); ++row) {
-    if (rows.group[row] >= 0) rows.group[row] += first_group[rows.set[row]];
-    rows.set[row] = set_of[rows.set[row]];
-  }
-}
-
-/// Rows of both, the first ones first. Sets of one name become one; groups and repeats stay apart,
-/// and the second begins when the first ends.
-DataSet merged(const DataSet& before, const DataSet& after) {
-  DataSet all = before;
-  Observations later = after.rows;
-  adopt(all, after.sets, later);
-  int most_repeat = 0;
-  for (const int repeat : before.rows.repeat) most_repeat = std::max(most_repeat, repeat + 1);
-  for (int& repeat : later.repeat)
-    if (repeat >= 0) repeat += most_repeat;
-  if (before.rows.time.size() > 0 && later.time.size() > 0)
-    later.time.array() += before.rows.time.maxCoeff() - later.time.minCoeff();
-  all.rows = joined(before.rows, later);
-  return all;
-}
 
 /// Everything that may have changed, as columns of the merged rows that only the second has.
 struct Changeable {
@@ -111,6 +68,19 @@ Changeable changeable(const Robot& robot, const Equations& equations, const Data
         std::count_if(all.candidates.list.begin(), all.candidates.list.end(),
                       [&](const Candidate& other) { return other.effect == each.effect; })));
   return all;
+}
+
+/// Of large sessions every so many configurations of each: the smaller one's are worth more.
+DenseEquations weighed(const DenseEquations& dense, const Observations& before,
+                       const Observations& after) {
+  const auto later = [&](int row) { return row >= before.rows(); };
+  const auto second = static_cast<double>(std::ranges::count_if(dense.row, later));
+  const double first = static_cast<double>(dense.row.size()) - second;
+  const auto part = [](double others) { return kMostWeighed - std::min(others, kMostWeighed / 2); };
+  std::vector<char> take = weighed_rows(before, first, part(second));
+  const std::vector<char> more = weighed_rows(after, second, part(first));
+  take.insert(take.end(), more.begin(), more.end());
+  return kept(dense, take);
 }
 
 Whitened whitened(const DenseEquations& dense, const Adjusted& adjusted, const Equations& equations,
@@ -178,35 +148,44 @@ std::string in_words(const Comparison& result) {
 
 }  // namespace
 
+std::string incomparable(const Robot& one, const Robot& other) {
+  if (one.identity() == other.identity()) return {};
+  if (one.name() != other.name())
+    return "is of the robot '" + std::string(one.name()) + "', not of '" +
+           std::string(other.name()) + "': only data sets of one robot can be compared";
+  if (one.joints().size() != other.joints().size())
+    return "is of a robot '" + std::string(one.name()) + "' with " +
+           std::to_string(one.joints().size()) + " joints instead of " +
+           std::to_string(other.joints().size()) + ": only data sets of one robot can be compared";
+  return "is of a robot '" + std::string(one.name()) +
+         "' with other frames or maker's figures: only data sets of one robot can be compared";
+}
+
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
-                   const DataSet& after, const DiagnosisOptions& options) {
-  Comparison result;
-  if (before.rows.q.cols() != after.rows.q.cols()) {
-    result.problem = "the two data sets are of robots with different joints";
-    return result;
-  }
+                   const DataSet& after, const DiagnosisOptions& options,
+                   const Progress& progress) {
   const auto geometry = geometry_of(robot);
   const DataSet all = merged(before, after);
   const Equations equations(*geometry, all, Use::fit);
   Options free;
   free.free = {"K*"};
   free.most_rejected = options.most_rejected;
-  const Adjusted adjusted = adjust(equations, free, {});
-  std::vector<Scale> noise = adjusted.fitted.noise.estimated;
+  const Adjusted adjusted = adjust(equations, free, progress);
+  if (progress) progress("weighing what changed", 0.5);
+  const Fit& fitted = adjusted.fitted;
   const DenseEquations dense =
-      equations.dense(adjusted.fitted.state, noise, adjusted.fitted.noise.put_aside);
+      weighed(equations.dense(fitted.state, pooled_noise(all, fitted), fitted.noise.put_aside),
+              before.rows, after.rows);
   const Changeable changes = changeable(*geometry, equations, before, after);
   const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
-  Eigen::MatrixXd tips(all.rows.rows(), 3);
-  for (int row = 0; row < all.rows.rows(); ++row)
-    tips.row(row) =
-        geometry->link_poses(all.rows.q.row(row).transpose()).back().translation().transpose();
-  const Bench bench(
-      rows, structures(all.rows, dense, tips, dense.W(Eigen::all, reading_columns(*geometry))),
-      changes.candidates, changes.parameters, options.search);
+  const Bench bench(rows,
+                    structures(all.rows, dense, tips(*geometry, all.rows),
+                               dense.W(Eigen::all, reading_columns(*geometry))),
+                    changes.candidates, changes.parameters, options.search);
   const Posterior posterior = bench.search();
-  result.none = posterior.none;
-  result.unknown = posterior.unknown;
+  Comparison result;
+  result.none = std::min(posterior.none, 1.0);
+  result.unknown = std::min(posterior.unknown, 1.0);
   list_changes(bench, changes, posterior, result);
   result.why = in_words(result);
   return result;

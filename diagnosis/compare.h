@@ -25,12 +25,16 @@ struct Comparison {
   double none = 1, unknown = 0;  ///< probability that nothing did, that something else did
   std::vector<Change> changes;   ///< most probable first
   std::string why;               ///< in a sentence
-  std::string problem;           ///< why they cannot be compared; empty otherwise
 };
 
-/// `before` and `after` are of one robot (the same names and count of joints). Sets of one name are
-/// one surface or instrument.
+/// Why a data set of `one` cannot be compared with one of `other`, to follow its name; empty when
+/// it can.
+std::string incomparable(const Robot& one, const Robot& other);
+
+/// `before` and `after` are of one robot (see incomparable). Sets of one name are one surface or
+/// instrument.
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
-                   const DataSet& after, const DiagnosisOptions& options = {});
+                   const DataSet& after, const DiagnosisOptions& options = {},
+                   const Progress& progress = {});
 
 }  // namespace selfcal

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "constraints/site.h"
 #include "constraints/statistics.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/structures.h"
+#include "diagnosis/rows.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/linear_algebra.h"
 
@@ -15,7 +14,6 @@ namespace selfcal {
 namespace {
 
 constexpr double kFarQuantile = 1 - 1e-5;
-constexpr double kMostWeighed = 720;
 constexpr double kMedianToSigma = 1.4826;  // of a normal variable
 
 Options geometry_options(const DiagnosisOptions& options) {
@@ -24,23 +22,6 @@ Options geometry_options(const DiagnosisOptions& options) {
   geometry.seed = options.seed;
   geometry.free = {"K*"};  // a ratio that is off is geometry: it must not be taken for a cause
   return geometry;
-}
-
-/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
-/// since the set that holds the cause would otherwise be taken for a noisy one.
-std::vector<Scale> first_noise(const DataSet& data, const Fit& fitted) {
-  std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
-  const auto method = [&](size_t s) { return data.sets[s].method->name(); };
-  for (const RowResidual& r : fitted.at.residuals) {
-    auto& [squares, rows] = pooled[method(static_cast<size_t>(r.set))];
-    squares += std::pow(fitted.noise.estimated[r.set].length, 2);
-    rows += 1;
-  }
-  std::vector<Scale> noise = fitted.noise.estimated;
-  for (size_t s = 0; s < noise.size(); ++s)
-    if (const auto found = pooled.find(method(s)); found != pooled.end())
-      noise[s].length = std::sqrt(found->second.first / found->second.second);
-  return noise;
 }
 
 /// State of the geometry's fit as one of the robot with every candidate, whose parameters are zero.
@@ -68,7 +49,7 @@ View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const Diagno
     parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
   all_equations_ = std::make_unique<Equations>(*everything_, data, Use::fit);
   const Fit& fitted = adjusted_.fitted;
-  noise_ = first_noise(data, fitted);
+  noise_ = pooled_noise(data, fitted);
   all_ = all_equations_->dense(
       extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
       std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
@@ -90,36 +71,14 @@ View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const Diagno
   }
 }
 
-/// Of large data sets every so many configurations, with all their repeats: the evidence of
-/// structure takes the third power of the rows.
 void View::weigh(double most) {
-  const double step = std::max(1.0, static_cast<double>(all_.row.size()) / most);
-  weighed_.assign(static_cast<size_t>(data_.rows.rows()), 0);
-  std::map<int, bool> repeats;
-  double next = 0, configurations = 0;
-  for (int row = 0; row < data_.rows.rows(); ++row) {
-    if (data_.rows.check[row]) continue;
-    const int repeat = data_.rows.repeat.empty() ? -1 : data_.rows.repeat[row];
-    if (repeat >= 0 && repeats.contains(repeat)) {
-      weighed_[row] = repeats[repeat];
-      continue;
-    }
-    const bool take = configurations >= next;
-    if (take) next += step;
-    configurations += 1;
-    weighed_[row] = take;
-    if (repeat >= 0) repeats[repeat] = take;
-  }
+  weighed_ = weighed_rows(data_.rows, static_cast<double>(all_.row.size()), most);
 }
 
 DenseEquations View::kept() const {
-  std::vector<int> rows;
-  for (size_t i = 0; i < all_.row.size(); ++i)
-    if (all_.row[i] < 0 || (!put_aside_[all_.row[i]] && weighed_[all_.row[i]]))
-      rows.push_back(static_cast<int>(i));
-  DenseEquations kept{all_.W(rows, Eigen::all), all_.y(rows), all_.shift(rows, Eigen::all), {}};
-  for (const int i : rows) kept.row.push_back(all_.row[i]);
-  return kept;
+  std::vector<char> take = weighed_;
+  for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !put_aside_[row];
+  return selfcal::kept(all_, take);
 }
 
 Whitened View::of(const DenseEquations& rows) const {
@@ -136,13 +95,7 @@ Whitened View::of(const DenseEquations& rows) const {
 
 Whitened View::whitened() const { return of(kept()); }
 
-Eigen::MatrixXd View::tips() const {
-  Eigen::MatrixXd tips(data_.rows.rows(), 3);
-  for (int row = 0; row < data_.rows.rows(); ++row)
-    tips.row(row) =
-        geometry_->link_poses(data_.rows.q.row(row).transpose()).back().translation().transpose();
-  return tips;
-}
+Eigen::MatrixXd View::tips() const { return selfcal::tips(*geometry_, data_.rows); }
 
 std::vector<int> reading_columns(const Robot& robot) {
   std::vector<int> columns;

@@ -51,5 +51,26 @@ TEST(Compare, SaysThatNothingChangedWhereNothingDid) {
   EXPECT_GT(comparison.none, 0.5) << comparison.why;
 }
 
+// 2400 equations: weighed as they are they would take gigabytes and minutes.
+TEST(Compare, WeighsOnlyAPartOfLargeSessions) {
+  TwoSessions sessions(600);
+  sessions.after.rows.q.col(2).array() += kShift;
+  std::string stages;
+  const Comparison comparison =
+      compare(sessions.robot, sessions.before, sessions.after, {},
+              [&](std::string_view stage, double) { stages += std::string(stage) + "\n"; });
+  expect_zero_of_j3(comparison);
+  EXPECT_NE(stages.find("weighing what changed"), std::string::npos) << stages;
+}
+
+TEST(Incomparable, AreDataSetsOfDifferentRobots) {
+  const TwoSessions sessions;
+  const auto other = load_robot(SELFCAL_SOURCE_DIR "/app/examples/irb1600.robot.yaml");
+  ASSERT_TRUE(other);
+  EXPECT_EQ(incomparable(*sessions.robot, *sessions.robot), "");
+  EXPECT_NE(incomparable(**other, *sessions.robot).find("only data sets of one robot"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace selfcal

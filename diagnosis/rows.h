@@ -1,0 +1,28 @@
+// Rows before any cause is known: how noisy they are, which of them are weighed.
+#pragma once
+
+#include <vector>
+
+#include "constraints/equations.h"
+#include "constraints/fit.h"
+
+namespace selfcal {
+
+/// Equations that choose among causes, at most: the evidence of structure takes their third power.
+inline constexpr double kMostWeighed = 720;
+
+/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
+/// since the set that holds the cause would otherwise be taken for a noisy one. By set.
+std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
+
+/// By row, 1 where it takes part: of rows with more than `most` of `equations` every so many
+/// configurations, with all their repeats; none that are kept aside to judge.
+std::vector<char> weighed_rows(const Observations& rows, double equations, double most);
+
+/// The equations of the rows that `take` (by row) holds, and those that no row carries.
+DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
+
+/// Where the nominal robot's endpoint is (rows x 3, m).
+Eigen::MatrixXd tips(const Robot& robot, const Observations& rows);
+
+}  // namespace selfcal
