@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
 #include "app/diagnosis_json.h"
@@ -62,50 +63,73 @@ std::string against_simulation(const Diagnosis& real, const Diagnosis& simulated
   return text + (text.empty() || less.empty() ? "" : "; ") + less;
 }
 
-int diagnose_command(const Arguments& arguments) {
-  auto loaded = load_data_set(arguments.data_set);
-  if (!loaded) return tell(loaded.error());
-  for (const std::string& notice : loaded->notices)
+struct Inputs {
+  LoadedDataSet measured;
+  std::shared_ptr<const Robot> robot;
+  std::optional<LoadedDataSet> before, simulated;
+};
+
+Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const Robot& robot) {
+  if (path.empty()) return std::nullopt;
+  auto other = load_data_set(path);
+  if (!other) return tl::unexpected(other.error());
+  if (const std::string why = incomparable(*other->robot, robot); !why.empty())
+    return bad_input(path + " " + why);
+  for (const std::string& notice : other->notices)
+    std::fprintf(stderr, "selfcal: note: %s: %s\n", path.c_str(), notice.c_str());
+  return std::optional(*std::move(other));
+}
+
+/// All of them, before anything that takes long.
+Result<Inputs> load(const Arguments& arguments) {
+  auto measured = load_data_set(arguments.data_set);
+  if (!measured) return tl::unexpected(measured.error());
+  for (const std::string& notice : measured->notices)
     std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
-  const std::shared_ptr<const Robot> robot = std::move(loaded->robot);
+  const std::shared_ptr<const Robot> robot = std::move(measured->robot);
+  auto before = load_other(arguments.since, *robot);
+  if (!before) return tl::unexpected(before.error());
+  auto simulated = load_other(arguments.simulated, *robot);
+  if (!simulated) return tl::unexpected(simulated.error());
+  return Inputs{*std::move(measured), robot, *std::move(before), *std::move(simulated)};
+}
+
+int diagnose_command(const Arguments& arguments) {
+  const auto inputs = load(arguments);
+  if (!inputs) return tell(inputs.error());
+  const DataSet& data = inputs->measured.data;
   Diagnosis diagnosis;
+  std::optional<Comparison> since;
   {
     ProgressLine line;
-    diagnosis = diagnose(robot, loaded->data, {}, shown_on(line));
+    diagnosis = diagnose(inputs->robot, data, {}, shown_on(line));
     if (!diagnosis.problem.empty())
       return tell({kBadInput, arguments.data_set + ": " + diagnosis.problem});
-    if (!arguments.simulated.empty()) {
-      auto simulated = load_data_set(arguments.simulated);
-      if (!simulated) return tell(simulated.error());
+    if (inputs->simulated)
       diagnosis.warnings.push_back(against_simulation(
-          diagnosis, diagnose(std::move(simulated->robot), simulated->data, {}, shown_on(line))));
-    }
+          diagnosis, diagnose(inputs->robot, inputs->simulated->data, {}, shown_on(line))));
+    if (inputs->before)
+      since = compare(inputs->robot, inputs->before->data, data, {}, shown_on(line));
   }
   nlohmann::ordered_json whole = to_json(diagnosis);
-  std::string changed;
-  if (!arguments.since.empty()) {
-    auto before = load_data_set(arguments.since);
-    if (!before) return tell(before.error());
-    if (const std::string why = incomparable(*before->robot, *robot); !why.empty())
-      return tell(bad_input(arguments.since + " " + why).value());
-    ProgressLine line;
-    const Comparison comparison = compare(robot, before->data, loaded->data, {}, shown_on(line));
-    whole["since"] = to_json(comparison);
-    changed = "Since " + before->name + ": " + comparison.why + "\n";
+  std::string more;
+  if (since) {
+    whole["since"] = to_json(*since);
+    more += "Since " + inputs->before->name + ": " + since->why + "\n";
   }
   const std::string json = whole.dump(1);
   if (!arguments.out.empty())
-    if (const auto written = write(arguments, diagnosis, loaded->name, json); !written)
+    if (const auto written = write(arguments, diagnosis, inputs->measured.name, json); !written)
       return tell(written.error());
   if (!arguments.next.empty())
-    if (const auto written = write_file_atomically(
-            arguments.next, next_json(diagnosis, loaded->data).dump(1) + "\n");
+    if (const auto written =
+            write_file_atomically(arguments.next, next_json(diagnosis, data).dump(1) + "\n");
         !written)
       return tell(written.error());
   if (arguments.json)
     std::printf("%s\n", json.c_str());
   else
-    std::fputs((summary(diagnosis) + changed).c_str(), stdout);
+    std::fputs((summary(diagnosis) + more).c_str(), stdout);
   return diagnosis.converged ? kDone : kAnswerIsNo;
 }
 

@@ -160,6 +160,26 @@ TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
   }
 }
 
+TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
+  const std::string data = simulated();
+  const std::filesystem::path other = folder_ / "other";
+  std::filesystem::copy(data, other, std::filesystem::copy_options::recursive);
+  std::string robot = text_of(other / "rx90.robot.yaml");
+  const size_t name = robot.find("staubli-rx90");
+  ASSERT_NE(name, std::string::npos);
+  std::ofstream(other / "rx90.robot.yaml") << robot.replace(name, 12, "another-rx90");
+  for (const std::string option : {"--since ", "--sim "}) {
+    const Ran nowhere = selfcal_run("diagnose " + data + " " + option + "/nowhere");
+    EXPECT_EQ(nowhere.status, 3) << nowhere.out;
+    EXPECT_EQ(nowhere.out.find("weighing"), std::string::npos) << nowhere.out;
+    const Ran foreign = selfcal_run("diagnose " + data + " " + option + other.string());
+    EXPECT_EQ(foreign.status, 3) << foreign.out;
+    EXPECT_NE(foreign.out.find("only data sets of one robot can be compared"), std::string::npos)
+        << foreign.out;
+    EXPECT_EQ(foreign.out.find("weighing"), std::string::npos) << foreign.out;
+  }
+}
+
 TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
   const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
   const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
