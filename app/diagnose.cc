@@ -1,5 +1,4 @@
 // selfcal diagnose DATASET: where the gap lies, which effect causes it, how far it closes.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "app/progress_line.h"
 #include "diagnosis/compare.h"
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/simulation.h"
 #include "io/data_set_file.h"
 #include "io/file.h"
 #include "io/robot_file.h"
@@ -40,27 +40,6 @@ Result<void> write(const Arguments& arguments, const Diagnosis& diagnosis, const
 
 std::function<void(std::string_view, double)> shown_on(ProgressLine& line) {
   return [&line](std::string_view stage, double share) { line.show(stage, share); };
-}
-
-/// What the robot has and its simulation lacks, or the other way round.
-std::string against_simulation(const Diagnosis& real, const Diagnosis& simulated) {
-  const auto has = [](const Diagnosis& diagnosis, const std::string& effect) {
-    return std::ranges::any_of(diagnosis.candidates, [&](const CauseResult& each) {
-      return each.effect == effect && each.probability > 0.5;
-    });
-  };
-  std::string text;
-  for (const CauseResult& each : real.candidates)
-    if (each.effect != "none" && each.probability > 0.5 && !has(simulated, each.effect))
-      text += (text.empty() ? "the robot has, and its simulation lacks: " : ", ") + each.effect;
-  std::string less;
-  for (const CauseResult& each : simulated.candidates)
-    if (each.effect != "none" && each.probability > 0.5 && !has(real, each.effect))
-      less +=
-          (less.empty() ? "the simulation has, and the robot does not show: " : ", ") + each.effect;
-  if (text.empty() && less.empty())
-    return "the robot and its simulation show the same causes beyond geometry";
-  return text + (text.empty() || less.empty() ? "" : "; ") + less;
 }
 
 struct Inputs {
@@ -100,22 +79,35 @@ int diagnose_command(const Arguments& arguments) {
   const DataSet& data = inputs->measured.data;
   Diagnosis diagnosis;
   std::optional<Comparison> since;
+  std::optional<Differences> sim;
   {
     ProgressLine line;
     diagnosis = diagnose(inputs->robot, data, {}, shown_on(line));
     if (!diagnosis.problem.empty())
       return tell({kBadInput, arguments.data_set + ": " + diagnosis.problem});
-    if (inputs->simulated)
-      diagnosis.warnings.push_back(against_simulation(
-          diagnosis, diagnose(inputs->robot, inputs->simulated->data, {}, shown_on(line))));
     if (inputs->before)
-      since = compare(inputs->robot, inputs->before->data, data, {}, shown_on(line));
+      since =
+          compare(inputs->robot, inputs->before->data, data, Between::sessions, {}, shown_on(line));
+    if (inputs->simulated) {
+      const DataSet& simulated = inputs->simulated->data;
+      const Diagnosis other = diagnose(inputs->robot, simulated, {}, shown_on(line));
+      if (!other.problem.empty())
+        return tell({kBadInput, arguments.simulated + ": " + other.problem});
+      sim = differences(
+          diagnosis, other,
+          compare(inputs->robot, simulated, data, Between::machines, {}, shown_on(line)));
+    }
   }
   nlohmann::ordered_json whole = to_json(diagnosis);
   std::string more;
   if (since) {
     whole["since"] = to_json(*since);
     more += "Since " + inputs->before->name + ": " + since->why + "\n";
+  }
+  if (sim) {
+    whole["sim"] = to_json(*sim);
+    for (const std::string& each : sim->sentences)
+      more += "Against " + inputs->simulated->name + ": " + each + "\n";
   }
   const std::string json = whole.dump(1);
   if (!arguments.out.empty())
@@ -142,7 +134,7 @@ void add_diagnose(CLI::App& app, int& status) {
       "Where the gap between model and machine lies, what causes it, how far it closes");
   command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
   command->add_option("--sim", arguments->simulated,
-                      "Data set of a simulator: what the robot has and it lacks");
+                      "Data set of the robot's simulator: in what the two differ");
   command->add_option("--since", arguments->since,
                       "Earlier data set of the same robot: what changed");
   command->add_option("--next", arguments->next, "File for the rows to measure next");

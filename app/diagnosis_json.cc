@@ -45,6 +45,28 @@ Json of_candidate(const CauseResult& cause, double p_value) {
                        {"confounded_with", cause.confounded_with}});
 }
 
+Json of_shown(const ShownCause& cause) {
+  return Json::object({{"effect", cause.effect},
+                       {"where", cause.where},
+                       {"probability", finite(cause.probability)},
+                       {"parameters", array_of(cause.parameters, of_value)},
+                       {"confounded_with", cause.confounded_with}});
+}
+
+Json of_shared(const SharedCause& cause) {
+  Json json = Json::object({{"effect", cause.effect}, {"where", cause.where}});
+  json["parameters"] = array_of(cause.parameters, [](const SideBySide& each) {
+    return Json::object({{"name", each.robot.name},
+                         {"unit", each.robot.unit},
+                         {"robot", finite(each.robot.value)},
+                         {"robot_sigma", finite(each.robot.sigma)},
+                         {"simulation", finite(each.simulation.value)},
+                         {"simulation_sigma", finite(each.simulation.sigma)},
+                         {"sigmas", finite(each.sigmas)}});
+  });
+  return json;
+}
+
 Json of_where(const Where& where) {
   Json joints = Json::object(), sets = Json::object();
   for (const Share& each : where.by_joint) joints[each.name] = finite(each.share);
@@ -74,6 +96,14 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
                          {"values", array_of(each.values, of_value)}});
   });
   return json;
+}
+
+nlohmann::ordered_json to_json(const Differences& differences) {
+  return Json::object({{"why", differences.sentences},
+                       {"robot_only", array_of(differences.robot_only, of_shown)},
+                       {"simulation_only", array_of(differences.simulation_only, of_shown)},
+                       {"both", array_of(differences.both, of_shared)},
+                       {"geometry", to_json(differences.geometry)}});
 }
 
 nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {

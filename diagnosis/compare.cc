@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "constraints/adjustment.h"
+#include "diagnosis/changeable.h"
 #include "diagnosis/rows.h"
 #include "diagnosis/structures.h"
 #include "diagnosis/view.h"
@@ -13,62 +14,6 @@ namespace selfcal {
 namespace {
 
 constexpr double kListed = 0.02;
-
-/// Everything that may have changed, as columns of the merged rows that only the second has.
-struct Changeable {
-  Candidates candidates;
-  std::vector<int> columns;  ///< of the dense equations, by parameter
-  std::vector<EffectParameter> parameters;
-
-  void add(const std::string& effect, const std::string& at, const std::vector<int>& of,
-           const std::vector<EffectParameter>& named) {
-    Candidate candidate{effect, at, {}, {}, {}, 0};
-    for (size_t i = 0; i < of.size(); ++i) {
-      candidate.main.push_back(static_cast<int>(columns.size()));
-      columns.push_back(of[i]);
-      parameters.push_back(named[i]);
-    }
-    candidates.list.push_back(std::move(candidate));
-  }
-};
-
-EffectParameter named(const Parameter& p) { return {p.name, std::string(p.unit()), 5e-6, 5e-3, 0}; }
-
-Changeable changeable(const Robot& robot, const Equations& equations, const DataSet& before,
-                      const DataSet& after) {
-  Changeable all;
-  std::vector<int> base, probe;
-  std::vector<EffectParameter> base_names, probe_names;
-  for (size_t j = 0; j < robot.joints().size(); ++j) {
-    const int p = robot.variable_parameter(static_cast<int>(j));
-    all.add("zero_shift", robot.joints()[j].name, {p}, {named(robot.parameters()[p])});
-  }
-  for (size_t p = 0; p < robot.parameters().size(); ++p) {
-    const Parameter& each = robot.parameters()[p];
-    if (each.part != Part::base && each.part != Part::tool) continue;
-    (each.part == Part::base ? base : probe).push_back(static_cast<int>(p));
-    (each.part == Part::base ? base_names : probe_names).push_back(named(each));
-  }
-  if (!base.empty()) all.add("base_moved", "base", base, base_names);
-  if (!probe.empty()) all.add("probe_changed", "probe", probe, probe_names);
-  for (size_t s = 0; s < before.sets.size(); ++s) {
-    const bool both = same_set(after.sets, before.sets[s]) >= 0;
-    const int freedom = equations.own_freedom(static_cast<int>(s));
-    if (!both || freedom == 0) continue;
-    std::vector<int> columns;
-    std::vector<EffectParameter> names;
-    for (int k = 0; k < freedom; ++k) {
-      columns.push_back(equations.own_at(static_cast<int>(s)) + k);
-      names.push_back({"own" + std::to_string(k + 1), "m or rad", 5e-6, 5e-3, 0});
-    }
-    all.add("fixture_shift", before.sets[s].name, columns, names);
-  }
-  for (Candidate& each : all.candidates.list)
-    each.log_prior = -std::log(static_cast<double>(
-        std::count_if(all.candidates.list.begin(), all.candidates.list.end(),
-                      [&](const Candidate& other) { return other.effect == each.effect; })));
-  return all;
-}
 
 /// Of large sessions every so many configurations of each: the smaller one's are worth more.
 DenseEquations weighed(const DenseEquations& dense, const Observations& before,
@@ -162,7 +107,7 @@ std::string incomparable(const Robot& one, const Robot& other) {
 }
 
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
-                   const DataSet& after, const DiagnosisOptions& options,
+                   const DataSet& after, Between between, const DiagnosisOptions& options,
                    const Progress& progress) {
   const auto geometry = geometry_of(robot);
   const DataSet all = merged(before, after);
@@ -176,7 +121,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
   const DenseEquations dense =
       weighed(equations.dense(fitted.state, pooled_noise(all, fitted), fitted.noise.put_aside),
               before.rows, after.rows);
-  const Changeable changes = changeable(*geometry, equations, before, after);
+  const Changeable changes = changeable(equations, dense.W, before, after, between);
   const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
   const Bench bench(rows,
                     structures(all.rows, dense, tips(*geometry, all.rows),
@@ -184,7 +129,9 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
                     changes.candidates, changes.parameters, options.search);
   const Posterior posterior = bench.search();
   Comparison result;
-  result.none = std::min(posterior.none, 1.0);
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (h.candidates.empty()) result.none += std::exp(h.log_weight);
+  result.none = std::min(result.none, 1.0);
   result.unknown = std::min(posterior.unknown, 1.0);
   list_changes(bench, changes, posterior, result);
   result.why = in_words(result);

@@ -15,26 +15,32 @@
 namespace selfcal {
 
 struct Change {
-  std::string effect;  ///< "zero_shift", "fixture_shift", "base_moved", "probe_changed"
-  std::string where;   ///< a joint, a set, "base", "probe"
+  std::string effect;  ///< "zero_shift", "fixture_shift", "base_moved", "probe_changed",
+                       ///< "geometry_differs"
+  std::string where;   ///< a joint, a set, "base", "probe", a parameter
   double probability = 0;
   std::vector<NamedValue> values;  ///< second minus first
 };
 
 struct Comparison {
-  double none = 1, unknown = 0;  ///< probability that nothing did, that something else did
-  std::vector<Change> changes;   ///< most probable first
-  std::string why;               ///< in a sentence
+  double none = 0;              ///< probability that nothing did
+  double unknown = 0;           ///< of structure beyond any change, in one of them or in both
+  std::vector<Change> changes;  ///< most probable first
+  std::string why;              ///< in a sentence
 };
 
 /// Why a data set of `one` cannot be compared with one of `other`, to follow its name; empty when
 /// it can.
 std::string incomparable(const Robot& one, const Robot& other);
 
-/// `before` and `after` are of one robot (see incomparable). Sets of one name are one surface or
-/// instrument.
+/// What two data sets are of: one machine in two sessions, or two machines, whose links and gears
+/// may differ as well.
+enum class Between { sessions, machines };
+
+/// `before` and `after` are of one robot file (see incomparable). Sets of one name are one surface
+/// or instrument.
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
-                   const DataSet& after, const DiagnosisOptions& options = {},
-                   const Progress& progress = {});
+                   const DataSet& after, Between between = Between::sessions,
+                   const DiagnosisOptions& options = {}, const Progress& progress = {});
 
 }  // namespace selfcal

@@ -51,13 +51,24 @@ TEST(Compare, SaysThatNothingChangedWhereNothingDid) {
   EXPECT_GT(comparison.none, 0.5) << comparison.why;
 }
 
+TEST(Compare, DoesNotTakeForAChangeWhatBothShow) {
+  TwoSessions sessions(100);
+  for (DataSet* each : {&sessions.before, &sessions.after}) {
+    auto q2 = each->rows.q.col(1);
+    q2.array() += 3e-4 * (3 * q2.array()).sin();
+  }
+  const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
+  EXPECT_GT(comparison.none, 0.5) << comparison.why;
+  EXPECT_GT(comparison.unknown, 0.5);
+}
+
 // 2400 equations: weighed as they are they would take gigabytes and minutes.
 TEST(Compare, WeighsOnlyAPartOfLargeSessions) {
   TwoSessions sessions(600);
   sessions.after.rows.q.col(2).array() += kShift;
   std::string stages;
   const Comparison comparison =
-      compare(sessions.robot, sessions.before, sessions.after, {},
+      compare(sessions.robot, sessions.before, sessions.after, Between::sessions, {},
               [&](std::string_view stage, double) { stages += std::string(stage) + "\n"; });
   expect_zero_of_j3(comparison);
   EXPECT_NE(stages.find("weighing what changed"), std::string::npos) << stages;
