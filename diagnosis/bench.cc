@@ -151,6 +151,11 @@ double Bench::held(const Hypothesis& h) const {
   return sum;
 }
 
+double Bench::log_weight(const Hypothesis& h) const {
+  return workbenches_[h.structure].log_evidence(terms(h)) + held(h) +
+         log_prior(h.candidates, h.structure);
+}
+
 double Bench::evidence(int candidate) const {
   return seen_[candidate] ? weigh(workbenches_.front(), candidate).log_sum -
                                 workbenches_.front().log_evidence({})

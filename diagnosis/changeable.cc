@@ -15,8 +15,8 @@ EffectParameter named(const std::string& name, std::string unit) {
 
 class Builder {
  public:
-  Builder(const Equations& equations, const Eigen::MatrixXd& W)
-      : robot_(equations.robot()), equations_(equations), W_(W) {}
+  Builder(const Equations& equations, const Eigen::MatrixXd& W, Between between)
+      : robot_(equations.robot()), equations_(equations), W_(W), between_(between) {}
 
   void add_zeros() {
     for (size_t j = 0; j < robot_.joints().size(); ++j)
@@ -27,7 +27,7 @@ class Builder {
     std::vector<int> frames;
     for (size_t p = 0; p < robot_.parameters().size(); ++p)
       if (robot_.parameters()[p].part == part) frames.push_back(static_cast<int>(p));
-    if (!frames.empty()) add(effect, at, frames);
+    if (!frames.empty()) add(placing(effect), at, frames);
   }
 
   void add_fixtures(const DataSet& before, const DataSet& after) {
@@ -36,7 +36,7 @@ class Builder {
       for (size_t k = 0; k < own.size(); ++k)
         own[k] = equations_.own_at(static_cast<int>(s)) + static_cast<int>(k);
       if (!own.empty() && same_set(after.sets, before.sets[s]) >= 0)
-        add("fixture_shift", before.sets[s].name, own);
+        add(placing("fixture_shift"), before.sets[s].name, own);
     }
   }
 
@@ -65,6 +65,11 @@ class Builder {
   }
 
  private:
+  /// What the robot stands on, holds and meets stands elsewhere in a simulator: that has not moved.
+  std::string placing(const char* effect) const {
+    return between_ == Between::machines ? "placed_elsewhere" : effect;
+  }
+
   void add(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
     Candidate candidate{effect, at, {}, {}, {}, 0};
     for (size_t k = 0; k < columns.size(); ++k) {
@@ -87,6 +92,7 @@ class Builder {
   const Robot& robot_;
   const Equations& equations_;
   const Eigen::MatrixXd& W_;
+  const Between between_;
   Changeable all_;
 };
 
@@ -94,7 +100,7 @@ class Builder {
 
 Changeable changeable(const Equations& equations, const Eigen::MatrixXd& W, const DataSet& before,
                       const DataSet& after, Between between) {
-  Builder builder(equations, W);
+  Builder builder(equations, W, between);
   builder.add_zeros();
   builder.add_frames(Part::base, "base_moved", "base");
   builder.add_frames(Part::tool, "probe_changed", "probe");

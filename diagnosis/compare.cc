@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "constraints/adjustment.h"
 #include "diagnosis/changeable.h"
@@ -14,6 +15,38 @@ namespace selfcal {
 namespace {
 
 constexpr double kListed = 0.02;
+constexpr size_t kSearched = 3;  ///< candidates that the search puts together
+constexpr size_t kMostDifferences = 60;
+
+/// What is noise and what is false within each of the two: a change is neither.
+struct Within {
+  std::vector<Scale> noise;     ///< by set of both
+  std::vector<char> put_aside;  ///< by row of both
+};
+
+Within within(const Robot& robot, const DataSet& before, const DataSet& after,
+              const std::vector<Set>& sets, const Options& options, const Progress& progress) {
+  Within of;
+  of.noise.assign(sets.size(), {0, 0});
+  std::vector<double> rows(sets.size(), 0);
+  for (const DataSet* part : {&before, &after}) {
+    const Equations equations(robot, *part, Use::fit);
+    const Fit fit = adjust(equations, options, progress).fitted;
+    of.put_aside.insert(of.put_aside.end(), fit.noise.put_aside.begin(), fit.noise.put_aside.end());
+    const std::vector<Scale> noise = pooled_noise(*part, fit);
+    for (const RowResidual& r : fit.at.residuals) {
+      const auto s = static_cast<size_t>(same_set(sets, part->sets[r.set]));
+      of.noise[s].length += std::pow(noise[r.set].length, 2);
+      of.noise[s].angle += std::pow(noise[r.set].angle, 2);
+      rows[s] += 1;
+    }
+  }
+  for (size_t s = 0; s < rows.size(); ++s)
+    of.noise[s] = rows[s] > 0 ? Scale{std::sqrt(of.noise[s].length / rows[s]),
+                                      std::sqrt(of.noise[s].angle / rows[s])}
+                              : Scale{};
+  return of;
+}
 
 /// Of large sessions every so many configurations of each: the smaller one's are worth more.
 DenseEquations weighed(const DenseEquations& dense, const Observations& before,
@@ -51,34 +84,71 @@ Whitened whitened(const DenseEquations& dense, const Adjusted& adjusted, const E
   return rows;
 }
 
-void list_changes(const Bench& bench, const Changeable& changeable, const Posterior& posterior,
-                  Comparison& result) {
-  for (const auto& [cause, probability] : posterior.cause) {
-    if (probability < kListed) continue;
-    Change change{cause.first, cause.second, std::min(probability, 1.0), {}};
-    for (const Hypothesis& h : posterior.hypotheses) {
-      const Workbench::Estimate estimate = bench.workbench(h.structure).estimate(bench.terms(h));
-      Eigen::Index at = 0;
-      bool found = false;
-      for (const int c : h.candidates) {
-        const Candidate& each = changeable.candidates.list[static_cast<size_t>(c)];
-        for (const int k : each.main) {
-          const EffectParameter& p = changeable.parameters[static_cast<size_t>(k)];
-          if (each.effect == cause.first && each.at == cause.second) {
-            found = true;
-            change.values.push_back({p.name, p.unit, estimate.mean[at],
-                                     std::sqrt(estimate.variance * estimate.covariance(at, at)),
-                                     p.usual_least, p.usual_most});
-          }
-          ++at;
-        }
-      }
-      if (found) break;
+/// The candidate's values, as the hypothesis that holds it has them.
+std::vector<NamedValue> values(const Bench& bench, const Changeable& changeable,
+                               const Hypothesis& h, int candidate) {
+  const Workbench::Estimate estimate = bench.workbench(h.structure).estimate(bench.terms(h));
+  std::vector<NamedValue> list;
+  Eigen::Index at = 0;
+  for (const int c : h.candidates)
+    for (const int k : changeable.candidates.list[static_cast<size_t>(c)].main) {
+      const EffectParameter& p = changeable.parameters[static_cast<size_t>(k)];
+      if (c == candidate)
+        list.push_back({p.name, p.unit, estimate.mean[at],
+                        std::sqrt(estimate.variance * estimate.covariance(at, at)), p.usual_least,
+                        p.usual_most});
+      ++at;
     }
-    result.changes.push_back(std::move(change));
+  return list;
+}
+
+/// What the search found: at most three at a time.
+void list_searched(const Bench& bench, const Changeable& changeable, const Posterior& posterior,
+                   Comparison& result) {
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (h.candidates.empty()) result.none += std::exp(h.log_weight);
+  result.none = std::min(result.none, 1.0);
+  result.unknown = std::min(posterior.unknown, 1.0);
+  const std::vector<Candidate>& list = changeable.candidates.list;
+  for (int c = 0; c < static_cast<int>(list.size()); ++c) {
+    const auto found = posterior.cause.find({list[c].effect, list[c].at});
+    if (found == posterior.cause.end() || found->second < kListed) continue;
+    const auto h = std::ranges::find_if(posterior.hypotheses, [&](const Hypothesis& each) {
+      return std::ranges::count(each.candidates, c) > 0;
+    });
+    result.changes.push_back({list[c].effect, list[c].at, std::min(found->second, 1.0),
+                              values(bench, changeable, *h, c)});
   }
-  std::sort(result.changes.begin(), result.changes.end(),
-            [](const Change& a, const Change& b) { return a.probability > b.probability; });
+}
+
+/// More than the search puts together: as much as the rows speak for. Each is as probable as the
+/// whole with it is beside the whole without, structure as all of them are beside noise alone.
+void list_grown(const Bench& bench, const Changeable& changeable, const Hypothesis& from,
+                Comparison& result) {
+  Hypothesis all = bench.grow({from.candidates, 0, 0, from.sizes}, kMostDifferences);
+  const auto weight = [&](Hypothesis h, int structure) {
+    h.structure = structure;
+    return bench.log_weight(h);
+  };
+  const double plain = weight(all, 0);
+  double noise = 0, structure = 0, best = plain;
+  for (int s = 0; s < bench.structures(); ++s) {
+    const double each = weight(all, s);
+    (bench.structure(s).kind == 0 ? noise : structure) += std::exp(std::min(each - plain, 500.0));
+    if (each > best) all.structure = s;
+    best = std::max(best, each);
+  }
+  result.unknown = structure / (noise + structure);
+  for (size_t i = 0; i < all.candidates.size(); ++i) {
+    Hypothesis less = all;
+    less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+    less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    const Candidate& each = changeable.candidates.list[static_cast<size_t>(all.candidates[i])];
+    const double probability = 1 / (1 + std::exp(weight(less, all.structure) - best));
+    if (probability >= kListed)
+      result.changes.push_back(
+          {each.effect, each.at, probability, values(bench, changeable, all, all.candidates[i])});
+  }
 }
 
 std::string in_words(const Comparison& result) {
@@ -115,25 +185,32 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
   Options free;
   free.free = {"K*"};
   free.most_rejected = options.most_rejected;
+  const Within apart = within(*geometry, before, after, all.sets, free, progress);
   const Adjusted adjusted = adjust(equations, free, progress);
   if (progress) progress("weighing what changed", 0.5);
-  const Fit& fitted = adjusted.fitted;
   const DenseEquations dense =
-      weighed(equations.dense(fitted.state, pooled_noise(all, fitted), fitted.noise.put_aside),
-              before.rows, after.rows);
+      weighed(equations.dense(adjusted.fitted.state, apart.noise, apart.put_aside), before.rows,
+              after.rows);
   const Changeable changes = changeable(equations, dense.W, before, after, between);
   const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
-  const Bench bench(rows,
-                    structures(all.rows, dense, tips(*geometry, all.rows),
-                               dense.W(Eigen::all, reading_columns(*geometry))),
-                    changes.candidates, changes.parameters, options.search);
-  const Posterior posterior = bench.search();
+  const auto bench = [&](bool noise_is_known) {
+    SearchRule rule = options.search;
+    rule.noise_is_known = noise_is_known;
+    return Bench(rows,
+                 structures(all.rows, dense, tips(*geometry, all.rows),
+                            dense.W(Eigen::all, reading_columns(*geometry))),
+                 changes.candidates, changes.parameters, rule);
+  };
   Comparison result;
-  for (const Hypothesis& h : posterior.hypotheses)
-    if (h.candidates.empty()) result.none += std::exp(h.log_weight);
-  result.none = std::min(result.none, 1.0);
-  result.unknown = std::min(posterior.unknown, 1.0);
-  list_changes(bench, changes, posterior, result);
+  Hypothesis best;
+  {
+    const Bench searched = bench(false);
+    const Posterior posterior = searched.search();
+    best = posterior.hypotheses.front();
+    if (best.candidates.size() < kSearched) list_searched(searched, changes, posterior, result);
+  }
+  if (best.candidates.size() >= kSearched) list_grown(bench(true), changes, best, result);
+  std::ranges::stable_sort(result.changes, std::greater(), &Change::probability);
   result.why = in_words(result);
   return result;
 }

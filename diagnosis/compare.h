@@ -15,9 +15,10 @@
 namespace selfcal {
 
 struct Change {
-  std::string effect;  ///< "zero_shift", "fixture_shift", "base_moved", "probe_changed",
-                       ///< "geometry_differs"
-  std::string where;   ///< a joint, a set, "base", "probe", a parameter
+  /// "zero_shift"; between sessions "fixture_shift", "base_moved", "probe_changed"; between
+  /// machines "placed_elsewhere", "geometry_differs"
+  std::string effect;
+  std::string where;  ///< a joint, a set, "base", "probe", a parameter
   double probability = 0;
   std::vector<NamedValue> values;  ///< second minus first
 };

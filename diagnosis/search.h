@@ -76,6 +76,8 @@ class Bench {
   std::vector<Workbench::Term> terms(const Hypothesis& hypothesis) const;
   /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.
   void add_sigma(int candidate, double size, std::vector<double>& to) const;
+  /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
+  double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
   /// at most three families.
   Hypothesis grow(Hypothesis h, size_t most) const;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {
@@ -60,6 +62,22 @@ TEST(Compare, DoesNotTakeForAChangeWhatBothShow) {
   const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
   EXPECT_GT(comparison.none, 0.5) << comparison.why;
   EXPECT_GT(comparison.unknown, 0.5);
+}
+
+TEST(Compare, ListsMoreChangesThanAreSearchedTogether) {
+  TwoSessions sessions(100);
+  const std::vector<double> shifts = {0, 1e-3, -7e-4, 5e-4, -9e-4, 0};
+  for (int j = 0; j < 6; ++j) sessions.after.rows.q.col(j).array() += shifts[j];
+  const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
+  std::vector<std::string> where;
+  for (const Change& each : comparison.changes) {
+    EXPECT_EQ(each.effect, "zero_shift");
+    EXPECT_GT(each.probability, 0.9);
+    where.push_back(each.where);
+    EXPECT_NEAR(each.values[0].value, -shifts[each.where[1] - '1'], 4 * each.values[0].sigma);
+  }
+  std::ranges::sort(where);
+  EXPECT_EQ(where, (std::vector<std::string>{"j2", "j3", "j4", "j5"})) << comparison.why;
 }
 
 // 2400 equations: weighed as they are they would take gigabytes and minutes.
