@@ -4,85 +4,16 @@
 #include <cmath>
 #include <functional>
 
-#include "constraints/adjustment.h"
-#include "diagnosis/changeable.h"
-#include "diagnosis/rows.h"
-#include "diagnosis/structures.h"
-#include "diagnosis/view.h"
+#include "diagnosis/pair.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
 
 constexpr double kListed = 0.02;
+constexpr int kPasses = 2;       ///< false rows are seen once the changes are known
 constexpr size_t kSearched = 3;  ///< candidates that the search puts together
 constexpr size_t kMostDifferences = 60;
-
-/// What is noise and what is false within each of the two: a change is neither.
-struct Within {
-  std::vector<Scale> noise;     ///< by set of both
-  std::vector<char> put_aside;  ///< by row of both
-};
-
-Within within(const Robot& robot, const DataSet& before, const DataSet& after,
-              const std::vector<Set>& sets, const Options& options, const Progress& progress) {
-  Within of;
-  of.noise.assign(sets.size(), {0, 0});
-  std::vector<double> rows(sets.size(), 0);
-  for (const DataSet* part : {&before, &after}) {
-    const Equations equations(robot, *part, Use::fit);
-    const Fit fit = adjust(equations, options, progress).fitted;
-    of.put_aside.insert(of.put_aside.end(), fit.noise.put_aside.begin(), fit.noise.put_aside.end());
-    const std::vector<Scale> noise = pooled_noise(*part, fit);
-    for (const RowResidual& r : fit.at.residuals) {
-      const auto s = static_cast<size_t>(same_set(sets, part->sets[r.set]));
-      of.noise[s].length += std::pow(noise[r.set].length, 2);
-      of.noise[s].angle += std::pow(noise[r.set].angle, 2);
-      rows[s] += 1;
-    }
-  }
-  for (size_t s = 0; s < rows.size(); ++s)
-    of.noise[s] = rows[s] > 0 ? Scale{std::sqrt(of.noise[s].length / rows[s]),
-                                      std::sqrt(of.noise[s].angle / rows[s])}
-                              : Scale{};
-  return of;
-}
-
-/// Of large sessions every so many configurations of each: the smaller one's are worth more.
-DenseEquations weighed(const DenseEquations& dense, const Observations& before,
-                       const Observations& after) {
-  const auto later = [&](int row) { return row >= before.rows(); };
-  const auto second = static_cast<double>(std::ranges::count_if(dense.row, later));
-  const double first = static_cast<double>(dense.row.size()) - second;
-  const auto part = [](double others) { return kMostWeighed - std::min(others, kMostWeighed / 2); };
-  std::vector<char> take = weighed_rows(before, first, part(second));
-  const std::vector<char> more = weighed_rows(after, second, part(first));
-  take.insert(take.end(), more.begin(), more.end());
-  return kept(dense, take);
-}
-
-Whitened whitened(const DenseEquations& dense, const Adjusted& adjusted, const Equations& equations,
-                  const Changeable& changeable, int first_rows) {
-  std::vector<int> columns;
-  for (int c = 0; c < equations.robot_columns(); ++c)
-    if (adjusted.prior.free[c]) columns.push_back(c);
-  const auto free = static_cast<Eigen::Index>(columns.size());
-  for (Eigen::Index c = equations.robot_columns(); c < dense.W.cols(); ++c)
-    columns.push_back(static_cast<int>(c));
-  Whitened rows;
-  rows.A = dense.W(Eigen::all, columns);
-  rows.C = dense.W(Eigen::all, changeable.columns);
-  for (Eigen::Index i = 0; i < rows.C.rows(); ++i)
-    if (dense.row[static_cast<size_t>(i)] < first_rows) rows.C.row(i).setZero();
-  rows.y = dense.y;
-  rows.weight = rows.pull = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()));
-  for (Eigen::Index i = 0; i < free; ++i) {
-    const int c = columns[static_cast<size_t>(i)];
-    rows.weight[i] = 1 / adjusted.prior.sigma[c];
-    rows.pull[i] = rows.weight[i] * (adjusted.prior.centre[c] - adjusted.fitted.state.xi[c]);
-  }
-  return rows;
-}
 
 /// The candidate's values, as the hypothesis that holds it has them.
 std::vector<NamedValue> values(const Bench& bench, const Changeable& changeable,
@@ -121,11 +52,10 @@ void list_searched(const Bench& bench, const Changeable& changeable, const Poste
   }
 }
 
-/// More than the search puts together: as much as the rows speak for. Each is as probable as the
+/// More than the search puts together. Each is as probable as the
 /// whole with it is beside the whole without, structure as all of them are beside noise alone.
-void list_grown(const Bench& bench, const Changeable& changeable, const Hypothesis& from,
+void list_grown(const Bench& bench, const Changeable& changeable, Hypothesis all,
                 Comparison& result) {
-  Hypothesis all = bench.grow({from.candidates, 0, 0, from.sizes}, kMostDifferences);
   const auto weight = [&](Hypothesis h, int structure) {
     h.structure = structure;
     return bench.log_weight(h);
@@ -149,6 +79,26 @@ void list_grown(const Bench& bench, const Changeable& changeable, const Hypothes
       result.changes.push_back(
           {each.effect, each.at, probability, values(bench, changeable, all, all.candidates[i])});
   }
+}
+
+/// The most probable set of changes; what is probable of them goes into `result`.
+Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
+                 Comparison& result) {
+  Hypothesis best;
+  {
+    const Bench bench = pair.bench(rows, rule);
+    const Posterior posterior = bench.search();
+    best = posterior.hypotheses.front();
+    if (best.candidates.size() < kSearched) {
+      list_searched(bench, pair.changes(), posterior, result);
+      return best;
+    }
+  }
+  rule.noise_is_known = true;
+  const Bench bench = pair.bench(rows, rule);
+  best = bench.grow({best.candidates, 0, 0, best.sizes}, kMostDifferences);
+  list_grown(bench, pair.changes(), best, result);
+  return best;
 }
 
 std::string in_words(const Comparison& result) {
@@ -179,37 +129,18 @@ std::string incomparable(const Robot& one, const Robot& other) {
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
                    const DataSet& after, Between between, const DiagnosisOptions& options,
                    const Progress& progress) {
-  const auto geometry = geometry_of(robot);
-  const DataSet all = merged(before, after);
-  const Equations equations(*geometry, all, Use::fit);
-  Options free;
-  free.free = {"K*"};
-  free.most_rejected = options.most_rejected;
-  const Within apart = within(*geometry, before, after, all.sets, free, progress);
-  const Adjusted adjusted = adjust(equations, free, progress);
+  const Pair pair(geometry_of(robot), before, after, between, options, progress);
   if (progress) progress("weighing what changed", 0.5);
-  const DenseEquations dense =
-      weighed(equations.dense(adjusted.fitted.state, apart.noise, apart.put_aside), before.rows,
-              after.rows);
-  const Changeable changes = changeable(equations, dense.W, before, after, between);
-  const Whitened rows = whitened(dense, adjusted, equations, changes, before.rows.rows());
-  const auto bench = [&](bool noise_is_known) {
-    SearchRule rule = options.search;
-    rule.noise_is_known = noise_is_known;
-    return Bench(rows,
-                 structures(all.rows, dense, tips(*geometry, all.rows),
-                            dense.W(Eigen::all, reading_columns(*geometry))),
-                 changes.candidates, changes.parameters, rule);
-  };
   Comparison result;
-  Hypothesis best;
-  {
-    const Bench searched = bench(false);
-    const Posterior posterior = searched.search();
-    best = posterior.hypotheses.front();
-    if (best.candidates.size() < kSearched) list_searched(searched, changes, posterior, result);
+  std::vector<char> put_aside = pair.put_aside();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const DenseEquations rows = pair.weighed(put_aside);
+    result = {};
+    const Hypothesis best = weigh(pair, rows, options.search, result);
+    std::vector<char> far = pair.far_rows(rows, best);
+    if (far == put_aside) break;
+    put_aside = std::move(far);
   }
-  if (best.candidates.size() >= kSearched) list_grown(bench(true), changes, best, result);
   std::ranges::stable_sort(result.changes, std::greater(), &Change::probability);
   result.why = in_words(result);
   return result;

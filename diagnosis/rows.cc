@@ -5,7 +5,27 @@
 #include <map>
 #include <string_view>
 
+#include "constraints/statistics.h"
+
 namespace selfcal {
+namespace {
+
+constexpr double kFarQuantile = 1 - 1e-5;
+constexpr double kMedianToSigma = 1.4826;  // of a normal variable
+
+/// From the middle of the residuals: no false row moves it, and where structure that nobody knows
+/// adds to the noise it holds both.
+double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                       double unknowns) {
+  std::vector<double> sizes;
+  for (size_t i = 0; i < all.row.size(); ++i)
+    if (all.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
+  const auto n = static_cast<double>(sizes.size());
+  const double spent = std::min(unknowns, 0.7 * n);
+  return std::pow(kMedianToSigma * median(std::move(sizes)), 2) / (1 - spent / n);
+}
+
+}  // namespace
 
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
   std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
@@ -50,6 +70,32 @@ DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
   DenseEquations some{all.W(rows, Eigen::all), all.y(rows), all.shift(rows, Eigen::all), {}};
   for (const int i : rows) some.row.push_back(all.row[i]);
   return some;
+}
+
+std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                           double unknowns, std::size_t rows, double most) {
+  const double variance = robust_variance(all, residuals, unknowns);
+  std::vector<double> squares(rows, 0);
+  std::vector<int> count(rows, 0);
+  for (size_t i = 0; i < all.row.size(); ++i)
+    if (all.row[i] >= 0) {
+      squares[all.row[i]] += std::pow(residuals[static_cast<Eigen::Index>(i)], 2);
+      ++count[all.row[i]];
+    }
+  std::vector<std::pair<double, int>> far;
+  for (size_t row = 0; row < rows; ++row) {
+    if (count[row] == 0) continue;
+    const double sigmas = std::sqrt(squares[row] / variance);
+    const double limit = chi_quantile(count[row], kFarQuantile);
+    if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
+  }
+  std::sort(far.begin(), far.end());
+  const auto n = static_cast<double>(std::ranges::count_if(count, [](int c) { return c > 0; }));
+  const double allowed = most * n + 2 * std::sqrt(most * n);
+  std::vector<char> put_aside(rows, 0);
+  for (size_t i = 0; i < far.size() && static_cast<double>(i) < allowed; ++i)
+    put_aside[far[i].second] = 1;
+  return put_aside;
 }
 
 Eigen::MatrixXd tips(const Robot& robot, const Observations& rows) {

@@ -22,6 +22,12 @@ std::vector<char> weighed_rows(const Observations& rows, double equations, doubl
 /// The equations of the rows that `take` (by row) holds, and those that no row carries.
 DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 
+/// By row of the data set (which has `rows`), 1 where what an explanation of so many `unknowns`
+/// leaves of it (`residuals`, by equation) lies beyond one in a hundred thousand: the farthest, up
+/// to a share of about `most`.
+std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                           double unknowns, std::size_t rows, double most);
+
 /// Where the nominal robot's endpoint is (rows x 3, m).
 Eigen::MatrixXd tips(const Robot& robot, const Observations& rows);
 

@@ -13,9 +13,6 @@
 namespace selfcal {
 namespace {
 
-constexpr double kFarQuantile = 1 - 1e-5;
-constexpr double kMedianToSigma = 1.4826;  // of a normal variable
-
 Options geometry_options(const DiagnosisOptions& options) {
   Options geometry;
   geometry.most_rejected = options.most_rejected;
@@ -173,38 +170,10 @@ Eigen::VectorXd View::geometry_leaves(const Whitened& rows) const {
 }
 
 bool View::refine(const Eigen::VectorXd& residuals, double variance) {
-  // From the middle of the residuals: no false row moves it, and where structure that nobody knows
-  // adds to the noise it holds both.
-  std::vector<double> sizes;
-  for (size_t i = 0; i < all_.row.size(); ++i)
-    if (all_.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
-  const auto n_equations = static_cast<double>(sizes.size());
-  const double spent = std::min(static_cast<double>(columns_.size()), 0.7 * n_equations);
-  const double robust =
-      std::pow(kMedianToSigma * median(std::move(sizes)), 2) / (1 - spent / n_equations);
-  std::vector<double> squares(static_cast<size_t>(data_.rows.rows()), 0);
-  std::vector<int> count(squares.size(), 0);
-  for (size_t i = 0; i < all_.row.size(); ++i)
-    if (all_.row[i] >= 0) {
-      squares[all_.row[i]] += std::pow(residuals[static_cast<Eigen::Index>(i)], 2);
-      ++count[all_.row[i]];
-    }
-  std::vector<char> put_aside(squares.size(), 0);
-  std::vector<std::pair<double, int>> far;
-  for (size_t row = 0; row < squares.size(); ++row) {
-    if (count[row] == 0) continue;
-    const double sigmas = std::sqrt(squares[row] / robust);
-    const double limit = chi_quantile(count[row], kFarQuantile);
-    if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
-  }
-  std::sort(far.begin(), far.end());
-  const double n =
-      static_cast<double>(std::count_if(count.begin(), count.end(), [](int c) { return c > 0; }));
-  const double most = most_rejected_ * n + 2 * std::sqrt(most_rejected_ * n);
-  for (size_t i = 0; i < far.size() && static_cast<double>(i) < most; ++i)
-    put_aside[far[i].second] = 1;
+  std::vector<char> put_aside = far_rows(all_, residuals, static_cast<double>(columns_.size()),
+                                         put_aside_.size(), most_rejected_);
   if (put_aside == put_aside_ && std::abs(variance - 1) < 0.1) return false;
-  put_aside_ = put_aside;
+  put_aside_ = std::move(put_aside);
   scale_ *= std::sqrt(variance);
   return true;
 }

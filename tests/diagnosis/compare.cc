@@ -80,6 +80,16 @@ TEST(Compare, ListsMoreChangesThanAreSearchedTogether) {
   EXPECT_EQ(where, (std::vector<std::string>{"j2", "j3", "j4", "j5"})) << comparison.why;
 }
 
+TEST(Compare, PutsFalseRowsAsideButNotTheChange) {
+  TwoSessions sessions;
+  sessions.after.rows.q.col(2).array() += kShift;
+  for (const int row : {4, 20}) sessions.after.rows.position(row, 2) += 2e-3;
+  sessions.before.rows.position(9, 0) -= 1e-3;
+  const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
+  expect_zero_of_j3(comparison);
+  EXPECT_LT(comparison.unknown, 0.5);
+}
+
 // 2400 equations: weighed as they are they would take gigabytes and minutes.
 TEST(Compare, WeighsOnlyAPartOfLargeSessions) {
   TwoSessions sessions(600);
