@@ -134,7 +134,8 @@ DataSet merged(const DataSet& before, const DataSet& after) {
   for (int& repeat : later.repeat)
     if (repeat >= 0) repeat += most_repeat;
   if (before.rows.time.size() > 0 && later.time.size() > 0)
-    later.time.array() += before.rows.time.maxCoeff() - later.time.minCoeff();
+    later.time.array() += before.rows.time.maxCoeff<Eigen::PropagateNumbers>() -
+                          later.time.minCoeff<Eigen::PropagateNumbers>();
   all.rows = joined(before.rows, later);
   return all;
 }
