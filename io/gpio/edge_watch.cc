@@ -25,8 +25,8 @@ void EdgeWatch::add(const std::vector<LineEvent>& events, Nanoseconds now, std::
     const Nanoseconds time = foreign_ ? now : event.time;
     const bool timed = !gap_ && !foreign_;
     if (event.closed == level_) {
-      // It has been away and back.
-      if (skipped == 0) ++lost_;
+      // It has been away and back; after a gap that is counted already.
+      if (!gap_) ++lost_;
       out.push_back({time, !event.closed, timed});
     }
     out.push_back({time, event.closed, timed});
@@ -34,20 +34,27 @@ void EdgeWatch::add(const std::vector<LineEvent>& events, Nanoseconds now, std::
     count(time);
     gap_ = false;
   }
-  // What came while the queue was full is gone, and nothing says so.
+  // What came while the queue was full is gone, and nothing says so: an even number leaves the
+  // level right.
   gap_ = events.size() >= kQueue && events.back().number == 0;
-  if (gap_) overran_ = now;
+  if (gap_) {
+    ++lost_;
+    overran_ = now;
+  }
   mismatch_ = false;
 }
 
 void EdgeWatch::check(bool closed, Nanoseconds now, std::vector<Edge>& out) {
-  gap_ = false;
-  if (closed == level_ || !mismatch_) {
-    mismatch_ = closed != level_;
+  if (closed == level_) {
+    gap_ = mismatch_ = false;
     return;
   }
-  mismatch_ = false;
-  ++lost_;
+  if (!mismatch_) {
+    mismatch_ = true;
+    return;
+  }
+  if (!gap_) ++lost_;
+  gap_ = mismatch_ = false;
   level_ = closed;
   out.push_back({now, closed, false});
 }

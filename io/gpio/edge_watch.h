@@ -1,10 +1,11 @@
 // From what the kernel reports of a line to edges that alternate, with what was lost on the way.
 //
 // The kernel keeps 16 edges for a reader and drops silently beyond; where edges are numbered a gap
-// tells (libgpiod 2), else two edges to one level do. The kernel also reads the level a little
-// after it has taken the stamp: a contact that opens again within that time reports "open" twice,
-// and the closing between the two belongs at the stamp of the second. An edge whose stamp may be
-// another's is passed on as not timed, and counts for safety but not as a measurement.
+// tells (libgpiod 2), else two edges to one level do, or a queue that was full: of how many it may
+// hide one is counted. The kernel also reads the level a little after it has taken the stamp: a
+// contact that opens again within that time reports "open" twice, and the closing between the two
+// belongs at the stamp of the second. An edge whose stamp may be another's is passed on as not
+// timed, and counts for safety but not as a measurement.
 #pragma once
 
 #include <deque>
@@ -40,6 +41,7 @@ class EdgeWatch {
 
   /// Nothing while the line has not been watched for long enough.
   std::optional<bool> closed(Nanoseconds now) const;
+  /// At least so many, where edges are not numbered.
   std::uint64_t lost() const { return lost_; }
   std::string trouble(Nanoseconds now) const;
 

@@ -2,6 +2,7 @@
 
 #include <gpiod.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <optional>
@@ -34,38 +35,44 @@ struct Found {
 };
 
 /// Whether `wanted` is the chip's path, name or label.
-bool is_called(gpiod_chip* chip, const std::string& path, const std::string& wanted) {
-  if (wanted == path || "/dev/" + wanted == path) return true;
-  const Owned<gpiod_chip_info> info(gpiod_chip_get_info(chip));
-  return info && wanted == gpiod_chip_info_get_label(info.get());
+bool is_called(gpiod_chip_info* chip, const std::string& path, const std::string& wanted) {
+  return wanted == path || "/dev/" + wanted == path || wanted == gpiod_chip_info_get_label(chip);
 }
 
-/// The line on this chip; nothing, with errno, when it has none of that name or offset.
-std::optional<unsigned> offset_on(gpiod_chip* chip, const std::string& line) {
+/// The line on this chip; nothing when it has none of that name or offset.
+std::optional<unsigned> offset_on(gpiod_chip* chip, gpiod_chip_info* info,
+                                  const std::string& line) {
   int offset = offset_of(line);
   if (offset < 0) offset = gpiod_chip_get_line_offset_from_name(chip, line.c_str());
-  if (offset < 0) return std::nullopt;
+  // Asked for one past the last, the kernel says but EINVAL.
+  if (offset < 0 || static_cast<std::size_t>(offset) >= gpiod_chip_info_get_num_lines(info))
+    return std::nullopt;
   return static_cast<unsigned>(offset);
+}
+
+/// Where the chip may be, always in the same order: a line's name may be found on two.
+std::vector<std::string> paths_of(const std::string& chip) {
+  if (chip.find('/') != std::string::npos) return {chip};
+  std::vector<std::string> paths;
+  std::error_code listing;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", listing))
+    if (entry.path().filename().string().starts_with("gpiochip")) paths.push_back(entry.path());
+  std::ranges::sort(paths);
+  return paths;
 }
 
 /// The first chip that is the one asked for and has the line; nothing, with errno, otherwise.
 std::optional<Found> find(const GpioSettings& settings) {
   int error = ENOENT;
-  const bool by_path = settings.chip.find('/') != std::string::npos;
-  std::vector<std::string> paths;
-  if (by_path) paths.push_back(settings.chip);
-  std::error_code listing;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", listing))
-    if (!by_path && entry.path().filename().string().starts_with("gpiochip"))
-      paths.push_back(entry.path());
-  for (const std::string& path : paths) {
+  for (const std::string& path : paths_of(settings.chip)) {
     Owned<gpiod_chip> chip(gpiod_chip_open(path.c_str()));
-    if (!chip) {
+    const Owned<gpiod_chip_info> info(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
+    if (!info) {
       error = errno;
       continue;
     }
-    if (!settings.chip.empty() && !is_called(chip.get(), path, settings.chip)) continue;
-    if (const auto offset = offset_on(chip.get(), settings.line))
+    if (!settings.chip.empty() && !is_called(info.get(), path, settings.chip)) continue;
+    if (const auto offset = offset_on(chip.get(), info.get(), settings.line))
       return Found{std::move(chip), *offset};
   }
   errno = error;

@@ -25,8 +25,8 @@ class GpioTrigger : public TouchTrigger {
   /// Nothing in the first 0.6 s, in which a chattering line would show, and while it is gone.
   std::optional<bool> closed() override;
   Result<void> take(std::vector<Edge>& out) override;
-  /// Lost in the kernel, as far as it shows (with libgpiod 1.6 a full queue hides how many), or
-  /// pushed out before they were taken.
+  /// Lost in the kernel, as far as it shows (with libgpiod 1.6 a full queue hides how many and
+  /// counts as one), or pushed out before they were taken.
   std::uint64_t dropped() const override;
   std::string trouble() const override;
 

@@ -75,12 +75,35 @@ TEST_F(EdgeWatchTest, DoesNotTrustTheStampAfterAFullQueue) {
     full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
   add(full);
   EXPECT_TRUE(watch.suspicious()) << "to be looked at soon";
+  EXPECT_EQ(watch.lost(), 1u) << "two, or any even number, would not show in the level";
   EXPECT_THAT(watch.trouble(now), HasSubstr("some are lost"));
   EXPECT_EQ(watch.trouble(now + EdgeWatch::kTellFor), "");
 
   const Nanoseconds later = 2 * kSecond + kMillisecond;
   EXPECT_THAT(add({{later, true}, {later + 10, false}}),
               ElementsAre(Seen{later, true, false}, Seen{later + 10, false, true}));
+  EXPECT_EQ(watch.lost(), 1u);
+}
+
+TEST_F(EdgeWatchTest, CountsWhatAFullQueueHidesOnceHoweverItShows) {
+  std::vector<LineEvent> full;
+  for (std::size_t i = 0; i < EdgeWatch::kQueue; ++i)
+    full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
+  add(full);
+  const Nanoseconds opens = 2 * kSecond + kMillisecond;
+  EXPECT_THAT(add({{opens, false}}),
+              ElementsAre(Seen{opens, true, false}, Seen{opens, false, false}))
+      << "by the next edge";
+  EXPECT_EQ(watch.lost(), 1u);
+
+  for (LineEvent& event : full) event.time += kSecond;
+  add(full);
+  EXPECT_THAT(check(true), IsEmpty());
+  EXPECT_TRUE(watch.suspicious());
+  const auto found = check(true);
+  EXPECT_THAT(found, ElementsAre(Seen{now, true, false})) << "by the level";
+  EXPECT_EQ(watch.lost(), 2u);
+  EXPECT_FALSE(watch.suspicious());
 }
 
 TEST_F(EdgeWatchTest, TrustsTheNextStampOnceTheLevelWasFoundRightAfterAFullQueue) {

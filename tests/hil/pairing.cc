@@ -11,6 +11,7 @@
 
 #include "app/service/senses.h"
 #include "io/can/encoders.h"
+#include "io/can/faults.h"
 #include "io/clock.h"
 #include "io/gpio/trigger.h"
 #include "tests/hil/spinning_arm.h"
@@ -38,6 +39,7 @@ void step_wall_clock(Nanoseconds by) {
 struct Pairs {
   std::vector<double> off_us;
   int unpaired = 0;
+  std::uint64_t steps = 0;  ///< of the wall clock, made
   double of(double share) const {
     return off_us.at(static_cast<std::size_t>(share * static_cast<double>(off_us.size() - 1)));
   }
@@ -60,6 +62,26 @@ double off_us(const SpinningArm& arm, const EncoderSource& encoders, const Edge&
   return 1e6 * ((off - count).max(0) / arm.truth().dq(edge.time).array().abs()).maxCoeff();
 }
 
+std::uint64_t steps_noticed(const EncoderSource& encoders) {
+  for (const Tally& tally : encoders.tallies())
+    if (tally.name == to_string(CanFault::time_stepped)) return tally.count;
+  return 0;
+}
+
+void print(const Pairs& pairs, const EncoderSource& encoders, const TouchTrigger& trigger) {
+  if (pairs.off_us.empty()) return;
+  std::string faults;
+  for (const Tally& tally : encoders.tallies())
+    if (tally.count > 0)
+      faults += " " + std::string(tally.name) + " " + std::to_string(tally.count);
+  std::printf(
+      "%zu touches: median %.2f us, 99 %% %.2f us, worst %.2f us; %d without a reading; "
+      "%llu samples and %llu edges dropped;%s\n",
+      pairs.off_us.size(), pairs.of(0.5), pairs.of(0.99), pairs.of(1), pairs.unpaired,
+      static_cast<unsigned long long>(encoders.dropped()),
+      static_cast<unsigned long long>(trigger.dropped()), faults.c_str());
+}
+
 Pairs Pairing::pair(int touches, int step_every) {
   const SpinningArmOptions options;
   SpinningArm arm(wires, options);
@@ -79,8 +101,10 @@ Pairs Pairing::pair(int touches, int step_every) {
     std::deque<Event> events;
     senses.listen(clock.now(), events);
     for (const Event& event : events)
-      if (event.what == Event::What::closed && senses.closing())
+      if (event.what == Event::What::closed && senses.closing()) {
         waiting.push_back(*senses.closing());
+        senses.forget_closing();
+      }
     while (!waiting.empty()) {
       const Edge edge = waiting.front();
       const auto around = senses.samples().around(edge.time);
@@ -93,21 +117,13 @@ Pairs Pairing::pair(int touches, int step_every) {
         pairs.off_us.push_back(off_us(arm, *encoders, edge, *around));
       if (made % step_every != 0) continue;
       nobody.wait(static_cast<Nanoseconds>(random() % static_cast<unsigned>(options.touch_every)));
-      step_wall_clock(made / step_every % 2 == 1 ? 3600 * kSecond : -3600 * kSecond);
+      step_wall_clock(++pairs.steps % 2 == 1 ? 3600 * kSecond : -3600 * kSecond);
     }
   }
-  std::string faults;
-  for (const Tally& tally : encoders->tallies())
-    if (tally.count > 0)
-      faults += " " + std::string(tally.name) + " " + std::to_string(tally.count);
+  EXPECT_TRUE(eventually(nobody, [&] { return steps_noticed(*encoders) >= pairs.steps; }));
+  EXPECT_EQ(steps_noticed(*encoders), pairs.steps);
   std::ranges::sort(pairs.off_us);
-  if (!pairs.off_us.empty())
-    std::printf(
-        "%zu touches: median %.2f us, 99 %% %.2f us, worst %.2f us; %d without a reading; "
-        "%llu samples and %llu edges dropped;%s\n",
-        pairs.off_us.size(), pairs.of(0.5), pairs.of(0.99), pairs.of(1), pairs.unpaired,
-        static_cast<unsigned long long>(encoders->dropped()),
-        static_cast<unsigned long long>(trigger->dropped()), faults.c_str());
+  print(pairs, *encoders, *trigger);
   return pairs;
 }
 
@@ -118,6 +134,7 @@ TEST_F(Pairing, IsWithinFiveMicrosecondsOfTheTruthAndNeverAcrossAStepOfTheWallCl
   const Pairs pairs = pair(touches, step_every);
   // Of each step one touch may have no reading, and is made again.
   ASSERT_GE(pairs.off_us.size(), static_cast<std::size_t>(touches - touches / step_every));
+  EXPECT_EQ(pairs.steps, static_cast<std::uint64_t>(touches / step_every));
   EXPECT_LT(pairs.of(1), kMost_us);
 }
 

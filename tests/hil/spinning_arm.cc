@@ -29,15 +29,17 @@ void sleep_until(Nanoseconds t) {
   }
 }
 
-/// When the line changes next: closes within the first third of each span, and opens half of one
-/// later.
+/// When the line changes next: closes within the first third of each span, and opens within it.
 class Rhythm {
  public:
   Rhythm(Nanoseconds began, const SpinningArmOptions& options)
-      : span_(options.touch_every), begins_(began), random_(options.seed) {
+      : span_(options.touch_every),
+        closed_for_(options.closed_for),
+        begins_(began),
+        random_(options.seed) {
     draw();
   }
-  Nanoseconds at() const { return closed_ ? closes_ + span_ / 2 : closes_; }
+  Nanoseconds at() const { return closed_ ? closes_ + closed_for_ : closes_; }
   bool change() {
     closed_ = !closed_;
     if (!closed_) draw();
@@ -49,7 +51,7 @@ class Rhythm {
     begins_ += span_;
     closes_ = begins_ + static_cast<Nanoseconds>(random_() % static_cast<std::uint64_t>(span_ / 3));
   }
-  Nanoseconds span_, begins_, closes_ = 0;
+  Nanoseconds span_, closed_for_, begins_, closes_ = 0;
   bool closed_ = false;
   std::mt19937_64 random_;
 };

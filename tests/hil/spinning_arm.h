@@ -24,6 +24,7 @@ CanSettings spinning_settings(const std::string& interface);
 struct SpinningArmOptions {
   Nanoseconds cycle = kMillisecond;             ///< of SYNC and the joints' frames
   Nanoseconds touch_every = 30 * kMillisecond;  ///< the line closes once in it, and opens again
+  Nanoseconds closed_for = 15 * kMillisecond;   ///< less than two thirds of it
   unsigned seed = 1;
 };
 
