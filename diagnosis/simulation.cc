@@ -106,7 +106,8 @@ std::vector<std::string> sentences(const Differences& of) {
           : geometry + " (what such an effect does to a zero or a length is among this)");
   if (geometry.empty() && !one_sided && of.geometry.none <= kUnsure)
     add("the geometry differs, but not in one known thing alone");
-  if (list.empty()) list.push_back("these rows show no difference of the robot and its simulation");
+  if (list.empty())
+    list.push_back("these rows show no difference between the robot and its simulation");
   return list;
 }
 

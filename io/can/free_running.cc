@@ -48,6 +48,7 @@ void FreeRunning::interrupt() {
   for (Stream& stream : streams_) stream.broken = true;
   started_.reset();
   broke_off_ = true;
+  for (JointTrack& track : tracks_) track.break_off();
 }
 
 // Makes the frame the newest of its stream; false when it cannot be used.

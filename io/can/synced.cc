@@ -36,6 +36,7 @@ void SyncedCycles::add(const CanFrame& frame, Nanoseconds t, std::vector<Encoder
 void SyncedCycles::interrupt() {
   if (sync_) ++incomplete_;
   broke_off_ = true;
+  for (JointTrack& track : tracks_) track.break_off();
   sync_.reset();
   period_ = 0;
   for (Slot& slot : slots_) slot.filled = slot.doubled = false;

@@ -55,7 +55,9 @@ JointTrack::Step JointTrack::add(std::int64_t raw, Nanoseconds t) {
     trust(counts_);
     return Step::first;
   }
-  if (reachable(before, counts_, span)) {
+  const bool believed = std::exchange(broke_off_, false);
+  if (believed) jumped_ = false;
+  if (believed || reachable(before, counts_, span)) {
     const bool guessed = joint_->wraps_at > 0 && !joint_->within_one_turn &&
                          reach(span) > static_cast<double>(joint_->wraps_at) / 2;
     trust(counts_);

@@ -22,6 +22,8 @@ class JointTrack {
 
   /// Tells the count `raw` of time `t`, which must be later than the last one.
   Step add(std::int64_t raw, Nanoseconds t);
+  /// Something was lost before the next count, or its time is not comparable: it is believed.
+  void break_off() { broke_off_ = true; }
   std::int64_t counts() const { return counts_; }  ///< of the last one, turns counted
   /// Counts the joint can move in `span`.
   double reach(Nanoseconds span) const;
@@ -33,7 +35,7 @@ class JointTrack {
   void trust(std::int64_t counts);
 
   const CanJoint* joint_;
-  bool known_ = false, jumped_ = false;
+  bool known_ = false, jumped_ = false, broke_off_ = false;
   std::int64_t counts_ = 0, trusted_ = 0;  ///< trusted: of the last one that followed
   Nanoseconds time_ = 0, trusted_time_ = 0;
 };

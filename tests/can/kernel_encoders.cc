@@ -268,7 +268,8 @@ TEST_F(CanEncodersOnABus, PairNothingAcrossAStepOfTheWallClock) {
   EXPECT_TRUE(eventually([&] {
     publish(++last);
     return encoders->trouble().empty();
-  })) << "told while it is recent";
+  })) << "told while it is recent: "
+      << encoders->trouble();
 }
 
 }  // namespace

@@ -25,6 +25,22 @@ TEST_F(Synced, AreNoneForACountThatJumpsAndGoOnWhereItWas) {
   EXPECT_EQ(bus.count(CanFault::zero_lost), 0u);
 }
 
+TEST_F(Synced, BelieveACountAfterAnInterruption) {
+  good(0);
+  good(1);
+  bus.assembler.interrupt();
+  for (int k = 2; k < 6; ++k) {
+    bus.sync(t(k));
+    bus.frame(0, 1'000'000, t(k) + 200);
+    bus.frame(1, -1010, t(k) + 400);
+  }
+  EXPECT_EQ(bus.count(CanFault::jumped), 0u);
+  EXPECT_EQ(bus.count(CanFault::zero_lost), 0u);
+  ASSERT_EQ(bus.samples.size(), 4u);
+  EXPECT_FALSE(bus.samples[1].follows);
+  EXPECT_TRUE(bus.samples[2].follows);
+}
+
 TEST_F(Synced, EndWhereACountJumpsAndGoesOnFromThere) {
   good(0);
   // 10 rad/s in 10 ms are 0.1 rad: 100 000 counts.

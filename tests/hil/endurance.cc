@@ -105,7 +105,10 @@ TEST_F(Endurance, DropsNothing) {
   EXPECT_GT(arrived.seconds, minutes * 60 - 3);
   // Rates have four digits; a second ends when the service looks, a few samples early or late.
   const double samples = 1000 * arrived.seconds, touches = 25 * arrived.seconds;
-  EXPECT_NEAR(arrived.samples, samples, 1e-3 * samples);
+  // The arm may be late with a cycle's last frames, so that they cannot be told from the next
+  // one's: what is missing beyond the rounding must have been told.
+  EXPECT_LT(arrived.samples, 1.001 * samples);
+  EXPECT_GT(arrived.samples, 0.999 * samples - number(arrived.last, "encoders met_late"));
   EXPECT_GT(arrived.slowest, 950);
   // The first and the last; and the robot, late for an opening, may have made a longer closing.
   EXPECT_NEAR(arrived.touches, touches, 3 + 5e-3 * touches);
