@@ -1,0 +1,51 @@
+// Each row judges once, and repeats stay together.
+#include "diagnosis/folds.h"
+
+#include <gtest/gtest.h>
+
+namespace selfcal {
+namespace {
+
+/// 40 rows of two sets in turn; rows 10 to 15 are repeats of one configuration of the first set.
+DataSet forty_rows() {
+  DataSet data;
+  data.sets.resize(2);
+  data.rows.q.setZero(40, 1);
+  for (int row = 0; row < 40; ++row) {
+    const bool repeat = row >= 10 && row < 16;
+    data.rows.set.push_back(repeat ? 0 : row % 2);
+    data.rows.repeat.push_back(repeat ? 7 : -1);
+    data.rows.check.push_back(0);
+  }
+  return data;
+}
+
+TEST(Folds, LetEachRowJudgeOnce) {
+  const DataSet data = forty_rows();
+  std::vector<int> judged(40, 0);
+  for (int fold = 0; fold < kFolds; ++fold) {
+    const DataSet part = with_fold(data, fold);
+    for (int row = 0; row < 40; ++row) judged[row] += part.rows.check[row];
+  }
+  EXPECT_EQ(judged, std::vector<int>(40, 1));
+}
+
+TEST(Folds, KeepRepeatsTogetherAndLeaveOutStretches) {
+  const DataSet data = forty_rows();
+  for (int fold = 0; fold < kFolds; ++fold) {
+    const DataSet part = with_fold(data, fold);
+    for (int row = 11; row < 16; ++row)
+      EXPECT_EQ(part.rows.check[row], part.rows.check[10]) << fold << " " << row;
+    int changes = 0;  // along the second set: two stretches of six
+    for (int row = 3, last = part.rows.check[1]; row < 40; row += 2)
+      if (data.rows.set[row] == 1 && part.rows.check[row] != last) {
+        last = part.rows.check[row];
+        ++changes;
+      }
+    EXPECT_GE(changes, 2);
+    EXPECT_LE(changes, 4);
+  }
+}
+
+}  // namespace
+}  // namespace selfcal
