@@ -2,6 +2,7 @@
 
 #include "io/can/encoders.h"
 
+#include <net/if.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 
@@ -144,7 +145,8 @@ void CanEncoders::reopen() {
   if (receiver) {
     receiver_ = *std::move(receiver);
     failure_.reset();
-  } else {
+  } else if (::if_nametoindex(settings_.interface.c_str()) != 0) {
+    // It is back, but not as it was.
     faults_.set(CanFault::interface_down, true, monotonic_now(), receiver.error().what);
   }
 }
