@@ -58,6 +58,9 @@ Eigen::MatrixXd Workbench::products(const std::vector<int>& a) const {
 }
 
 Eigen::MatrixXd Workbench::gram(const std::vector<int>& a, const std::vector<int>& b) const {
+  if (a.empty() || b.empty())
+    return Eigen::MatrixXd(static_cast<Eigen::Index>(a.size()),
+                           static_cast<Eigen::Index>(b.size()));
   const Eigen::MatrixXd left = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a));
   const Eigen::MatrixXd right = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, b));
   return left.transpose() * right -
@@ -155,6 +158,7 @@ Workbench Workbench::given(std::span<const Term> terms) const {
 }
 
 Workbench::Estimate Workbench::estimate(std::span<const Term> terms) const {
+  if (terms.empty()) return {{}, {}, std::max(yy_, 1e-12) / nu_};
   const auto [columns, D] = unfold(terms);
   const Eigen::MatrixXd H =
       Eigen::MatrixXd::Identity(D.size(), D.size()) +
