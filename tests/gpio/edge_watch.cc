@@ -69,11 +69,16 @@ TEST_F(EdgeWatchTest, PutsAClosingThatWasReadTooLateAtItsStamp) {
   EXPECT_EQ(watch.lost(), 1u);
 }
 
-TEST_F(EdgeWatchTest, DoesNotTrustTheStampAfterAFullQueue) {
+/// As many edges from 2 s on as the kernel's queue holds, 10 ns apart.
+std::vector<LineEvent> full_queue() {
   std::vector<LineEvent> full;
   for (std::size_t i = 0; i < EdgeWatch::kQueue; ++i)
     full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
-  add(full);
+  return full;
+}
+
+TEST_F(EdgeWatchTest, DoesNotTrustTheStampAfterAFullQueue) {
+  add(full_queue());
   EXPECT_TRUE(watch.suspicious()) << "to be looked at soon";
   EXPECT_EQ(watch.lost(), 1u) << "two, or any even number, would not show in the level";
   EXPECT_THAT(watch.trouble(now), HasSubstr("some are lost"));
@@ -86,9 +91,7 @@ TEST_F(EdgeWatchTest, DoesNotTrustTheStampAfterAFullQueue) {
 }
 
 TEST_F(EdgeWatchTest, CountsWhatAFullQueueHidesOnceHoweverItShows) {
-  std::vector<LineEvent> full;
-  for (std::size_t i = 0; i < EdgeWatch::kQueue; ++i)
-    full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
+  std::vector<LineEvent> full = full_queue();
   add(full);
   const Nanoseconds opens = 2 * kSecond + kMillisecond;
   EXPECT_THAT(add({{opens, false}}),
@@ -107,10 +110,7 @@ TEST_F(EdgeWatchTest, CountsWhatAFullQueueHidesOnceHoweverItShows) {
 }
 
 TEST_F(EdgeWatchTest, TrustsTheNextStampOnceTheLevelWasFoundRightAfterAFullQueue) {
-  std::vector<LineEvent> full;
-  for (std::size_t i = 0; i < EdgeWatch::kQueue; ++i)
-    full.push_back({2 * kSecond + static_cast<Nanoseconds>(i) * 10, i % 2 == 0});
-  add(full);
+  add(full_queue());
   EXPECT_THAT(check(false), IsEmpty());
   EXPECT_FALSE(watch.suspicious());
   EXPECT_THAT(add({{3 * kSecond, true}}), ElementsAre(Seen{3 * kSecond, true, true}));
