@@ -6,9 +6,8 @@
 
 namespace selfcal {
 
-/// For the verdict and the cause most easily taken for it: each kind of further rows (another
-/// payload, the other side of approach, another speed, the first poses again at the end, the joints
-/// elsewhere) tried on paper. What a cause of the estimated size would leave when explained by the
+/// For the verdict and the cause most easily taken for it: each kind of further rows tried on
+/// paper. What a cause of the estimated size would leave when explained by the
 /// other one says how sure one would then be. The best ones, at most three; empty when nothing is
 /// confounded.
 std::vector<NextStep> next_steps(const View& view, const DataSet& data, const Diagnosis& diagnosis);
