@@ -1,4 +1,5 @@
 // selfcal identify DATASET: identifies, tells, and writes result.json and calibrated.robot.yaml.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -42,16 +43,36 @@ Result<void> write(const Arguments& arguments, const Robot& robot, const Solutio
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }
 
-/// The robot of a data set with the effects that are asked for, or why not.
+/// The entries of the effects that `robot` has, but for those that are asked for anew.
+std::vector<Node> kept_effects(const Robot& robot, const std::vector<std::string>& asked) {
+  std::vector<Node> entries;
+  const Eigen::VectorXd all = values(robot);
+  const std::vector<const Effect*> effects = effects_of(robot);
+  Eigen::Index left = 0;
+  for (const Effect* effect : effects)
+    left += static_cast<Eigen::Index>(effect->parameters().size());
+  for (const Effect* effect : effects) {
+    const auto own = static_cast<Eigen::Index>(effect->parameters().size());
+    const std::string name(effect->name());
+    if (!std::ranges::count(asked, name) && !std::ranges::count(asked, name + "@" + effect->at()))
+      entries.push_back(effect->describe(all.segment(all.size() - left, own)));
+    left -= own;
+  }
+  return entries;
+}
+
+/// The robot of a data set with the effects that are asked for beside its own, or why not.
 tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
     std::shared_ptr<const Robot> robot, const DataSet& data, const Arguments& arguments) {
   if (arguments.effects.empty()) return robot;
-  const ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
+  ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
   if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
   Problems problems;
   const auto geometry = geometry_of(robot);
+  std::vector<Node> entries = kept_effects(*robot, arguments.effects);
+  entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
   std::shared_ptr<const Robot> corrected =
-      correct(geometry, chosen.entries, site_of(*geometry, data), problems);
+      correct(geometry, entries, site_of(*geometry, data), problems);
   if (!corrected) return tl::unexpected(problems.list.front());
   return corrected;
 }

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "constraints/data_set.h"
@@ -107,6 +109,26 @@ TEST_F(Program, HoldsWhatTheUserFixes) {
       EXPECT_EQ(p["status"], "fixed");
       EXPECT_EQ(p["value"], p["nominal"]);
     }
+}
+
+TEST_F(Program, KeepsTheEffectsOfTheRobotsFileBesideThoseAskedFor) {
+  const std::string data = simulated();
+  std::ofstream(data + "/rx90.robot.yaml", std::ios::app)
+      << "effects:\n"
+         "  - {effect: joint_coupling, at: j5, from: j4, kappa_j4: 1.0e-4}\n"
+         "  - {effect: transmission_error, at: j2, waves: [3], sin3: 1.0e-4, cos3: 0}\n";
+  const Ran ran = selfcal_run(
+      "identify " + data + " --effects transmission_error@j2 --effects joint_coupling@j3 --json",
+      true);
+  const auto json = nlohmann::json::parse(ran.out);
+  std::set<std::string> effects;
+  for (const auto& p : json["parameters"])
+    EXPECT_TRUE(effects.insert(p["name"]).second) << p["name"] << " is there twice";
+  EXPECT_TRUE(effects.contains("j5.kappa_j4"));
+  EXPECT_TRUE(std::ranges::any_of(
+      effects, [](const std::string& name) { return name.starts_with("j3.kappa_"); }));
+  EXPECT_TRUE(std::ranges::any_of(
+      effects, [](const std::string& name) { return name.starts_with("j2.sin"); }));
 }
 
 TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
