@@ -8,6 +8,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <limits>
 
 namespace selfcal {
 namespace {
@@ -67,6 +68,21 @@ double chi_square_exceeds(double value, double freedom) {
   if (!(freedom > 0)) return 1;
   return boost::math::cdf(
       boost::math::complement(boost::math::chi_squared_distribution<double>(freedom), value));
+}
+
+double log_chi_square_below(double value, double freedom) {
+  namespace policies = boost::math::policies;
+  // Asked for by the million: not in long double.
+  using Fast =
+      boost::math::chi_squared_distribution<double,
+                                            policies::policy<policies::promote_double<false>>>;
+  const double below = boost::math::cdf(Fast(freedom), value);
+  if (below > std::numeric_limits<double>::min()) return std::log(below);
+  // The incomplete gamma function's series, which far below its mean converges fast.
+  const double a = freedom / 2, x = value / 2;
+  double sum = 1, term = 1;
+  for (double k = 1; term > 1e-12 * sum; ++k) sum += term *= x / (a + k);
+  return a * std::log(x) - x - std::lgamma(a + 1) + std::log(sum);
 }
 
 double f_exceeds(double value, double upper_freedom, double lower_freedom) {

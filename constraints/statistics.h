@@ -9,6 +9,9 @@ namespace selfcal {
 double chi_quantile(int freedom, double probability);
 /// Probability that a chi-square variable of `freedom` (any positive number) exceeds `value`.
 double chi_square_exceeds(double value, double freedom);
+/// Logarithm of the probability that it stays below `value` (positive), also where that is too
+/// small for a number.
+double log_chi_square_below(double value, double freedom);
 /// Probability that an F variable exceeds `value`.
 double f_exceeds(double value, double upper_freedom, double lower_freedom);
 

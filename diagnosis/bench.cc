@@ -80,7 +80,7 @@ Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Cand
 void Bench::agree(int s) {
   for (int i = 0; i < kAgreements; ++i) {
     double best = workbenches_[s].log_evidence({});
-    double variance = workbenches_[s].total() / workbenches_[s].freedom();
+    double variance = workbenches_[s].estimate({}).variance;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
       if (!seen_[c]) continue;
       const Single single = weigh(workbenches_[s], c);

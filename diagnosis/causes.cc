@@ -188,13 +188,16 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   char text[200];
   if (verdict.effect == "none") {
     const bool noise = diagnosis.p_value > DiagnosisOptions{}.name_below_p;
-    std::snprintf(text, sizeof text,
-                  noise
-                      ? "no cause is named: noise alone explains what calibration leaves (as much "
-                        "is found in %.2g of resampled rows)"
-                      : "no cause is named: none is probable enough, though resampled rows show "
-                        "as much in %.2g of cases only",
-                  diagnosis.p_value);
+    if (noise)
+      std::snprintf(text, sizeof text,
+                    "no cause is named: noise alone explains what calibration leaves (as much is "
+                    "found in %.2g of resampled rows)",
+                    diagnosis.p_value);
+    else
+      std::snprintf(text, sizeof text,
+                    "no cause is named: what calibration leaves may be noise (probability %.2g), "
+                    "though resampled rows show as much in %.2g of cases only",
+                    verdict.probability, diagnosis.p_value);
     return text;
   }
   if (verdict.effect == "unknown")

@@ -174,7 +174,7 @@ class Diagnostician {
     result_.values = closing.after.fitted.state.xi;
     result_.converged = view_.adjusted().fitted.converged && closing.after.fitted.converged;
     close_each();
-    result_.warnings = warnings_of(view_, closing.after);
+    result_.warnings = warnings_of(view_, data_, closing.after);
   }
 
   /// What each of the probable causes would close alone.
@@ -226,6 +226,8 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   }
   Diagnosis diagnosis = Diagnostician(robot, data, options, progress).run();
   if (!diagnosis.problem.empty()) return diagnosis;
+  if (std::string own = warning_of_own_effects(*robot); !own.empty())
+    diagnosis.warnings.push_back(std::move(own));
   if (diagnosis.judged.empty()) judge_by_folds(robot, data, options, progress, diagnosis);
   if (std::string warning = warning_of_gap(diagnosis); !warning.empty())
     diagnosis.warnings.push_back(std::move(warning));

@@ -42,6 +42,17 @@ std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
   return noise;
 }
 
+std::vector<Scale> declared_noise(const DataSet& data) {
+  std::vector<Scale> declared;
+  for (const Set& set : data.sets) declared.push_back({set.noise, set.noise_angle});
+  std::map<std::pair<int, int>, int> visits;  // set, repeat
+  for (int row = 0; row < data.rows.rows() && !data.rows.repeat.empty(); ++row)
+    if (data.rows.repeat[row] >= 0 && !data.rows.check[row] &&
+        ++visits[{data.rows.set[row], data.rows.repeat[row]}] > 1)
+      declared[static_cast<size_t>(data.rows.set[row])] = {0, 0};
+  return declared;
+}
+
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most) {
   const double step = std::max(1.0, equations / most);
   std::vector<char> take(static_cast<size_t>(rows.rows()), 0);

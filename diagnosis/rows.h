@@ -14,6 +14,9 @@ inline constexpr double kMostWeighed = 720;
 /// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
 /// since the set that holds the cause would otherwise be taken for a noisy one. By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
+/// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
+/// repeats of the rows tell what the noise really is.
+std::vector<Scale> declared_noise(const DataSet& data);
 
 /// By row, 1 where it takes part: of rows with more than `most` of `equations` every so many
 /// configurations, with all their repeats; none that are kept aside to judge.

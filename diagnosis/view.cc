@@ -47,6 +47,7 @@ View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const Diagno
   all_equations_ = std::make_unique<Equations>(*everything_, data, Use::fit);
   const Fit& fitted = adjusted_.fitted;
   noise_ = pooled_noise(data, fitted);
+  bound_noise();
   all_ = all_equations_->dense(
       extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
       std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
@@ -68,6 +69,21 @@ View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const Diagno
   }
 }
 
+void View::bound_noise() {
+  const std::vector<Scale> declared = declared_noise(data_);
+  for (size_t s = 0; s < noise_.size(); ++s) {
+    if (declared[s].length > noise_[s].length) quieter_.push_back(static_cast<int>(s));
+    noise_[s] = {std::max(noise_[s].length, declared[s].length),
+                 std::max(noise_[s].angle, declared[s].angle)};
+  }
+  double sum = 0, rows = 0;
+  for (const RowResidual& row : adjusted_.fitted.at.residuals) {
+    sum += std::pow(declared[row.set].length / noise_[row.set].length, 2);
+    rows += 1;
+  }
+  least_ = rows > 0 ? sum / rows : 0;
+}
+
 void View::weigh(double most) {
   weighed_ = weighed_rows(data_.rows, static_cast<double>(all_.row.size()), most);
 }
@@ -87,6 +103,7 @@ Whitened View::of(const DenseEquations& rows) const {
   out.y = rows.y / scale_;
   out.weight = weight_;
   out.pull = pull_;
+  out.least = least_ / (scale_ * scale_);
   return out;
 }
 

@@ -47,6 +47,9 @@ class View {
   std::vector<Scale> noise_of_sets() const;
   /// 1 sigma of one scalar (m), pooled over the sets.
   double noise() const;
+  /// Sets whose rows the geometry meets better than their data sheet's noise allows, with no
+  /// repeats that would tell it better.
+  const std::vector<int>& quieter() const { return quieter_; }
 
   /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of every
   /// row, put aside or not, when fitted to the kept ones; whitened at the current scale.
@@ -62,6 +65,8 @@ class View {
 
  private:
   Whitened of(const DenseEquations& rows) const;
+  /// Takes no noise for less than its data sheet says, unless repeats tell.
+  void bound_noise();
 
   const DataSet& data_;
   double most_rejected_;
@@ -74,10 +79,12 @@ class View {
   std::vector<int> columns_;  ///< of A, in all_.W
   Eigen::VectorXd weight_, pull_;
   DenseEquations all_;
+  std::vector<int> quieter_;
   std::vector<Scale> noise_;     ///< by set, at a scale of one
   std::vector<char> weighed_;    ///< by row: takes part in choosing the causes
   std::vector<char> put_aside_;  ///< by row of the data set
   double scale_ = 1;
+  double least_ = 0;  ///< variance of the noise, at least, at a scale of one
 };
 
 }  // namespace selfcal

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "diagnosis/causes.h"
 #include "diagnosis/diagnosis.h"
+#include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
@@ -32,7 +34,27 @@ std::string of_gears(const View& view) {
          gears;
 }
 
+std::string of_noise(const View& view, const DataSet& data) {
+  std::string sets;
+  for (const int s : view.quieter())
+    sets += (sets.empty() ? "" : ", ") + data.sets[s].name + " (" +
+            format_number(1e3 * data.sets[s].noise) + " mm)";
+  if (sets.empty()) return {};
+  return "the noise is taken from the data sheet, of " + sets +
+         ": calibration leaves less there, and no row is repeated that would tell what it really "
+         "is";
+}
+
 }  // namespace
+
+std::string warning_of_own_effects(const Robot& robot) {
+  std::string names;
+  for (const Effect* effect : effects_of(robot))
+    names += (names.empty() ? "" : ", ") + label(std::string(effect->name()), effect->at());
+  if (names.empty()) return {};
+  return "the effects in the robot's file are not used (" + names +
+         "): the diagnosis begins at the geometry alone and finds anew what is there";
+}
 
 std::string warning_of_gap(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
@@ -53,9 +75,10 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   return {};
 }
 
-std::vector<std::string> warnings_of(const View& view, const Adjusted& after) {
+std::vector<std::string> warnings_of(const View& view, const DataSet& data, const Adjusted& after) {
   std::vector<std::string> list;
-  for (const std::string& each : {of_fits(view.adjusted(), after), of_gears(view)})
+  for (const std::string& each :
+       {of_fits(view.adjusted(), after), of_gears(view), of_noise(view, data)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -95,6 +96,19 @@ std::pair<std::vector<int>, Eigen::VectorXd> Workbench::unfold(std::span<const T
           Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))};
 }
 
+double Workbench::of_noise(double left) const {
+  left = std::max(left, 1e-300);
+  const double log = -nu_ / 2 * std::log(left);
+  if (least() <= 0) return log;
+  const double value = left / least();
+  const bool far_above = value > nu_ + 10 * std::sqrt(2 * nu_) + 50;  // where the probability is 1
+  return far_above ? log : log + log_chi_square_below(value, nu_);
+}
+
+double Workbench::variance(double left) const {
+  return std::max(std::max(left, 1e-12) / nu_, least());
+}
+
 double Workbench::log_evidence(std::span<const Term> terms) const {
   Small s;
   for (const Term& term : terms)
@@ -123,7 +137,7 @@ double Workbench::log_evidence(std::span<const Term> terms) const {
     explained += s.z[i] * s.z[i];
     half_log_det += std::log(s.L[i][i]);
   }
-  return constant_ - half_log_det - nu_ / 2 * std::log(std::max(yy_ - explained, 1e-300));
+  return constant_ - half_log_det + of_noise(yy_ - explained);
 }
 
 double Workbench::log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const {
@@ -132,8 +146,7 @@ double Workbench::log_evidence(std::span<const Term> terms, const Eigen::MatrixX
                             Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
   const double explained = solve_lower(L, D.cwiseProduct(g_(columns))).squaredNorm();
-  return constant_ - L.diagonal().array().log().sum() -
-         nu_ / 2 * std::log(std::max(yy_ - explained, 1e-300));
+  return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - explained);
 }
 
 Workbench Workbench::given(std::span<const Term> terms) const {
@@ -158,7 +171,7 @@ Workbench Workbench::given(std::span<const Term> terms) const {
 }
 
 Workbench::Estimate Workbench::estimate(std::span<const Term> terms) const {
-  if (terms.empty()) return {{}, {}, std::max(yy_, 1e-12) / nu_};
+  if (terms.empty()) return {{}, {}, variance(yy_)};
   const auto [columns, D] = unfold(terms);
   const Eigen::MatrixXd H =
       Eigen::MatrixXd::Identity(D.size(), D.size()) +
@@ -168,7 +181,7 @@ Workbench::Estimate Workbench::estimate(std::span<const Term> terms) const {
   const Eigen::VectorXd g = D.cwiseProduct(g_(columns));
   estimate.mean = D.cwiseProduct(inverse * g);
   estimate.covariance = D.asDiagonal() * inverse * D.asDiagonal();
-  estimate.variance = std::max(yy_ - g.dot(inverse * g), 1e-12) / nu_;
+  estimate.variance = variance(yy_ - g.dot(inverse * g));
   return estimate;
 }
 

@@ -5,6 +5,7 @@
 // that no known effect explains, of covariance s^2 kappa^2 K. For a set S of candidates with prior
 // v ~ N(0, s^2 V) the integral over a, v and s (prior 1/s) is
 //   log p(y | S) = const(K) - 1/2 log|I + V G| - nu/2 log Q,   Q = y'My - g'(V^-1 + G)^-1 g
+// and where s is s0 at least, + log P(chi-square of nu freedoms < Q / s0^2),
 // with M the projection beyond the whitened geometry, G = C'MC, g = C'My. g is made once for each K
 // and y, and of G, which is far larger than the rows, only the blocks of what is weighed alone; a
 // set of several adds the products between them. nu counts what the rows alone determine; the noise
@@ -25,6 +26,7 @@ struct Whitened {
   Eigen::VectorXd pull;    ///< by column of A: weight times (centre - value)
   Eigen::MatrixXd C;       ///< equations x effects' parameters
   Eigen::VectorXd y;       ///< equations
+  double least = 0;        ///< variance of the noise, at least: what a data sheet says of it
 };
 
 /// Noise, and one structure of what no known effect explains.
@@ -98,6 +100,13 @@ class Workbench {
   /// a by all columns of G.
   Eigen::MatrixXd products(const std::vector<int>& a) const;
   const double* block(int group) const { return &kept_[fixed_->at[group]]; }
+  /// s^2 at least.
+  double least() const { return fixed_->rows->least / fixed_->structure.noise; }
+  /// The part of the log evidence that the noise decides, where `left` squares (Q) are not
+  /// explained.
+  double of_noise(double left) const;
+  /// s^2 where `left` squares are not explained.
+  double variance(double left) const;
 
   std::shared_ptr<const Fixed> fixed_;
   std::vector<double> kept_;  ///< the groups' blocks of G, one after the other

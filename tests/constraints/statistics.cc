@@ -39,6 +39,17 @@ TEST(ChiSquareExceeds, IsThePublishedLevelAtThePublishedQuantile) {
   EXPECT_EQ(chi_square_exceeds(5, 0), 1);
 }
 
+TEST(Statistics, KnowTheLogarithmOfAProbabilityTooSmallForANumber) {
+  EXPECT_NEAR(log_chi_square_below(3.8415, 1), std::log(0.95), 1e-5);
+  // Of four freedoms: 1 - (1 + x / 2) exp(-x / 2).
+  EXPECT_NEAR(log_chi_square_below(6, 4), std::log(1 - 4 * std::exp(-3.0)), 1e-12);
+  // Far below its mean the series begins with (x / 2)^(k / 2) exp(-x / 2) / Gamma(k / 2 + 1), and
+  // goes on by x / (k + 2), of which the next would be 3e-7 here.
+  const double x = 1, k = 1800;
+  EXPECT_NEAR(log_chi_square_below(x, k),
+              k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1) + x / (k + 2), 1e-6);
+}
+
 TEST(FExceeds, IsThePublishedLevelAtThePublishedQuantile) {
   EXPECT_NEAR(f_exceeds(3.3258, 5, 10), 0.05, 1e-5);
   EXPECT_NEAR(f_exceeds(10.0443, 1, 10), 0.01, 1e-5);

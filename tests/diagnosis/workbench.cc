@@ -70,6 +70,36 @@ TEST(Workbench, GivesTheEvidenceThatTheWholeIntegralGives) {
               kRounding);
 }
 
+/// log of the integral over s of s^-(nu + 1) exp(-Q / 2 s^2) from `least` on, over the same from 0
+/// on in closed form: by the trapezium rule in log s.
+double share_of_large_noise(double Q, double nu, double least) {
+  double above = 0, all = 0;
+  constexpr double kStep = 1e-5;
+  for (double log_s = -8; log_s < 8; log_s += kStep) {
+    const double each = std::exp(-nu * log_s - Q / 2 * std::exp(-2 * log_s));
+    all += each;
+    if (std::exp(log_s) >= least) above += each;
+  }
+  return std::log(above / all);
+}
+
+TEST(Workbench, TakesNoNoiseForLessThanItsDataSheetSays) {
+  Case one;
+  const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
+  const Workbench free = one.bench();
+  const double nu = free.freedom();
+  const double left = nu * free.estimate(both).variance;
+  for (const double least : {0.5, 1.0, 2.0}) {
+    one.rows.least = least * least;
+    const Workbench bound = one.bench();
+    EXPECT_NEAR(bound.log_evidence(none) - free.log_evidence(none),
+                share_of_large_noise(free.total(), nu, least), 1e-3);
+    EXPECT_NEAR(bound.log_evidence(both) - free.log_evidence(both),
+                share_of_large_noise(left, nu, least), 1e-3);
+    EXPECT_GE(bound.estimate(both).variance, least * least);
+  }
+}
+
 TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
   Case one;
   std::mt19937_64 random(5);

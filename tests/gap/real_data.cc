@@ -47,6 +47,23 @@ INSTANTIATE_TEST_SUITE_P(Sets, RealGap,
                            return name;
                          });
 
+class NothingMore : public testing::TestWithParam<const char*> {};
+
+TEST_P(NothingMore, IsToBeLearnedFromRowsThatAreFewAndNoisy) {
+  SELFCAL_NEED_SHARED();
+  auto loaded = load_data_set(shared_dir() / "data" / GetParam());
+  ASSERT_TRUE(loaded);
+  const Diagnosis diagnosis = diagnosed(*loaded, GetParam());
+  EXPECT_EQ(diagnosis.verdict.effect, "none");
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, NothingMore, testing::Values("talos-contact", "ur10-mocap"),
+                         [](const auto& each) {
+                           std::string name = each.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
 /// Transmission error of each joint at the readings `q` (rows x joints, rad), without the first
 /// waves, which the geometry shares.
 Eigen::MatrixXd profiles(const Diagnosis& diagnosis, const Eigen::MatrixXd& q) {
