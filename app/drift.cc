@@ -25,7 +25,7 @@ const char* shown_unit(Quantity quantity) {
 
 }  // namespace
 
-std::vector<Drift> drifts(const std::vector<Calibration>& calibrations, std::size_t most) {
+std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, std::size_t most) {
   if (calibrations.empty()) return {};
   const std::vector<Parameter>& parameters = calibrations.front().robot->parameters();
   std::vector<Drift> all;
@@ -34,7 +34,7 @@ std::vector<Drift> drifts(const std::vector<Calibration>& calibrations, std::siz
     drift.name = parameters[p].name + " " + parameters[p].frame + "." + parameters[p].field;
     drift.quantity = parameters[p].quantity;
     double before = parameters[p].nominal;
-    for (const Calibration& calibration : calibrations) {
+    for (const AcceptedParameters& calibration : calibrations) {
       const Parameter& now = calibration.robot->parameters()[p];
       drift.since_factory.push_back(now.value - now.nominal);
       drift.since_last.push_back(now.value - before);
@@ -47,7 +47,7 @@ std::vector<Drift> drifts(const std::vector<Calibration>& calibrations, std::siz
   return all;
 }
 
-std::string drift_table(const std::vector<Calibration>& calibrations,
+std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
                         const std::vector<Drift>& drifts) {
   const std::size_t count = calibrations.size();
   const std::size_t first = count > kMostColumns ? count - kMostColumns : 0;

@@ -11,7 +11,7 @@
 namespace selfcal {
 
 /// Parameters that were accepted, of one robot.
-struct Calibration {
+struct AcceptedParameters {
   std::int64_t session = 0, unix_ms = 0;
   std::shared_ptr<const Robot> robot;
 };
@@ -27,10 +27,10 @@ struct Drift {
 /// The `most` parameters that moved most after the first calibration, or in it when it is the only
 /// one: 1 mm counts as 1 mrad and as a ratio of 0.001. Those that never moved are left out.
 /// `calibrations` are of one machine, oldest first.
-std::vector<Drift> drifts(const std::vector<Calibration>& calibrations, std::size_t most);
+std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, std::size_t most);
 
 /// A table in mm, mrad and 1e-3, a column for each of the newest calibrations.
-std::string drift_table(const std::vector<Calibration>& calibrations,
+std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
                         const std::vector<Drift>& drifts);
 
 }  // namespace selfcal

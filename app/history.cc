@@ -64,10 +64,10 @@ Result<std::vector<Past>> read_past(Store& store, int newest) {
 }
 
 /// Accepted parameters, oldest first; those of another machine than the newest's are left out.
-Result<std::vector<Calibration>> read_calibrations(Store& store) {
+Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
   const auto results = store.results(kAll);
   if (!results) return tl::unexpected(results.error());
-  std::vector<Calibration> newest_first;
+  std::vector<AcceptedParameters> newest_first;
   for (const ResultRecord& each : *results) {
     if (each.decision != "applied") continue;
     const auto result = store.result(each.session);

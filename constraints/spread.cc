@@ -22,7 +22,7 @@ class Columns {
 
   /// That of the candidate's surface or socket; two faces that are a known distance apart are one
   /// place, and have one normal though their ways out are opposite.
-  const Place& of(const Candidate& candidate) {
+  const Place& of(const PossibleTouch& candidate) {
     const int reference = sets_[candidate.set].reference;
     const auto [found, added] =
         at_.try_emplace({reference < 0 ? candidate.set : reference, candidate.group},
@@ -47,8 +47,8 @@ Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
 /// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket).
 std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& xi,
                                      const std::vector<Set>& sets,
-                                     const std::vector<Candidate>& candidates, Columns& columns) {
-  for (const Candidate& each : candidates) columns.of(each);
+                                     const std::vector<PossibleTouch>& candidates, Columns& columns) {
+  for (const PossibleTouch& each : candidates) columns.of(each);
   const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
   std::vector<Eigen::MatrixXd> rows;
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, static_cast<int>(robot.joints().size())), 0};
@@ -60,7 +60,7 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
       block.q.row(lane) = candidates[first + std::min(lane, block.count - 1)].q.transpose().array();
     robot.locate(block, xi, Body::endpoint, X, &psi);
     for (int lane = 0; lane < block.count; ++lane) {
-      const Candidate& each = candidates[first + lane];
+      const PossibleTouch& each = candidates[first + lane];
       Eigen::MatrixXd moves(3, parameters);
       for (int c = 0; c < 3; ++c) moves.row(c) = psi.row(c * kLanes + lane);
       const Place& own = columns.of(each);
@@ -92,7 +92,7 @@ double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; 
 
 std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,
-                              const std::vector<Candidate>& candidates, std::vector<int> counts) {
+                              const std::vector<PossibleTouch>& candidates, std::vector<int> counts) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
   Eigen::MatrixXd C = prior(robot, columns.end());
@@ -128,7 +128,7 @@ std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
 
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
-                                 const std::vector<Candidate>& touches) {
+                                 const std::vector<PossibleTouch>& touches) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, touches, columns);
   Eigen::MatrixXd C = prior(robot, columns.end());

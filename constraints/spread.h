@@ -14,7 +14,7 @@
 namespace selfcal {
 
 /// A touch that could be made.
-struct Candidate {
+struct PossibleTouch {
   Eigen::VectorXd q;        ///< readings in the contact
   int set = 0, group = -1;  ///< group: of sockets and nests
   Eigen::Vector3d outward;  ///< of a surface (world, unit)
@@ -27,12 +27,12 @@ double touch_noise(const Set& set);
 /// as there are. `xi` are the parameters that are believed.
 std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,
-                              const std::vector<Candidate>& candidates, std::vector<int> counts);
+                              const std::vector<PossibleTouch>& candidates, std::vector<int> counts);
 
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
-                                 const std::vector<Candidate>& touches);
+                                 const std::vector<PossibleTouch>& touches);
 
 }  // namespace selfcal

@@ -135,7 +135,7 @@ std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
                                  const std::vector<TouchTarget>& targets,
                                  const std::vector<std::vector<PlannedTouch>>& usable) {
-  std::vector<Candidate> candidates;
+  std::vector<PossibleTouch> candidates;
   std::vector<const PlannedTouch*> touches;
   std::vector<int> counts(sets.size(), 0);
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -240,7 +240,7 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
 EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
                              const TouchPlan& plan) {
-  std::vector<Candidate> touches;
+  std::vector<PossibleTouch> touches;
   for (const TouchTarget& target : targets)
     for (const PlannedTouch& each : plan.touches)
       if (each.set == target.set && !each.check)

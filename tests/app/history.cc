@@ -27,13 +27,13 @@ std::shared_ptr<const Robot> moved(int index, double change) {
   return robot_of(robot_text(*robot, xi), "moved").value();
 }
 
-Calibration calibration(std::int64_t session, int index, double change) {
+AcceptedParameters calibration(std::int64_t session, int index, double change) {
   return {session, kFirst + session * kDay, moved(index, change)};
 }
 
 TEST(Drifts, ComeWithTheOneThatMovedMostFirst) {
   // Parameter 3 jumps at the first calibration and stays; parameter 5 comes and goes after it.
-  const std::vector<Calibration> all = {calibration(1, 3, 2e-3), calibration(2, 5, 1e-3),
+  const std::vector<AcceptedParameters> all = {calibration(1, 3, 2e-3), calibration(2, 5, 1e-3),
                                         calibration(3, 5, 1.5e-3)};
   const std::vector<Drift> found = drifts(all, 10);
 
