@@ -25,9 +25,7 @@ class Regression {
       : view_(robot, data, options_, {}) {
     const Whitened rows = view_.whitened();
     const Eigen::Index n = rows.A.rows(), k = rows.A.cols();
-    Eigen::MatrixXd onto = Eigen::MatrixXd::Zero(n + k, k);
-    onto.topRows(n) = rows.A;
-    onto.bottomRows(k).diagonal() = rows.weight;
+    const Eigen::MatrixXd onto = over_priors(rows.A, rows.weight);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + k, rows.C.cols() + 1);
     M.topLeftCorner(n, rows.C.cols()) = rows.C;
     M.col(rows.C.cols()) << rows.y, rows.pull;
@@ -91,7 +89,7 @@ TrialCauseNamed named(const Candidate& candidate, double probability) {
 
 /// The first cause is the verdict.
 TrialAnswer answer(std::vector<TrialCauseNamed> causes, double none) {
-  if (causes.empty()) causes.push_back({"none", {}, none});
+  if (causes.empty()) causes.push_back({kNone, {}, none});
   return {causes.front(), causes};
 }
 

@@ -49,7 +49,11 @@ class Maker {
       : robot_(robot), data_(data), site_(site) {}
 
   Candidates run() {
-    for (const Joint& joint : robot_.joints()) of_joint(joint);
+    for (const Joint& joint : robot_.joints()) {
+      of_joint(joint);
+      ++joint_;
+    }
+    joint_ = -1;
     of_time();
     of_touch();
     spread_priors();
@@ -63,9 +67,11 @@ class Maker {
     candidate.effect = entries.front().find("effect")->text;
     const Node* at = entries.front().find("at");
     candidate.at = at ? at->text : "";
+    candidate.joint = joint_;
     Problems problems;
     for (size_t i = 0; i < entries.size(); ++i) {
       const auto effect = make_effect(entries[i], robot_, site_, problems);
+      if (i == 0 && effect) candidate.needs = effect->needs();
       for (size_t k = 0; effect && k < effect->parameters().size(); ++k)
         (i == 0 ? candidate.main : candidate.slack).push_back(parameters_++);
       all_.entries.push_back(entries[i]);
@@ -113,7 +119,8 @@ class Maker {
 
   /// The waves 1 to `count` of one joint as one shape; `first` is the one of a single wave.
   Candidate together(size_t first, int count) const {
-    Candidate sum{.effect = all_.list[first].effect, .at = all_.list[first].at};
+    const Candidate& one = all_.list[first];
+    Candidate sum{.effect = one.effect, .at = one.at, .joint = one.joint, .needs = one.needs};
     std::vector<double> waves;
     for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
       waves.push_back(static_cast<double>(i + 1));
@@ -208,6 +215,7 @@ class Maker {
   const Site& site_;
   Candidates all_;
   int parameters_ = 0;
+  int joint_ = 0;  ///< whose candidates are made; -1 after the last one
 };
 
 }  // namespace

@@ -45,8 +45,8 @@ class Teller {
       confound(cause);
       list.push_back(std::move(cause));
     }
-    list.push_back({.effect = "none", .probability = posterior_.none});
-    list.push_back({.effect = "unknown", .probability = std::min(posterior_.unknown, 1.0)});
+    list.push_back({.effect = kNone, .probability = posterior_.none});
+    list.push_back({.effect = kUnknown, .probability = std::min(posterior_.unknown, 1.0)});
     std::sort(list.begin(), list.end(),
               [](const auto& a, const auto& b) { return a.probability > b.probability; });
     return list;
@@ -130,7 +130,7 @@ class Teller {
       }
       for (const int c : h.candidates) instead[{candidate(c).effect, candidate(c).at}] += p;
       if (bench_.structure(h.structure).kind > 0 && h.candidates.empty())
-        instead[{"unknown", ""}] += p;
+        instead[{kUnknown, ""}] += p;
     }
     for (const auto& [other, p] : instead)
       if (p > kConfounded * with) cause.confounded_with.push_back(label(other.first, other.second));
@@ -152,7 +152,7 @@ CauseResult with_look_alikes(const View& view, const Bench& bench, const Posteri
   double sum = 0;
   for (const Hypothesis& h : posterior.hypotheses) {
     bool any =
-        h.candidates.empty() && bench.structure(h.structure).kind > 0 && answers("unknown", "");
+        h.candidates.empty() && bench.structure(h.structure).kind > 0 && answers(kUnknown, "");
     for (const int c : h.candidates)
       any = any || answers(view.candidates().list[c].effect, view.candidates().list[c].at);
     if (any) sum += std::exp(h.log_weight);
@@ -186,7 +186,7 @@ Shares shares(const Bench& bench, const Posterior& posterior) {
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   const CauseResult& verdict = diagnosis.verdict;
   char text[200];
-  if (verdict.effect == "none") {
+  if (verdict.effect == kNone) {
     const bool noise = diagnosis.p_value > DiagnosisOptions{}.name_below_p;
     if (noise)
       std::snprintf(text, sizeof text,
@@ -200,7 +200,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                     verdict.probability, diagnosis.p_value);
     return text;
   }
-  if (verdict.effect == "unknown")
+  if (verdict.effect == kUnknown)
     return "there is structure that no known effect explains: look at the machine, or repeat some "
            "configurations to be sure of the noise";
   std::string words = verdict.effect;
@@ -228,16 +228,15 @@ std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
 
 CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
                         const std::vector<CauseResult>& causes, const DiagnosisOptions& options) {
-  const CauseResult unknown{.effect = "unknown", .probability = posterior.unknown};
+  const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
   if (posterior.none >= options.name_below_none)
-    return {.effect = "none", .probability = posterior.none};
+    return {.effect = kNone, .probability = posterior.none};
   const auto rank = [](const CauseResult& each) {
     return each.probability > 0.5 ? 1 + each.visible : each.probability;
   };
   const CauseResult* best = nullptr;
   for (const CauseResult& each : causes)
-    if (each.effect != "none" && each.effect != "unknown" && (!best || rank(each) > rank(*best)))
-      best = &each;
+    if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
   if (!best) return unknown;
   const CauseResult known = with_look_alikes(view, bench, posterior, *best);
   if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : known;

@@ -7,6 +7,7 @@
 
 #include "constraints/judgement.h"
 #include "constraints/statistics.h"
+#include "diagnosis/view.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
@@ -17,11 +18,8 @@ constexpr double kBeyond = 1.25;  ///< a judging row's prediction has an error o
 
 Adjusted adjusted_model(const Equations& equations, const std::vector<double>& effect_sigma,
                         const DiagnosisOptions& options) {
-  Options free;
-  free.most_rejected = options.most_rejected;
-  free.seed = options.seed;
+  Options free = geometry_options(options);
   free.effect_sigma = effect_sigma;
-  free.free = {"K*"};
   for (const Parameter& p : equations.robot().parameters())
     if (p.part == Part::effect) free.free.push_back(p.name);
   return adjust(equations, free, {});

@@ -18,8 +18,7 @@ bool moves_nothing(const View& view, const Candidate& candidate) {
 
 std::string why_not(const View& view, const Candidate& candidate) {
   if (!moves_nothing(view, candidate)) return "absorbed by calibration on these rows";
-  return candidate.effect.ends_with("compliance") ? "no torque acts about its axis"
-                                                  : "it moves nothing in these rows";
+  return "it moves nothing in these rows: it needs " + candidate.needs;
 }
 
 }  // namespace

@@ -88,15 +88,15 @@ class Diagnostician {
 
   void decide() {
     result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
-    if (result_.verdict.effect == "unknown") return;
+    if (result_.verdict.effect == kUnknown) return;
     // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
     const bool noise_does_as_well = result_.p_value > options_.name_below_p;
-    if (result_.verdict.effect != "none" && !noise_does_as_well) return;
+    if (result_.verdict.effect != kNone && !noise_does_as_well) return;
     if (posterior_.unknown > kSurelyUnknown)
-      result_.verdict = {.effect = "unknown", .probability = posterior_.unknown};
+      result_.verdict = {.effect = kUnknown, .probability = posterior_.unknown};
     else
       result_.verdict = {
-          .effect = "none",
+          .effect = kNone,
           .probability = std::max(posterior_.none, least_probability_of_none(result_.p_value))};
   }
 
@@ -141,11 +141,11 @@ class Diagnostician {
   /// same.
   Hypothesis believed() const {
     const std::string& named = result_.verdict.effect;
-    if (named == "none") return {};
+    if (named == kNone) return {};
     const auto effect = [&](int c) { return view_.candidates().list[c].effect; };
     for (const Hypothesis& h : posterior_.hypotheses)
       if (!h.candidates.empty() &&
-          (named == "unknown"
+          (named == kUnknown
                ? std::ranges::all_of(h.candidates,
                                      [&](int c) { return posterior_.family.at(effect(c)) > 0.5; })
                : std::ranges::any_of(h.candidates, [&](int c) { return effect(c) == named; })))

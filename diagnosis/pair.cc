@@ -9,17 +9,6 @@
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
-namespace {
-
-Options free_ratios(const DiagnosisOptions& options) {
-  Options free;
-  free.free = {"K*"};
-  free.most_rejected = options.most_rejected;
-  return free;
-}
-
-}  // namespace
-
 Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
            Between between, const DiagnosisOptions& options, const Progress& progress)
     : geometry_(std::move(geometry)),
@@ -27,7 +16,7 @@ Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const D
       first_rows_(before.rows.rows()),
       both_(merged(before, after)),
       equations_(*geometry_, both_, Use::fit) {
-  const Options free = free_ratios(options);
+  const Options free = geometry_options(options);
   noise_.assign(both_.sets.size(), {0, 0});
   rows_.assign(both_.sets.size(), 0);
   fit_alone(before, free, progress);
@@ -72,24 +61,15 @@ DenseEquations Pair::weighed(const std::vector<char>& put_aside) const {
 }
 
 Whitened Pair::whitened(const DenseEquations& rows) const {
-  std::vector<int> columns;
-  for (int c = 0; c < equations_.robot_columns(); ++c)
-    if (adjusted_.prior.free[c]) columns.push_back(c);
-  const auto free = static_cast<Eigen::Index>(columns.size());
-  for (Eigen::Index c = equations_.robot_columns(); c < rows.W.cols(); ++c)
-    columns.push_back(static_cast<int>(c));
+  Nuisance own = nuisance(adjusted_, equations_.robot_columns(), rows.W.cols());
   Whitened out;
-  out.A = rows.W(Eigen::all, columns);
+  out.A = rows.W(Eigen::all, own.columns);
   out.C = rows.W(Eigen::all, changes_.columns);
   for (Eigen::Index i = 0; i < out.C.rows(); ++i)
     if (rows.row[static_cast<size_t>(i)] < first_rows_) out.C.row(i).setZero();
   out.y = rows.y;
-  out.weight = out.pull = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()));
-  for (Eigen::Index i = 0; i < free; ++i) {
-    const int c = columns[static_cast<size_t>(i)];
-    out.weight[i] = 1 / adjusted_.prior.sigma[c];
-    out.pull[i] = out.weight[i] * (adjusted_.prior.centre[c] - adjusted_.fitted.state.xi[c]);
-  }
+  out.weight = std::move(own.weight);
+  out.pull = std::move(own.pull);
   return out;
 }
 
@@ -104,20 +84,11 @@ std::vector<char> Pair::far_rows(const DenseEquations& rows, const Hypothesis& c
   std::vector<int> with;
   for (const int c : changes.candidates)
     for (const int k : changes_.candidates.list[static_cast<size_t>(c)].main) with.push_back(k);
-  const Whitened some = whitened(rows), every = whitened(every_);
-  const Eigen::Index m = some.A.rows(), n = some.A.cols();
-  const auto k = static_cast<Eigen::Index>(with.size());
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m + n, n + k);
-  M.topLeftCorner(m, n) = some.A;
-  M.topRightCorner(m, k) = some.C(Eigen::all, with);
-  M.block(m, 0, n, n).diagonal() = some.weight;
-  Eigen::VectorXd z(m + n);
-  z << some.y, some.pull;
-  const Eigen::VectorXd x = least_squares(M, z);
-  const Eigen::VectorXd left =
-      every.y - every.A * x.head(n) - every.C(Eigen::all, with) * x.tail(k);
-  return selfcal::far_rows(every_, left, static_cast<double>(n + k), put_aside_.size(),
-                           most_rejected_);
+  const auto free = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(with.size()), HUGE_VAL);
+  const Whitened some = whitened(rows);
+  const Eigen::VectorXd left = left_of(whitened(every_), some, with, free);
+  return selfcal::far_rows(every_, left, static_cast<double>(some.A.cols() + free.size()),
+                           put_aside_.size(), most_rejected_);
 }
 
 }  // namespace selfcal

@@ -10,8 +10,8 @@
 namespace selfcal {
 namespace {
 
-constexpr double kNone = 0.25, kUnknown = 0.15;  ///< shares of the sessions
-constexpr std::array kVisible{0.5, 1.0, 2.0};    ///< over the noise
+constexpr double kWithNone = 0.25, kWithUnknown = 0.15;  ///< shares of the sessions
+constexpr std::array kVisible{0.5, 1.0, 2.0};            ///< over the noise
 
 double clamped_logit(double p) {
   p = std::clamp(p, 1e-6, 1 - 1e-6);
@@ -43,9 +43,9 @@ class Simulator {
       const Posterior posterior = bench_.search();
       const auto [answer, probability] = answered(posterior);
       stated.push_back({probability, answer == truth});
-      if (truth == "none") {
+      if (truth == kNone) {
         ++none;
-        practice.false_alarms += answer != "none";
+        practice.false_alarms += answer != kNone;
       } else {
         ++causes;
         practice.right += answer == truth;
@@ -61,8 +61,8 @@ class Simulator {
 
  private:
   std::pair<std::string, double> answered(const Posterior& posterior) const {
-    if (posterior.none >= options_.name_below_none) return {"none", posterior.none};
-    std::pair<std::string, double> best{"unknown", posterior.unknown};
+    if (posterior.none >= options_.name_below_none) return {kNone, posterior.none};
+    std::pair<std::string, double> best{kUnknown, posterior.unknown};
     for (const auto& [family, p] : posterior.family)
       if (p > best.second) best = {family, p};
     return best;
@@ -77,8 +77,8 @@ class Simulator {
 
   Eigen::VectorXd session(std::string& truth) {
     const double kind = std::generate_canonical<double, 53>(random_);
-    if (kind < kUnknown) {
-      truth = "unknown";
+    if (kind < kWithUnknown) {
+      truth = kUnknown;
       std::vector<int> known_size;
       for (int s = 0; s < bench_.structures(); ++s)
         if (bench_.structure(s).kind > 0 && bench_.structure(s).kappa > 1) known_size.push_back(s);
@@ -88,8 +88,8 @@ class Simulator {
     }
     const Structure& noise = bench_.structure(0);
     Eigen::VectorXd y = noise.root * normal(noise.root.rows());
-    truth = "none";
-    if (kind < kUnknown + kNone) return y;
+    truth = kNone;
+    if (kind < kWithUnknown + kWithNone) return y;
     const int c = drawn_cause();
     if (c < 0) return y;
     truth = view_.candidates().list[c].effect;

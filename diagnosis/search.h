@@ -7,6 +7,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,11 @@ struct Hypothesis {
   double log_weight = 0;      ///< evidence times prior, summed over sizes
   std::vector<double> sizes;  ///< most probable, by candidate
 };
+
+/// Answers that stand where an effect is named: what calibration leaves is noise, or structure that
+/// no known effect explains.
+inline constexpr const char kNone[] = "none", kUnknown[] = "unknown";
+inline bool names_effect(std::string_view answer) { return answer != kNone && answer != kUnknown; }
 
 using Cause = std::pair<std::string, std::string>;  ///< effect, at
 

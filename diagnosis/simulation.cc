@@ -49,7 +49,7 @@ std::vector<SharedCause> take_shared(std::vector<ShownCause>& robot,
 }
 
 std::string in_words(const std::string& effect, const std::string& where) {
-  if (effect == "unknown") return "structure that no known effect explains";
+  if (effect == kUnknown) return "structure that no known effect explains";
   std::string text = effect + (where.empty() ? "" : " at " + where);
   std::ranges::replace(text, '_', ' ');
   return text;
@@ -116,12 +116,11 @@ std::vector<std::string> sentences(const Differences& of) {
 std::vector<ShownCause> shown_causes(const Diagnosis& diagnosis, const DiagnosisOptions& options) {
   std::vector<ShownCause> list;
   const CauseResult& verdict = diagnosis.verdict;
-  if (verdict.effect == "none") return list;
-  if (verdict.effect == "unknown") list.push_back({"unknown", "", verdict.probability, {}, {}});
+  if (verdict.effect == kNone) return list;
+  if (verdict.effect == kUnknown) list.push_back({kUnknown, "", verdict.probability, {}, {}});
   if (diagnosis.p_value > options.name_below_p) return list;
   for (const CauseResult& each : diagnosis.candidates) {
-    if (each.effect == "none" || each.effect == "unknown" ||
-        (each.probability <= kShown && each.effect != verdict.effect))
+    if (!names_effect(each.effect) || (each.probability <= kShown && each.effect != verdict.effect))
       continue;
     std::vector<std::string> places = each.where;
     if (places.empty()) places.emplace_back();

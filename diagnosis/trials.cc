@@ -10,8 +10,6 @@
 namespace selfcal {
 namespace {
 
-bool is_named(const std::string& effect) { return effect != "none" && effect != "unknown"; }
-
 bool names(const TrialCauseNamed& cause, const std::string& effect) {
   if (cause.effect == effect) return true;
   return cause.probability <= kMostWhenConfounded &&
@@ -24,7 +22,7 @@ struct Trial {
   TrialTruth truth;
   std::optional<TrialAnswer> answer;
 
-  bool single() const { return is_named(truth.effect) && truth.second.empty(); }
+  bool single() const { return names_effect(truth.effect) && truth.second.empty(); }
   bool pair() const { return !truth.second.empty(); }
   bool says(const std::function<bool(const TrialAnswer&)>& what) const {
     return answer && what(*answer);
@@ -84,7 +82,7 @@ class Table {
     double answered = 0, told = 0;
     bool any = false;  // a method that says nothing of it has no score
     for (const Trial& trial : trials_) {
-      if (!is_named(trial.truth.effect) || !trial.truth.told_closed) continue;
+      if (!names_effect(trial.truth.effect) || !trial.truth.told_closed) continue;
       told += *trial.truth.told_closed;
       answered += trial.answer ? trial.answer->closed.value_or(0) : 0;
       any = any || (trial.answer && trial.answer->closed);
@@ -135,8 +133,8 @@ void add_causes(Table& table) {
 }
 
 void add_absences(Table& table) {
-  const auto none = [](const Trial& t) { return t.truth.effect == "none"; };
-  const auto unknown = [](const Trial& t) { return t.truth.effect == "unknown"; };
+  const auto none = [](const Trial& t) { return t.truth.effect == kNone; };
+  const auto unknown = [](const Trial& t) { return t.truth.effect == kUnknown; };
   const auto verdict = [](const std::string& effect) {
     return [=](const Trial& t) {
       return t.says([&](const TrialAnswer& a) { return a.verdict.effect == effect; });
@@ -144,18 +142,18 @@ void add_absences(Table& table) {
   };
   table.share(line("false_alarms", "a named cause where there is none", 0.01, true), none,
               [](const Trial& t) {
-                return t.says([](const TrialAnswer& a) { return is_named(a.verdict.effect); });
+                return t.says([](const TrialAnswer& a) { return names_effect(a.verdict.effect); });
               });
   table.share(line("unknown_on_none", "`unknown` where there is nothing", 0.05, true), none,
-              verdict("unknown"));
+              verdict(kUnknown));
   table.share(
       line("unknown_recognised", "`unknown` recognised at r 1.5 and above", 0.85),
-      [&](const Trial& t) { return unknown(t) && t.truth.r >= 1.4; }, verdict("unknown"));
+      [&](const Trial& t) { return unknown(t) && t.truth.r >= 1.4; }, verdict(kUnknown));
   table.share(line("confident_on_unknown",
                    "a named cause (probability 0.5 and above) where it is unknown", 0.05, true),
               unknown, [](const Trial& t) {
                 return t.says([](const TrialAnswer& a) {
-                  return is_named(a.verdict.effect) && a.verdict.probability >= kConfident;
+                  return names_effect(a.verdict.effect) && a.verdict.probability >= kConfident;
                 });
               });
 }

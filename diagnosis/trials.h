@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/search.h"
+
 namespace selfcal {
 
 /// What a machine really had.
 struct TrialTruth {
-  std::string effect = "none", second = {};  ///< second: empty for one cause alone
+  std::string effect = kNone, second = {};  ///< second: empty for one cause alone
   std::map<std::string, std::vector<std::string>> where = {};  ///< by effect; naming any is right
   double r = 0;                            ///< what calibration leaves of it, rms over the noise
   std::optional<double> told_closed = {};  ///< closed fraction of a fit that is told the cause

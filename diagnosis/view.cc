@@ -11,8 +11,6 @@
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
-namespace {
-
 Options geometry_options(const DiagnosisOptions& options) {
   Options geometry;
   geometry.most_rejected = options.most_rejected;
@@ -20,6 +18,8 @@ Options geometry_options(const DiagnosisOptions& options) {
   geometry.free = {"K*"};  // a ratio that is off is geometry: it must not be taken for a cause
   return geometry;
 }
+
+namespace {
 
 /// State of the geometry's fit as one of the robot with every candidate, whose parameters are zero.
 State extended(const State& state, Eigen::Index parameters) {
@@ -54,19 +54,7 @@ View::View(std::shared_ptr<const Robot> robot, const DataSet& data, const Diagno
   put_aside_ = fitted.noise.put_aside;
   weigh(kMostWeighed);
 
-  const auto geometry = static_cast<int>(geometry_->parameters().size());
-  for (int c = 0; c < geometry; ++c)
-    if (adjusted_.prior.free[c]) columns_.push_back(c);
-  const auto free = static_cast<Eigen::Index>(columns_.size());
-  for (Eigen::Index c = all_equations_->robot_columns(); c < all_.W.cols(); ++c)
-    columns_.push_back(static_cast<int>(c));
-  weight_.setZero(static_cast<Eigen::Index>(columns_.size()));
-  pull_ = weight_;
-  for (Eigen::Index i = 0; i < free; ++i) {
-    const int c = columns_[i];
-    weight_[i] = 1 / adjusted_.prior.sigma[c];
-    pull_[i] = weight_[i] * (adjusted_.prior.centre[c] - fitted.state.xi[c]);
-  }
+  nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
 }
 
 void View::bound_noise() {
@@ -96,13 +84,13 @@ DenseEquations View::kept() const {
 
 Whitened View::of(const DenseEquations& rows) const {
   Whitened out;
-  out.A = rows.W(Eigen::all, columns_) / scale_;
+  out.A = rows.W(Eigen::all, nuisance_.columns) / scale_;
   out.C = rows.W.middleCols(static_cast<Eigen::Index>(geometry_->parameters().size()),
                             static_cast<Eigen::Index>(parameters_.size())) /
           scale_;
   out.y = rows.y / scale_;
-  out.weight = weight_;
-  out.pull = pull_;
+  out.weight = nuisance_.weight;
+  out.pull = nuisance_.pull;
   out.least = least_ / (scale_ * scale_);
   return out;
 }
@@ -143,52 +131,23 @@ double View::noise() const {
 
 Eigen::VectorXd View::residuals(const std::vector<int>& effects,
                                 const Eigen::VectorXd& prior) const {
-  const auto solve = [&](const Whitened& rows) {
-    const Eigen::Index n = rows.A.cols(), k = static_cast<Eigen::Index>(effects.size());
-    Eigen::MatrixXd M(rows.A.rows() + n + k, n + k);
-    M.setZero();
-    M.topLeftCorner(rows.A.rows(), n) = rows.A;
-    M.topRightCorner(rows.A.rows(), k) = rows.C(Eigen::all, effects) * prior.asDiagonal();
-    M.block(rows.A.rows(), 0, n, n).diagonal() = rows.weight;
-    M.bottomRightCorner(k, k).setIdentity();
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(M.rows());
-    z.head(rows.y.size()) = rows.y;
-    z.segment(rows.y.size(), n) = rows.pull;
-    return least_squares(M, z);
-  };
-  const Eigen::VectorXd x = solve(whitened());
-  const Whitened every = of(all_);
-  return every.y - every.A * x.head(every.A.cols()) -
-         every.C(Eigen::all, effects) * prior.cwiseProduct(x.tail(prior.size()));
+  return left_of(of(all_), whitened(), effects, prior);
 }
-
-namespace {
-
-/// The geometry's columns over its priors.
-Eigen::MatrixXd with_priors(const Whitened& rows) {
-  const Eigen::Index n = rows.A.cols();
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(rows.A.rows() + n, n);
-  M.topRows(rows.A.rows()) = rows.A;
-  M.bottomRows(n).diagonal() = rows.weight;
-  return M;
-}
-
-}  // namespace
 
 Eigen::VectorXd View::geometry_residuals(const Whitened& rows) const {
-  Eigen::VectorXd z(rows.y.size() + rows.pull.size());
-  z << rows.y, rows.pull;
-  return rows.y - rows.A * least_squares(with_priors(rows), z);
+  return left_of(rows, rows, {}, Eigen::VectorXd());
 }
 
 Eigen::VectorXd View::geometry_leaves(const Whitened& rows) const {
-  const Eigen::MatrixXd Q = orthogonal_columns(with_priors(rows)).Q.topRows(rows.A.rows());
+  const Eigen::MatrixXd Q =
+      orthogonal_columns(over_priors(rows.A, rows.weight)).Q.topRows(rows.A.rows());
   return (1 - Q.rowwise().squaredNorm().array()).max(0);
 }
 
 bool View::refine(const Eigen::VectorXd& residuals, double variance) {
-  std::vector<char> put_aside = far_rows(all_, residuals, static_cast<double>(columns_.size()),
-                                         put_aside_.size(), most_rejected_);
+  std::vector<char> put_aside =
+      far_rows(all_, residuals, static_cast<double>(nuisance_.columns.size()), put_aside_.size(),
+               most_rejected_);
   if (put_aside == put_aside_ && std::abs(variance - 1) < 0.1) return false;
   put_aside_ = std::move(put_aside);
   scale_ *= std::sqrt(variance);

@@ -12,6 +12,9 @@ namespace selfcal {
 
 struct DiagnosisOptions;
 
+/// How the geometry is fitted wherever a gap is looked for.
+Options geometry_options(const DiagnosisOptions& options);
+
 /// Parameter that each joint's reading is added to, by joint.
 std::vector<int> reading_columns(const Robot& robot);
 
@@ -76,8 +79,7 @@ class View {
   std::vector<EffectParameter> parameters_;
   std::unique_ptr<Equations> equations_, all_equations_;
   Adjusted adjusted_;
-  std::vector<int> columns_;  ///< of A, in all_.W
-  Eigen::VectorXd weight_, pull_;
+  Nuisance nuisance_;
   DenseEquations all_;
   std::vector<int> quieter_;
   std::vector<Scale> noise_;     ///< by set, at a scale of one

@@ -58,18 +58,18 @@ std::string warning_of_own_effects(const Robot& robot) {
 
 std::string warning_of_gap(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
-  if (diagnosis.verdict.effect == "none") return {};
+  if (diagnosis.verdict.effect == kNone) return {};
   if (gap.rows == 0)
     return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
            "not "
            "known";
-  if (diagnosis.verdict.effect != "unknown" && gap.rms_after >= gap.rms_before)
+  if (diagnosis.verdict.effect != kUnknown && gap.rms_after >= gap.rms_before)
     return "the rows kept aside do not confirm it: they are met no better with the effects than "
            "without; do not use the corrected model";
   if (!gap.closed_fraction)
     return "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
            "closes";
-  if (diagnosis.verdict.effect != "unknown" && gap.closed_least <= 0)
+  if (diagnosis.verdict.effect != kUnknown && gap.closed_least <= 0)
     return "the rows kept aside are too few to confirm it: as far as they tell, nothing may have "
            "closed; measure more before the corrected model is used";
   return {};

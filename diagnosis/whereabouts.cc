@@ -10,14 +10,6 @@ namespace {
 constexpr int kRegions = 6, kTimes = 6;
 constexpr double kAbsorbed = 0.02;  ///< share that survives below which an effect takes no part
 
-/// The joint that a candidate acts at; -1 of one that acts elsewhere.
-int joint_of(const Candidate& candidate, const std::vector<Joint>& joints) {
-  if (candidate.effect == "plane_form_error" || candidate.effect == "fixture_shift") return -1;
-  for (size_t j = 0; j < joints.size(); ++j)
-    if (candidate.at == joints[j].name) return static_cast<int>(j);
-  return -1;
-}
-
 /// What each joint's own effects take of the residual when all effects there are share it.
 std::vector<Share> by_joint(const View& view, const Bench& bench) {
   std::vector<Workbench::Term> terms;
@@ -27,7 +19,7 @@ std::vector<Share> by_joint(const View& view, const Bench& bench) {
   for (size_t c = 0; c < all.size(); ++c) {
     if (bench.survival(static_cast<int>(c)) <= kAbsorbed) continue;
     terms.push_back({&bench.block(static_cast<int>(c)), 1});
-    joint.push_back(joint_of(all[c], joints));
+    joint.push_back(all[c].joint);
   }
   for (Workbench::Term& term : terms) term.size = 2 / std::sqrt(static_cast<double>(terms.size()));
   const Workbench& plain = bench.workbench(0);

@@ -11,11 +11,9 @@ Workbench::Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
                      std::shared_ptr<const Groups> groups) {
   Fixed fixed{std::move(rows), std::move(groups), std::move(structure), {}, {}, {}};
   const Eigen::MatrixXd& root = fixed.structure.root;
-  const Eigen::Index equations = fixed.rows->A.rows(), n = fixed.rows->A.cols();
-  Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(equations + n, n);
-  stacked.topRows(equations) = solve_lower(root, fixed.rows->A);
-  stacked.bottomRows(n).diagonal() = fixed.rows->weight;
-  const OrthogonalColumns qr = orthogonal_columns(stacked);
+  const Eigen::Index equations = fixed.rows->A.rows();
+  const OrthogonalColumns qr =
+      orthogonal_columns(over_priors(solve_lower(root, fixed.rows->A), fixed.rows->weight));
   fixed.Q = qr.Q;
   constant_ = -qr.log_volume;
   for (Eigen::Index i = 0; i < root.rows(); ++i) constant_ -= std::log(root(i, i));

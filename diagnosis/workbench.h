@@ -17,17 +17,9 @@
 #include <span>
 #include <vector>
 
-namespace selfcal {
+#include "diagnosis/whitened.h"
 
-/// What the rows say, before any cause: equations x unknowns, whitened.
-struct Whitened {
-  Eigen::MatrixXd A;       ///< equations x geometry and own unknowns
-  Eigen::VectorXd weight;  ///< by column of A: 1 / sigma of its prior, 0 without
-  Eigen::VectorXd pull;    ///< by column of A: weight times (centre - value)
-  Eigen::MatrixXd C;       ///< equations x effects' parameters
-  Eigen::VectorXd y;       ///< equations
-  double least = 0;        ///< variance of the noise, at least: what a data sheet says of it
-};
+namespace selfcal {
 
 /// Noise, and one structure of what no known effect explains.
 struct Structure {

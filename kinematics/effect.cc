@@ -66,9 +66,10 @@ int EffectPlan::set() const {
   return set;
 }
 
-void EffectPlan::expect_place(std::string_view place) const {
-  if (fields.text("at", std::string(place)) != place)
-    fields.fail("at", place.empty() ? "nothing: it acts on the whole robot" : std::string(place));
+void EffectPlan::expect_place(std::string_view only) const {
+  if (fields.text("at", std::string(only)) != only)
+    fields.fail("at", only.empty() ? "nothing: it acts on the whole robot" : std::string(only));
+  place = only;
 }
 
 std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const Site& site,
@@ -80,12 +81,11 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const 
     known += (known.empty() ? "" : ", ") + std::string(family.name);
     if (family.name != name) continue;
     const size_t before = problems.list.size();
-    std::unique_ptr<Effect> effect = family.make({fields, robot, site});
+    std::string at = fields.text("at", "");
+    std::unique_ptr<Effect> effect = family.make({fields, robot, site, at});
     if (problems.list.size() > before) return nullptr;
     effect->name_ = name;
-    effect->at_ = fields.text("at", "");
-    if (effect->at_.empty() && name != "thermal_expansion")
-      effect->at_ = effect->of_machine() ? "base" : "probe";
+    effect->at_ = std::move(at);
     for (EffectParameter& p : effect->parameters_) p.value = fields.number(p.name, 0.0);
     fields.refuse_unknown();
     return problems.list.size() > before ? nullptr : std::move(effect);

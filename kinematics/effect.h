@@ -102,13 +102,14 @@ struct EffectPlan {
   Fields& fields;
   const Robot& robot;
   const Site& site;
+  std::string& place;  ///< where it acts: `at` of the entry, empty where it says nothing
 
   /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
   int joint() const;
   /// Index of the set called `at`; -1 outside a data set. Notes a problem when the site lacks it.
   int set() const;
-  /// Notes a problem unless `at` is `place`, or missing.
-  void expect_place(std::string_view place) const;
+  /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
+  void expect_place(std::string_view only) const;
 };
 
 /// The effect that an entry of a robot file's `effects` describes:
