@@ -43,7 +43,10 @@ void add_score(CLI::App& app, int& status) {
   auto arguments = std::make_shared<ScoreArguments>();
   CLI::App* command = app.add_subcommand("score", "Open the truth and judge the answers");
   command->add_option("DIR", arguments->folder, "Folder of the trials")->required();
-  command->add_option("ANSWERS", arguments->answers, "File that `run` wrote")->required();
+  command
+      ->add_option("ANSWERS", arguments->answers,
+                   "Files that `run` wrote: the one that is judged, then any to stand beside it")
+      ->required();
   command->add_flag("--json", arguments->json, "Print the table as JSON");
   command->callback([arguments, &status] { status = score_trials(*arguments); });
 }

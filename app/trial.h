@@ -26,7 +26,8 @@ struct RunArguments {
 int run_trials(const RunArguments& arguments);
 
 struct ScoreArguments {
-  std::string folder, answers;
+  std::string folder;
+  std::vector<std::string> answers;  ///< files; the first one decides, the others stand beside it
   bool json = false;
 };
 int score_trials(const ScoreArguments& arguments);

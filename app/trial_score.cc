@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/command.h"
 #include "app/trial.h"
@@ -23,30 +24,63 @@ Result<std::string> unsealed(const fs::path& folder, const std::string& hash) {
   return text;
 }
 
-void print(const std::vector<ScoreLine>& lines) {
-  std::printf("%-64s %9s  %6s  %s\n", "", "trials", "", "wanted");
-  for (const ScoreLine& line : lines) {
+/// What one file of answers reaches.
+struct Scored {
+  std::string by;
+  std::vector<ScoreLine> lines;
+};
+
+Result<Scored> scored(const std::string& file, const TrialTruths& truths, const std::string& hash) {
+  const auto text = read_file(file, kMostTrialBytes);
+  if (!text) return tl::unexpected(text.error());
+  const auto answers = parse_answers(*text, file);
+  if (!answers) return tl::unexpected(answers.error());
+  if (!answers->sealed.empty() && answers->sealed != hash)
+    return bad_input(file + ": answers trials that were sealed as " + answers->sealed +
+                     ", not these");
+  return Scored{answers->by, score(truths, answers->answers)};
+}
+
+std::string value_of(const ScoreLine& line) {
+  char text[16] = "-";
+  if (line.value) std::snprintf(text, sizeof text, "%.3f", *line.value);
+  return text;
+}
+
+/// The first one's table, with the values of the others in columns of their own.
+void print(const std::vector<Scored>& all) {
+  const std::vector<ScoreLine>& lines = all.front().lines;
+  std::printf("%-64s %9s", "", "trials");
+  for (const Scored& each : all) std::printf("  %10s", each.by.c_str());
+  std::printf("  wanted\n");
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const ScoreLine& line = lines[i];
     const std::string trials = line.count
                                    ? std::to_string(*line.count) + "/" + std::to_string(line.of)
                                    : std::to_string(line.of);
-    char value[16] = "-";
-    if (line.value) std::snprintf(value, sizeof value, "%.3f", *line.value);
-    std::printf("%-64s %9s  %6s  %s %.2f%s\n", line.what.c_str(), trials.c_str(), value,
-                line.at_most ? "<=" : ">=", line.target,
+    std::printf("%-64s %9s", line.what.c_str(), trials.c_str());
+    for (const Scored& each : all) std::printf("  %10s", value_of(each.lines[i]).c_str());
+    std::printf("  %s %.2f%s\n", line.at_most ? "<=" : ">=", line.target,
                 !line.value || line.met() ? "" : "  missed");
   }
 }
 
-Json to_json(const std::vector<ScoreLine>& lines) {
-  Json all = Json::object();
-  for (const ScoreLine& line : lines)
-    all[line.name] = {{"what", line.what},
-                      {"trials", line.of},
-                      {"count", line.count ? Json(*line.count) : Json()},
-                      {"value", line.value ? Json(*line.value) : Json()},
-                      {line.at_most ? "at_most" : "at_least", line.target},
-                      {"met", line.value ? Json(line.met()) : Json()}};
-  return all;
+Json to_json(const std::vector<Scored>& all) {
+  Json json = Json::object();
+  const std::vector<ScoreLine>& lines = all.front().lines;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const ScoreLine& line = lines[i];
+    const auto number = [](const ScoreLine& of) { return of.value ? Json(*of.value) : Json(); };
+    json[line.name] = {{"what", line.what},
+                       {"trials", line.of},
+                       {"count", line.count ? Json(*line.count) : Json()},
+                       {"value", number(line)},
+                       {line.at_most ? "at_most" : "at_least", line.target},
+                       {"met", line.value ? Json(line.met()) : Json()}};
+    for (size_t other = 1; other < all.size(); ++other)
+      json[line.name]["beside"][all[other].by] = number(all[other].lines[i]);
+  }
+  return json;
 }
 
 }  // namespace
@@ -59,19 +93,17 @@ int score_trials(const ScoreArguments& arguments) {
   if (!truth) return tell(truth.error());
   const auto truths = parse_truths(*truth, (folder / kTruthFile).string());
   if (!truths) return tell(truths.error());
-  const auto text = read_file(arguments.answers, kMostTrialBytes);
-  if (!text) return tell(text.error());
-  const auto answers = parse_answers(*text, arguments.answers);
-  if (!answers) return tell(answers.error());
-  if (!answers->sealed.empty() && answers->sealed != *hash)
-    return tell({kInputIsBad, arguments.answers + ": answers trials that were sealed as " +
-                                  answers->sealed + ", not these"});
-  const std::vector<ScoreLine> lines = score(*truths, answers->answers);
+  std::vector<Scored> all;
+  for (const std::string& file : arguments.answers) {
+    auto one = scored(file, *truths, *hash);
+    if (!one) return tell(one.error());
+    all.push_back(*std::move(one));
+  }
   if (arguments.json)
-    std::printf("%s\n", to_json(lines).dump(1).c_str());
+    std::printf("%s\n", to_json(all).dump(1).c_str());
   else
-    print(lines);
-  for (const ScoreLine& line : lines)
+    print(all);
+  for (const ScoreLine& line : all.front().lines)
     if (line.value && !line.met()) return kAnswerIsNo;
   return kDone;
 }

@@ -64,6 +64,22 @@ TEST_F(TrialCommand, AnswersWithoutTheTruthAndScoresWithIt) {
   EXPECT_TRUE(table.contains("right_cause_r_1")) << said_;
 }
 
+TEST_F(TrialCommand, PutsBaselinesBesideTheAnswersThatAreJudged) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  const std::string folder = path("a").string();
+  const std::string one = path("one.json").string(), other = path("other.json").string();
+  ASSERT_EQ(trial("run " + folder + " --baseline compliance --out " + one), 0) << said_;
+  ASSERT_EQ(trial("run " + folder + " --baseline bic --out " + other), 0) << said_;
+  EXPECT_LE(trial("score " + folder + " " + one + " " + other), 1);
+  EXPECT_THAT(said_, HasSubstr("compliance         bic")) << "a column each";
+  ASSERT_LE(trial("score " + folder + " " + one + " " + other + " --json"), 1);
+  const auto both = nlohmann::json::parse(said_);
+  ASSERT_LE(trial("score " + folder + " " + other + " --json"), 1);
+  const auto alone = nlohmann::json::parse(said_);
+  for (const auto& [line, figures] : alone.items())
+    EXPECT_EQ(both[line]["beside"]["bic"], figures["value"]) << line;
+}
+
 TEST_F(TrialCommand, NoticesATruthThatWasChangedAfterSealing) {
   ASSERT_EQ(make("a"), 0) << said_;
   const std::string answers = path("answers.json").string();
