@@ -34,7 +34,7 @@ void add_robot(CLI::App& app, int& status) {
   robot->require_subcommand(1);
   auto file = std::make_shared<std::string>();
   CLI::App* command = robot->add_subcommand("check", "Validate a robot file");
-  command->add_option("FILE", *file, "NAME.robot.yaml")->required();
+  command->add_option("FILE", *file, "NAME.robot.yaml (see man selfcal-data)")->required();
   command->callback([file, &status] { status = check(*file); });
 }
 

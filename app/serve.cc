@@ -220,7 +220,7 @@ int serve_command(const Arguments& arguments) {
 void add_serve(CLI::App& app, int& status) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("serve", "Run the calibration service of one robot");
-  command->add_option("CONFIG", arguments->config, "CONFIG.yaml (see app/service/config.h)")
+  command->add_option("CONFIG", arguments->config, "CONFIG.yaml (see man selfcal-config)")
       ->required();
   command->add_flag("--simulate", arguments->simulate,
                     "With the pretend machine of the configuration's `simulation`");

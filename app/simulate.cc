@@ -84,11 +84,10 @@ int simulate_command(const Arguments& arguments) {
 
 void add_simulate(CLI::App& app, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "Make a data set with a pretend machine (see app/examples)");
+  CLI::App* command = app.add_subcommand("simulate", "Make a data set with a pretend machine");
   command
       ->add_option("SCENARIO", arguments->scenario,
-                   "SCENARIO.yaml: the robot, its errors, the sets")
+                   "SCENARIO.yaml: the robot, its errors, the sets (see man selfcal-config)")
       ->required();
   command->add_option("--out", arguments->out,
                       "Folder of the data set; new, empty or a simulated data set to be replaced");

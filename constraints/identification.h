@@ -58,7 +58,7 @@ struct Rejected {
   std::string why;
 };
 
-/// Figures of row residuals (m; formats.md says what the residual of a row is).
+/// Figures of row residuals (m; app/selfcal-data.5 says what the residual of a row is).
 struct Figures {
   int rows = 0;
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;

@@ -1,4 +1,4 @@
-// The file of a serial robot, read and written (see the robot format: frames, limits, masses,
+// The file of a serial robot, read and written (app/selfcal-data.5: frames, limits, masses,
 // tolerances, the prior's centre, coupling).
 #include <cmath>
 #include <functional>
