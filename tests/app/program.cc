@@ -1,4 +1,4 @@
-// The program as its user runs it: exit statuses, files written, words and manual in step.
+// The program as its user runs it: exit statuses, files written.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -10,8 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
-
-#include "constraints/data_set.h"
 
 namespace selfcal {
 namespace {
@@ -200,26 +198,6 @@ TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
         << foreign.out;
     EXPECT_EQ(foreign.out.find("weighing"), std::string::npos) << foreign.out;
   }
-}
-
-TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
-  const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
-  const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
-  for (const std::string command : {"identify", "identifiable", "diagnose", "trial seal",
-                                    "trial run", "trial score", "simulate", "robot check"}) {
-    std::istringstream help(selfcal_run(command + " --help").out);
-    EXPECT_NE(manual.find("selfcal " + command), std::string::npos) << command;
-    std::string word;
-    while (help >> word) {
-      if (word.rfind("--", 0) != 0 || word == "--help") continue;
-      std::string in_manual;
-      for (const char c : word) in_manual += c == '-' ? std::string("\\-") : std::string(1, c);
-      EXPECT_NE(manual.find(in_manual), std::string::npos) << command << " " << word;
-      EXPECT_NE(completion.find(word), std::string::npos) << command << " " << word;
-    }
-  }
-  for (const std::string_view method : method_names())
-    EXPECT_NE(completion.find(method), std::string::npos) << method;
 }
 
 }  // namespace

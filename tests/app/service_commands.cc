@@ -131,28 +131,5 @@ TEST_F(ServiceCommands, TellOfASessionThatSolvesAgainToTheSameResult) {
   }
 }
 
-TEST(ServiceWords, StandInManualAndCompletion) {
-  const auto text_of = [](const char* path) {
-    std::stringstream stream;
-    stream << std::ifstream(path).rdbuf();
-    return stream.str();
-  };
-  const std::string manual = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.1");
-  const std::string completion = text_of(SELFCAL_SOURCE_DIR "/app/selfcal.bash");
-  for (const std::string command : {"serve", "monitor", "command", "history", "simulate"}) {
-    EXPECT_NE(manual.find("selfcal " + command), std::string::npos) << command;
-    EXPECT_NE(completion.find(" " + command + " "), std::string::npos) << command;
-    std::istringstream help(run_selfcal(command + " --help").out);
-    for (std::string word; help >> word;) {
-      if (!word.starts_with("--") || word == "--help") continue;
-      word.erase(word.find_last_not_of(",:;.)") + 1);
-      std::string in_manual;
-      for (const char c : word) in_manual += c == '-' ? std::string("\\-") : std::string(1, c);
-      EXPECT_NE(manual.find(in_manual), std::string::npos) << command << " " << word;
-      EXPECT_NE(completion.find(word), std::string::npos) << command << " " << word;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace selfcal
