@@ -159,8 +159,8 @@ class Diagnostician {
     const double noise = result_.noise;
     Correction correction;
     if (!best.candidates.empty()) correction = grown(best);
-    // What nobody knows is no noise.
-    if (posterior_.unknown > 0.5) result_.noise = noise;
+    // What nobody knows is no noise; nor is what more of the named effects explains.
+    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
     Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, correction,
                                 view_.site(), result_.noise, options_);
     result_.judged = std::move(closing.judged);
