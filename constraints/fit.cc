@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
+#include "kinematics/description.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -16,7 +17,16 @@ namespace {
 constexpr double kOwnSigma = 100;
 constexpr double kOwnScale = 50e-3;  ///< m or rad, of own freedoms where a step must be short
 constexpr int kRegroupings = 20;
-constexpr int kAttempts = 14;  ///< dampings tried before an iteration gives up
+constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
+constexpr double kRounding = 1e-13;  ///< a step this short (m or rad) is nothing
+constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
+
+/// What the noise is estimated from; it only goes forward.
+enum class NoiseStage {
+  robust,  ///< medians of all rows, one noise for all sets of a kind: the geometry still moves
+  pooled,  ///< far rows put aside, one noise for all sets of a kind
+  own,     ///< far rows put aside, each set's own, which is then kept
+};
 
 class Iteration {
  public:
@@ -27,7 +37,7 @@ class Iteration {
         columns_(free_columns(equations, prior)) {
     fit_.state = start;
     const auto residuals = equations.residuals(start);
-    fit_.noise = estimate_noise(equations, residuals, noise_rule(0));
+    fit_.noise = estimate_noise(equations, residuals, noise_rule(stage_, 0));
     relinearise();
   }
 
@@ -39,25 +49,25 @@ class Iteration {
     if (!done_)
       fit_.stop_reason =
           "no convergence within " + std::to_string(rule_.most_iterations) + " iterations";
-    spread_covariance();
+    fit_.covariance = covariance();
     fit_.objective = cost_;
     for (const RowResidual& r : fit_.at.residuals)
       if (!fit_.noise.put_aside[r.row])
         fit_.objective += 2 * r.lengths * std::log(fit_.noise.used[r.set].length) +
                           2 * r.angles * std::log(fit_.noise.used[r.set].angle);
-    agreed_ = true;  // what is told is each set's own noise
-    fit_.noise.estimated =
-        estimate_noise(equations_, fit_.at.residuals, noise_rule(freedom())).estimated;
+    NoiseRule told = noise_rule(stage_, freedom(fit_.covariance));
+    told.pool = false;  // each set's own
+    fit_.noise.estimated = estimate_noise(equations_, fit_.at.residuals, told).estimated;
     return std::move(fit_);
   }
 
  private:
-  NoiseRule noise_rule(double freedom) const {
+  NoiseRule noise_rule(NoiseStage stage, double freedom) const {
     NoiseRule rule;
     rule.global_freedom = freedom;
     rule.most_rejected = rule_.most_rejected;
-    rule.reject = settled_;
-    rule.pool = !agreed_;
+    rule.reject = stage != NoiseStage::robust;
+    rule.pool = stage != NoiseStage::own;
     return rule;
   }
 
@@ -132,24 +142,24 @@ class Iteration {
     return D;
   }
 
-  /// Length of a step in posterior sigmas.
-  double whitened(const Eigen::VectorXd& step) const {
-    const Eigen::Index n = triangle_.cols() - 1;
+  /// Length of a step in the posterior sigmas of a triangle.
+  double whitened(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& step) const {
+    const Eigen::Index n = triangle.cols() - 1;
     Eigen::VectorXd s(n);
     for (Eigen::Index i = 0; i < n; ++i) s[i] = step[columns_[i]];
-    return (triangle_.topLeftCorner(n, n).triangularView<Eigen::Upper>() * s).norm();
+    return (triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>() * s).norm();
   }
 
   void iterate() {
-    triangle_ = triangle(fit_.at.R, true);
+    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
     ++fit_.iterations;
     const double free = std::sqrt(std::max<double>(1, static_cast<double>(columns_.size())));
     // How far the minimum is: the step without damping, which a short damped one does not tell.
-    const Eigen::VectorXd whole = step(triangle_, 0);
+    const Eigen::VectorXd whole = step(Rz, 0);
     if (!whole.allFinite()) return stop(false, "the system of equations is singular");
-    const double distance = whitened(whole);
+    const double distance = whitened(Rz, whole);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      const Eigen::VectorXd s = lambda_ > 0 ? bent(step(triangle_, lambda_), lambda_) : whole;
+      const Eigen::VectorXd s = lambda_ > 0 ? bent(step(Rz, lambda_), lambda_) : whole;
       const State trial = equations_.stepped(fit_.state, fit_.at, s);
       Linearised next = equations_.linearise(trial, weighting());
       const double cost = next.cost + prior_cost(trial);
@@ -159,36 +169,52 @@ class Iteration {
         cost_ = cost;
         lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
         // A tenth of a sigma a parameter left: the geometry has settled for these weights.
-        if (distance < 0.1 * free)
-          settle(distance < rule_.step_tolerance * free || whole.norm() < 1e-13);
+        if (distance < 0.1 * free) settle(arrival(distance / free, whole));
         return;
       }
-      if (distance < 1e-3 * free) return settle(true);  // rounding is all that is left
+      if (distance < kNear * free)
+        return settle("no step lowers the residual, and the minimum is within " +
+                      format_number(kNear) + " sigma");
       lambda_ = lambda_ == 0 ? 1e-2 : lambda_ * 10;
     }
     stop(false, "no step lowers the residual");
   }
 
+  /// Why a step of `distance` sigmas a parameter is the last one; nothing when it is not.
+  std::optional<std::string> arrival(double distance, const Eigen::VectorXd& step) const {
+    if (distance < rule_.step_tolerance)
+      return "step below " + format_number(rule_.step_tolerance) + " sigma";
+    if (step.norm() < kRounding) return "step below " + format_number(kRounding) + " m or rad";
+    return std::nullopt;
+  }
+
   /// Re-estimates noise and rows put aside: one noise for all sets of a kind until the residuals
   /// agree with it, then each set's own, once; then the noise is kept. Iterated further, the set
-  /// that happens to fit best would take the weight of all others. Ends when the step is small and
-  /// nothing changes.
-  void settle(bool small_step) {
-    const double agreement = fit_.at.cost / std::max(fit_.at.equations - freedom(), 1.0);
-    const bool agrees = settled_ && agreement > 0.8 && agreement < 1.25;
-    const bool was_settled = settled_;
-    const bool keep = agreed_;
-    settled_ = true;
-    agreed_ = agreed_ || agrees;
-    const Noise noise = estimate_noise(equations_, fit_.at.residuals, noise_rule(freedom()));
+  /// that happens to fit best would take the weight of all others. Ends when nothing changes and
+  /// the iteration has arrived, for that reason.
+  void settle(const std::optional<std::string>& arrived) {
+    const double freedoms = freedom(covariance());
+    const NoiseStage before = stage_;
+    if (before == NoiseStage::robust)
+      stage_ = NoiseStage::pooled;
+    else if (agrees(freedoms))
+      stage_ = NoiseStage::own;
+    const Noise noise = estimate_noise(equations_, fit_.at.residuals, noise_rule(stage_, freedoms));
+    const bool keep = before == NoiseStage::own;
     const bool same_rows = noise.put_aside == fit_.noise.put_aside;
-    if (was_settled && small_step && same_rows && (keep || change(noise) < 1e-3))
-      return stop(true, "step below 1e-5 sigma");
+    const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
+    if (arrived && same_rows && same_noise) return stop(true, *arrived);
     if (keep && (same_rows || ++regroupings_ > kRegroupings)) return;
     if (!keep) fit_.noise.used = noise.used;
     fit_.noise.put_aside = noise.put_aside;
     fit_.noise.at_bound = noise.at_bound;
     relinearise();
+  }
+
+  /// The residuals are as large as the noise that they are weighed with.
+  bool agrees(double freedoms) const {
+    const double ratio = fit_.at.cost / std::max(fit_.at.equations - freedoms, 1.0);
+    return ratio > 0.8 && ratio < 1.25;
   }
 
   /// Largest relative change of a set's noise.
@@ -209,24 +235,24 @@ class Iteration {
 
   /// Freedoms that the rows determine: own ones, and of each parameter the share that is not the
   /// prior's.
-  double freedom() {
-    spread_covariance();
+  double freedom(const Eigen::MatrixXd& covariance) const {
     double sum = equations_.own_columns();
     for (const int c : columns_)
       if (c < equations_.robot_columns())
-        sum += 1 - fit_.covariance(c, c) * std::pow(prior_weight(equations_, prior_, c), 2);
+        sum += 1 - covariance(c, c) * std::pow(prior_weight(equations_, prior_, c), 2);
     return sum;
   }
 
   /// (R^T R)^-1 (11.35, whitened), spread to all columns.
-  void spread_covariance() {
-    triangle_ = triangle(fit_.at.R, true);
-    const Eigen::Index n = triangle_.cols() - 1;
-    const Eigen::MatrixXd inverse = inverse_of_triangle(triangle_.topLeftCorner(n, n));
+  Eigen::MatrixXd covariance() const {
+    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
+    const Eigen::Index n = Rz.cols() - 1;
+    const Eigen::MatrixXd inverse = inverse_of_triangle(Rz.topLeftCorner(n, n));
     const Eigen::MatrixXd C = inverse * inverse.transpose();
-    fit_.covariance.setZero(equations_.columns(), equations_.columns());
+    Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(equations_.columns(), equations_.columns());
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) fit_.covariance(columns_[i], columns_[j]) = C(i, j);
+      for (Eigen::Index j = 0; j < n; ++j) spread(columns_[i], columns_[j]) = C(i, j);
+    return spread;
   }
 
   const Equations& equations_;
@@ -234,9 +260,9 @@ class Iteration {
   const FitRule& rule_;
   std::vector<int> columns_;
   Fit fit_;
-  Eigen::MatrixXd triangle_;
   double cost_ = 0, lambda_ = 0;
-  bool settled_ = false, agreed_ = false, done_ = false;
+  NoiseStage stage_ = NoiseStage::robust;
+  bool done_ = false;
   int regroupings_ = 0;  ///< changes of the rows put aside since the noise is kept
 };
 
