@@ -9,9 +9,9 @@ namespace selfcal {
 
 /// What the estimate needs beside the residuals.
 struct NoiseRule {
-  double global_freedom = 0;    ///< parameters that the rows determine, spread over all equations
-  double most_rejected = 0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it
-  bool reject = false;          ///< false until the geometry has settled
+  double global_freedom = 0;  ///< parameters that the rows determine, spread over all equations
+  double most_rejected = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
+  bool reject = false;        ///< false until the geometry has settled
   /// One noise for all sets of one method and data sheet: until the geometry has settled, a set
   /// that happens to fit well must not take the weight of the others.
   bool pool = false;

@@ -20,9 +20,9 @@ struct DiagnosisOptions {
   /// A cause is named when `none` is less probable than the first of these, and noise looks as much
   /// like a cause less often than the second.
   double name_below_none = 0.05, name_below_p = 0.0125;
-  int resamples = 199;          ///< of the null distribution
-  int practice = 30;            ///< simulated sessions that calibrate probabilities; 0: none
-  double most_rejected = 0.05;  ///< share of the rows that may be put aside
+  int resamples = 199;  ///< of the null distribution
+  int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
+  double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
   unsigned long long seed = 1;
 };
 
