@@ -31,7 +31,7 @@ DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
                            double unknowns, std::size_t rows, double most);
 
-/// Where the nominal robot's endpoint is (rows x 3, m).
+/// Where the endpoint is with the robot file's own values (rows x 3, m).
 Eigen::MatrixXd tips(const Robot& robot, const Observations& rows);
 
 }  // namespace selfcal

@@ -97,7 +97,7 @@ class Robot {
 
   /// Masses and links, as the maker gives them.
   virtual const Mechanics& mechanics() const = 0;
-  /// Poses of mechanics().links in the world at readings `q`, with the maker's geometry.
+  /// Poses of mechanics().links in the world at readings `q`, with the file's own values.
   virtual std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const = 0;
   /// Index of the parameter that the variable of joint `j` is added to.
   virtual int variable_parameter(int j) const = 0;
