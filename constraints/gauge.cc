@@ -37,7 +37,7 @@ std::vector<Note> held_base(const Robot& robot, const Equations& equations) {
 
 std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
                              const Eigen::VectorXd& xi, const std::vector<char>& free) {
-  if (!every_set(equations, [](const Method& m) { return m.leaves_scale_free(); })) return {};
+  if (!every_set(equations, [](const Method& m) { return m.may_leave_scale_free(); })) return {};
   const Robot& robot = equations.robot();
   std::vector<int> others;
   for (int c = equations.robot_columns(); c < equations.columns(); ++c) others.push_back(c);

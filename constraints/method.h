@@ -88,8 +88,10 @@ class Method {
   virtual std::vector<std::string> columns() const { return {}; }
   /// True when each row is compared with the previous row of its group.
   virtual bool paired() const { return false; }
-  /// The gauge: true when the equations stay satisfied by a robot of any size.
-  virtual bool leaves_scale_free() const { return false; }
+  /// The gauge: true when the rows may be satisfied by a robot of any size (touches: what is
+  /// touched shrinks with it). Whether they are, by what is known of it, held_scale judges from all
+  /// rows.
+  virtual bool may_leave_scale_free() const { return false; }
   /// True when rows are measured in the frame of a device whose pose is an own unknown.
   virtual bool frame_unknown() const { return false; }
   /// True when the target point is an unknown of the set, in place of the tool frames.

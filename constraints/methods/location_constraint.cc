@@ -19,7 +19,7 @@ class LocationConstraint final : public Method {
             Quantity::angle,  Quantity::angle,  Quantity::angle};
   }
   std::vector<std::string> columns() const override { return {"group"}; }
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return DeviceFrame::kFreedom; }
   std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
 

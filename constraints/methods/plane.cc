@@ -76,7 +76,7 @@ class OnePlane final : public Touch {
   OnePlane(double probe_radius, const std::optional<Plane>& known)
       : Touch(probe_radius), known_(known) {}
 
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 3; }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
@@ -131,7 +131,7 @@ class ParallelPlane final : public Touch {
   ParallelPlane(double probe_radius, std::string reference, double distance, double noise)
       : Touch(probe_radius), reference_(std::move(reference)), distance_(distance), noise_(noise) {}
 
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   std::string reference() const override { return reference_; }
   int own_freedom() const override { return 1; }
 

@@ -15,7 +15,7 @@ class PlaneNormal final : public Method {
   std::string_view name() const override { return "plane-normal"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
   bool paired() const override { return true; }
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 2; }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,

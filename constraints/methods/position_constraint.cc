@@ -18,7 +18,7 @@ class PositionConstraint final : public Method {
   std::string_view name() const override { return "position-constraint"; }
   std::vector<Quantity> equations() const override { return {3, Quantity::length}; }
   std::vector<std::string> columns() const override { return {"group"}; }
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return 3; }
   std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
   std::vector<GroupLink> links() const override { return links_; }

@@ -17,7 +17,7 @@ class Sphere final : public Method {
 
   std::string_view name() const override { return "sphere"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
-  bool leaves_scale_free() const override { return true; }
+  bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return radius_at() + (radius_ ? 0 : 1); }
 
   /// |P|^2 = 2 P . c + (rho^2 - |c|^2), linear in c and the constant.
