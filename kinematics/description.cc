@@ -5,6 +5,7 @@
 // ("1.0e-04"), because YAML 1.1 readers take "1e-04" for a text.
 #include "kinematics/description.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -75,6 +76,15 @@ const Node* Node::find(std::string_view key) const {
     if (keys[i] == key) return &items[i];
   }
   return nullptr;
+}
+
+Node Node::without(const std::vector<std::string_view>& others) const {
+  if (kind != Kind::map) return *this;
+  Node rest = map();
+  rest.place = place;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (std::ranges::find(others, keys[i]) == others.end()) rest.set(keys[i], items[i]);
+  return rest;
 }
 
 Node& Node::set(std::string key, Node value) {

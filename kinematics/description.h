@@ -40,7 +40,9 @@ struct Node {
   static Node map();
 
   const Node* find(std::string_view key) const;  ///< null when the mapping lacks it
-  Node& set(std::string key, Node value);        ///< appends to a mapping; returns *this
+  /// The mapping without these keys, what is left for somebody else to read; any other kind as is.
+  Node without(const std::vector<std::string_view>& others) const;
+  Node& set(std::string key, Node value);  ///< appends to a mapping; returns *this
 };
 
 /// Mistakes found while reading; the first one is what the user is told.

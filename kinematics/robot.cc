@@ -1,7 +1,6 @@
 // What every kind of robot shares: looking parameters up by name, making a robot from its file.
 #include "kinematics/robot.h"
 
-#include <algorithm>
 #include <set>
 
 #include "kinematics/corrected_robot.h"
@@ -30,11 +29,7 @@ constexpr Kind kKinds[] = {
 std::unique_ptr<Robot> with_effects_of(const Node& node, const Kind& kind, Problems& problems) {
   const Node* effects = node.find("effects");
   if (!effects) return kind.make(node, problems);
-  Node geometry = node;
-  const auto at = std::find(geometry.keys.begin(), geometry.keys.end(), "effects");
-  geometry.items.erase(geometry.items.begin() + (at - geometry.keys.begin()));
-  geometry.keys.erase(at);
-  std::shared_ptr<const Robot> robot = kind.make(geometry, problems);
+  std::shared_ptr<const Robot> robot = kind.make(node.without({"effects"}), problems);
   if (!robot) return nullptr;
   if (effects->kind != Node::Kind::list) {
     problems.add(effects->place, "effects: expected a list of effects");

@@ -1,7 +1,7 @@
 // One entry of a scenario's sets: the scenario's own keys are read and taken out, what is left is
 // an entry of dataset.yaml.
-#include <algorithm>
-#include <array>
+#include <string_view>
+#include <vector>
 
 #include "constraints/place_fields.h"
 #include "sim/scenario_fields.h"
@@ -9,19 +9,10 @@
 namespace selfcal {
 namespace {
 
-constexpr std::array<std::string_view, 9> kOwnKeys = {
+const std::vector<std::string_view> kOwnKeys = {
     "rows",  "rows_per_group", "noise_true", "noise_angle_true", "surface", "outward",
     "truth", "within",         "places"};
 constexpr double kMostNoise = 0.1;  // m or rad
-
-Node without_own_keys(const Node& node) {
-  Node rest = Node::map();
-  rest.place = node.place;
-  for (std::size_t i = 0; i < node.keys.size(); ++i)
-    if (std::ranges::find(kOwnKeys, node.keys[i]) == kOwnKeys.end())
-      rest.set(node.keys[i], node.items[i]);
-  return rest;
-}
 
 }  // namespace
 
@@ -29,7 +20,7 @@ SetScenario read_set_scenario(const std::string& name, const Node& node, Problem
   Fields fields(node, "set " + name, problems);
   SetScenario set;
   set.name = name;
-  set.entry = without_own_keys(node);
+  set.entry = node.without(kOwnKeys);
   set.rows = fields.integer("rows", set.rows, 1, 1000000);
   set.rows_per_group = fields.integer("rows_per_group", set.rows_per_group, 2, 10000);
   // make_set judges `noise` itself.

@@ -182,7 +182,7 @@ class Reader {
   /// Reads the configuration's own keys and returns the rest, an entry of dataset.yaml.
   Node read_set(const std::string& name, const Node& node) {
     const std::string what = "set " + name;
-    const Node entry = without(node, kOwnKeys);
+    const Node entry = node.without(kOwnKeys);
     c_.sets.push_back(make_set(name, entry, problems_));
     const std::shared_ptr<const Method> method = c_.sets.back().method;
     Fields f(node, what, problems_);

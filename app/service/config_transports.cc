@@ -27,7 +27,7 @@ void read_encoders(const Node& node, const std::filesystem::path& folder, Config
   if (config.joint_names.size() != of_robot.size())
     f.fail("joints", std::to_string(of_robot.size()) + " names");
   config.silence = number_within(f, "silence", config.silence, 0.01, 60);
-  const Node own = without(node, {"kind", mapped ? "kind" : "joints", "silence"});
+  const Node own = node.without({"kind", mapped ? "kind" : "joints", "silence"});
   const std::string kind = f.text("kind", "dds");
   config.encoders = make_encoders(kind, {own, config.joint_names, of_robot, folder, problems});
   refuse_unknown_kind(f, kind, encoder_kinds());
@@ -37,7 +37,7 @@ void read_trigger(const Node& node, Config& config, Problems& problems) {
   Fields f(node, "trigger", problems);
   config.touch.debounce = number_within(f, "debounce", config.touch.debounce, 0, 0.1);
   config.touch.delay = number_within(f, "delay", config.touch.delay, 0, 0.1);
-  const Node own = without(node, {"kind", "debounce", "delay"});
+  const Node own = node.without({"kind", "debounce", "delay"});
   const std::string kind = f.text("kind", "dds");
   config.trigger = make_trigger(kind, {own, config.id, problems});
   refuse_unknown_kind(f, kind, trigger_kinds());
@@ -61,15 +61,6 @@ const Node& entry_of(Fields& fields, std::string_view key) {
   static const Node kEmpty = Node::map();
   const Node* node = fields.node(key);
   return node ? *node : kEmpty;
-}
-
-Node without(const Node& node, const std::vector<std::string_view>& keys) {
-  Node rest;
-  rest.kind = node.kind;
-  rest.place = node.place;
-  for (std::size_t i = 0; i < node.keys.size(); ++i)
-    if (std::ranges::find(keys, node.keys[i]) == keys.end()) rest.set(node.keys[i], node.items[i]);
-  return rest;
 }
 
 }  // namespace selfcal

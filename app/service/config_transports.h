@@ -15,7 +15,5 @@ void read_transports(Fields& fields, const std::filesystem::path& folder, Config
 
 /// The mapping of a key, or an empty one.
 const Node& entry_of(Fields& fields, std::string_view key);
-/// The mapping without these keys: what is left for somebody else to read.
-Node without(const Node& node, const std::vector<std::string_view>& keys);
 
 }  // namespace selfcal

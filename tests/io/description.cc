@@ -27,6 +27,16 @@ Node frame_with(const std::string& key, Node value) {
   return node;
 }
 
+TEST(Node, WithoutSomeKeysKeepsTheOthersAndItsPlace) {
+  Node node = at_line(Node::map(), 3);
+  node.set("a", Node::of("1")).set("b", Node::of("2")).set("c", Node::of("3"));
+  const Node rest = node.without({"a", "c", "d"});
+  EXPECT_THAT(rest.keys, ElementsAre("b"));
+  EXPECT_EQ(rest.items[0].text, "2");
+  EXPECT_EQ(rest.place.line, 3);
+  EXPECT_EQ(Node::of("text").without({"a"}).text, "text");
+}
+
 TEST(Numbers, ReadBackBitByBit) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 100000; ++i) {
