@@ -31,6 +31,26 @@ double read_noise(Fields& fields, const char* key) {
   return noise;
 }
 
+/// Resolves references between sets and checks that they are possible.
+void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
+  for (Set& set : sets) {
+    if (!set.method || set.method->reference().empty()) continue;
+    const std::string wanted = set.method->reference();
+    const auto other = std::find_if(sets.begin(), sets.end(),
+                                    [&](const Set& each) { return each.name == wanted; });
+    const Node* entry = node.find(set.name);
+    const Place place = entry ? entry->place : node.place;
+    if (other == sets.end())
+      problems.add(place, "set " + set.name + ": parallel_to names no set '" + wanted + "'");
+    else if (!other->method || other->method->name() != "plane" ||
+             !other->method->reference().empty())
+      problems.add(place, "set " + set.name + ": parallel_to needs a set of method plane that is " +
+                              "not itself parallel to another, '" + wanted + "' is not");
+    else
+      set.reference = static_cast<int>(other - sets.begin());
+  }
+}
+
 }  // namespace
 
 int group_index(std::vector<std::string>& groups, const std::string& name) {
@@ -75,23 +95,18 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
   return set;
 }
 
-void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
-  for (Set& set : sets) {
-    if (!set.method || set.method->reference().empty()) continue;
-    const std::string wanted = set.method->reference();
-    const auto other = std::find_if(sets.begin(), sets.end(),
-                                    [&](const Set& each) { return each.name == wanted; });
-    const Node* entry = node.find(set.name);
-    const Place place = entry ? entry->place : node.place;
-    if (other == sets.end())
-      problems.add(place, "set " + set.name + ": parallel_to names no set '" + wanted + "'");
-    else if (!other->method || other->method->name() != "plane" ||
-             !other->method->reference().empty())
-      problems.add(place, "set " + set.name + ": parallel_to needs a set of method plane that is " +
-                              "not itself parallel to another, '" + wanted + "' is not");
-    else
-      set.reference = static_cast<int>(other - sets.begin());
+std::vector<Set> read_sets(const Node& node, Problems& problems) {
+  std::vector<Set> sets;
+  if (node.kind != Node::Kind::map || node.items.empty()) {
+    problems.add(node.place, "sets: expected one set or more, each as `name: {method: ...}`");
+    return sets;
   }
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    if (node.keys[i].empty()) problems.add(node.items[i].place, "sets: a set has no name");
+    sets.push_back(make_set(node.keys[i], node.items[i], problems));
+  }
+  if (!problems.any()) link_sets(sets, node, problems);
+  return sets;
 }
 
 int same_set(const std::vector<Set>& sets, const Set& set) {

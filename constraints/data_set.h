@@ -31,8 +31,9 @@ struct DataSet {
 /// `set.groups` as the options name them. The set is without a method after a problem.
 Set make_set(const std::string& name, const Node& node, Problems& problems);
 
-/// Resolves references between sets and checks that they are possible.
-void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems);
+/// Reads the mapping `sets`, NAME: ENTRY, and ties sets together that share unknowns. Sets are
+/// without a method or not tied after a problem.
+std::vector<Set> read_sets(const Node& node, Problems& problems);
 
 /// The set among `sets` of the same name and method as `set`; -1 without.
 int same_set(const std::vector<Set>& sets, const Set& set);

@@ -20,18 +20,6 @@ struct Description {
   std::filesystem::path robot, observations;
 };
 
-void read_sets(const Node& node, DataSet& data, Problems& problems) {
-  if (node.kind != Node::Kind::map || node.items.empty()) {
-    problems.add(node.place, "sets: expected one set or more, each as `name: {method: ...}`");
-    return;
-  }
-  for (std::size_t i = 0; i < node.keys.size(); ++i) {
-    if (node.keys[i].empty()) problems.add(node.items[i].place, "sets: a set has no name");
-    data.sets.push_back(make_set(node.keys[i], node.items[i], problems));
-  }
-  if (!problems.any()) link_sets(data.sets, node, problems);
-}
-
 Description read_description(const Node& node, DataSet& data, Problems& problems) {
   Fields fields(node, "data set", problems);
   Description description{fields.text("robot"), fields.text("observations")};
@@ -47,7 +35,7 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   const Node* sets = fields.node("sets");
   if (sets == nullptr) fields.fail("sets", "a mapping of sets");
   fields.refuse_unknown();
-  if (sets != nullptr) read_sets(*sets, data, problems);
+  if (sets != nullptr) data.sets = read_sets(*sets, problems);
   return description;
 }
 

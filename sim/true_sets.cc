@@ -89,12 +89,12 @@ void bring_to_truth(const SetScenario& wanted, const Method& method,
 }  // namespace
 
 std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
-  std::vector<Set> sets;
   Node entries = Node::map();
-  for (const SetScenario& each : scenario.sets) {
-    sets.push_back(make_set(each.name, each.entry, problems));
-    entries.set(each.name, each.entry);
-    const Set& set = sets.back();
+  for (const SetScenario& each : scenario.sets) entries.set(each.name, each.entry);
+  std::vector<Set> sets = read_sets(entries, problems);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const SetScenario& each = scenario.sets[s];
+    const Set& set = sets[s];
     if (!set.method) continue;
     const bool free_plane =
         is_plane(*set.method) && set.method->own_freedom() > 0 && set.method->reference().empty();
@@ -108,7 +108,6 @@ std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
     if (each.outward && !is_plane(*set.method))
       problems.add(each.entry.place, "set " + each.name + ": `outward` is for planes");
   }
-  if (!problems.any()) link_sets(sets, entries, problems);
   return sets;
 }
 

@@ -168,27 +168,27 @@ class Reader {
 
   void read_sets(Fields& fields) {
     const Node* sets = fields.node("sets");
-    if (!sets || sets->kind != Node::Kind::map || sets->items.empty())
+    if (!sets || sets->kind != Node::Kind::map)
       return fields.fail("sets", "one set or more, each as `name: {method: ...}`");
-    Node entries = Node::map();
+    Node entries = Node::map();  // of dataset.yaml: without the configuration's own keys
+    entries.place = sets->place;
     for (std::size_t i = 0; i < sets->keys.size(); ++i)
-      entries.set(sets->keys[i], read_set(sets->keys[i], sets->items[i]));
-    if (!problems_.any()) link_sets(c_.sets, entries, problems_);
+      entries.set(sets->keys[i], sets->items[i].without(kOwnKeys));
+    c_.sets = selfcal::read_sets(entries, problems_);
+    if (problems_.any()) return;
+    for (std::size_t i = 0; i < sets->keys.size(); ++i)
+      read_target(static_cast<int>(i), sets->items[i]);
     c_.description = Node::map();
     c_.description.set("target", Node::of(c_.target));
     c_.description.set("sets", std::move(entries));
   }
 
-  /// Reads the configuration's own keys and returns the rest, an entry of dataset.yaml.
-  Node read_set(const std::string& name, const Node& node) {
-    const std::string what = "set " + name;
-    const Node entry = node.without(kOwnKeys);
-    c_.sets.push_back(make_set(name, entry, problems_));
-    const std::shared_ptr<const Method> method = c_.sets.back().method;
-    Fields f(node, what, problems_);
-    if (!method) return entry;
+  /// Reads the configuration's own keys of a set.
+  void read_target(int set, const Node& node) {
+    const std::shared_ptr<const Method>& method = c_.sets[set].method;
+    Fields f(node, "set " + c_.sets[set].name, problems_);
     TouchTarget target;
-    target.set = static_cast<int>(c_.sets.size()) - 1;
+    target.set = set;
     target.touches = f.integer("touches", 40, 4, 10000);
     const Node *surface = f.node("surface"), *within = f.node("within"), *places = f.node("places");
     if (method->name() == "plane")
@@ -198,7 +198,6 @@ class Reader {
     else
       f.fail("method", "plane, position-constraint or location-constraint: what a touch can do");
     c_.targets.push_back(std::move(target));
-    return entry;
   }
 
   void read_plane(Fields& f, const Node* surface, const Node* within, TouchTarget& target) {
@@ -259,12 +258,9 @@ Result<std::vector<Set>> sets_of(const std::string& description) {
   const Result<Node> node = parse_yaml(description, "session");
   if (!node) return tl::unexpected(node.error());
   Problems problems;
-  std::vector<Set> sets;
   const Node* entries = node->find("sets");
   if (!entries) return bad_input("session: no sets");
-  for (std::size_t i = 0; i < entries->keys.size(); ++i)
-    sets.push_back(make_set(entries->keys[i], entries->items[i], problems));
-  if (!problems.any()) link_sets(sets, *entries, problems);
+  std::vector<Set> sets = read_sets(*entries, problems);
   if (problems.any()) return bad_input(problems);
   return sets;
 }

@@ -63,11 +63,8 @@ inline std::string title_of(const testing::TestParamInfo<MethodCase>& info) {
 inline std::vector<Set> make_sets(const std::string& text) {
   const auto node = parse_yaml(text, "dataset.yaml");
   EXPECT_TRUE(node.has_value()) << node.error().what;
-  std::vector<Set> sets;
   Problems problems;
-  for (size_t i = 0; node && i < node->items.size(); ++i)
-    sets.push_back(make_set(node->keys[i], node->items[i], problems));
-  if (node && !problems.any()) link_sets(sets, *node, problems);
+  std::vector<Set> sets = read_sets(node.value_or(Node::map()), problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   return sets;
 }

@@ -37,11 +37,8 @@ inline Session make_session(const Robot& machine, const Eigen::VectorXd& xi,
   Session session;
   Problems problems;
   Node all = Node::map();
-  for (const SetPart& part : parts) {
-    session.data.sets.push_back(make_set(part.name, part.node, problems));
-    all.set(part.name, part.node);
-  }
-  link_sets(session.data.sets, all, problems);
+  for (const SetPart& part : parts) all.set(part.name, part.node);
+  session.data.sets = read_sets(all, problems);
   std::normal_distribution<double> normal;
   std::vector<SampleRequest> requests;
   for (size_t s = 0; s < parts.size(); ++s) {
