@@ -18,8 +18,6 @@ constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
 constexpr int kEnough = 8;            // lanes that reach it before the others are given up
 constexpr int kTries = 60;            // blocks of starts before a row is given up
 
-Location location(const Locations& X, int lane) { return {X.R(lane), X.p(lane)}; }
-
 class Sampler {
  public:
   Sampler(const Robot& robot, const Eigen::VectorXd& xi, Random& random, DataSet& data)
@@ -73,9 +71,9 @@ class Sampler {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       robot_.locate(starts(), xi_, method.body(), X, nullptr);
       for (int lane = 0; lane < kLanes; ++lane)
-        if (patch.contains(X.p(lane))) return location(X, lane);
+        if (patch.contains(X.p(lane))) return X.at(lane);
     }
-    return location(X, 0);
+    return X.at(0);
   }
 
   void fill(const SampleRequest& request) {
@@ -161,10 +159,10 @@ class Sampler {
       for (const int lane : found) {
         if (!within_limits(block, lane) || !request.patch.contains(X.p(lane))) continue;
         if (taken) {
-          spare_.push_back({block.q.row(lane), location(X, lane)});
+          spare_.push_back({block.q.row(lane), X.at(lane)});
           continue;
         }
-        take(block.q.row(lane), location(X, lane));
+        take(block.q.row(lane), X.at(lane));
         if (!request.together) return true;
         taken = true;
       }
@@ -183,12 +181,7 @@ class Sampler {
   }
 
   Location at(int row, Body body) const {
-    ConfigurationBlock block;
-    block.q = data_.rows.q.row(row).replicate(kLanes, 1).array();
-    block.count = 1;
-    Locations X;
-    robot_.locate(block, xi_, body, X, nullptr);
-    return location(X, 0);
+    return locate(robot_, xi_, data_.rows.q.row(row).transpose(), body);
   }
 
   /// Lanes that reached the wanted residual; moves block.q there and leaves their locations in X.
@@ -198,11 +191,9 @@ class Sampler {
     const Method& method = *set.method;
     const auto equations = static_cast<int>(wanted.size());
     Locations before = X;
-    if (previous >= 0) {
-      ConfigurationBlock held;
-      held.q = data_.rows.q.row(previous).replicate(kLanes, 1).array();
-      robot_.locate(held, xi_, method.body(), before, nullptr);
-    }
+    if (previous >= 0)
+      robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
+                    nullptr);
     const std::vector<int> rows(kLanes, row);
     MethodInput in{kLanes,
                    &data_.rows,

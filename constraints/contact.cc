@@ -29,7 +29,7 @@ bool move_to_residual(const Robot& robot, const DataSet& data, const State& trut
   const Set& set = data.sets[s];
   const Method& method = *set.method;
   const Body body = method.body();
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
+  ConfigurationBlock block = block_of(q);
   Locations X, before;
   robot.locate(block, truth.xi, body, before, nullptr);
   const std::vector<int> rows(kLanes, row);

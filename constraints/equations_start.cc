@@ -28,7 +28,7 @@ class Locator {
             q.row(rows[first + std::min(lane, count - 1)]).array();
       block.count = static_cast<int>(count);
       equations_.robot().locate(block, xi_, body, X, nullptr);
-      for (int lane = 0; lane < block.count; ++lane) list.push_back({X.R(lane), X.p(lane)});
+      for (int lane = 0; lane < block.count; ++lane) list.push_back(X.at(lane));
     }
     return list;
   }

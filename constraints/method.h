@@ -22,12 +22,6 @@ using Random = std::mt19937_64;
 /// Most scalar equations that one row of any method gives (the calibration index of 11.5).
 inline constexpr int kMostEquations = 6;
 
-/// One location of the endpoint.
-struct Location {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();
-};
-
 /// Rows of one set to be evaluated together, one a lane.
 struct MethodInput {
   int count = 0;

@@ -15,13 +15,6 @@ constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
 constexpr int kPathBlocks = 3;      // of kLanes places along a path
 constexpr int kRounds = 12;         // of sampling, until enough candidates are usable
 
-Location location_at(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q) {
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  robot.locate(block, xi, Body::endpoint, X, nullptr);
-  return {X.R(0), X.p(0)};
-}
-
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const Joint& joint = robot.joints()[j];
@@ -96,7 +89,7 @@ class Candidates {
   /// Fills in where the touch begins and where it is given up.
   bool enter(const TouchTarget& target, int obstacle, const DataSet& data, const State& truth,
              int row, PlannedTouch& touch) const {
-    const Location X = location_at(robot_, xi_, touch.touch);
+    const Location X = locate(robot_, xi_, touch.touch);
     if (X.R.col(2).dot(-target.outward) < std::cos(options_.tilt)) return false;
     touch.start = touch.end = touch.touch;
     if (!move_out(target, data, truth, row, X, options_.clearance, touch.start)) return false;

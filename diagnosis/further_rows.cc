@@ -151,15 +151,12 @@ class Further {
   }
 
   Endpoint endpoint(const Eigen::VectorXd& q) const {
-    ConfigurationBlock block;
-    block.q = q.transpose().replicate(kLanes, 1).array();
-    block.count = 1;
     Locations X;
     PsiBlock psi;
     Eigen::MatrixXd lanes;
-    robot_.locate(block, xi_, Body::endpoint, X, &psi);
+    robot_.locate(block_of(q), xi_, Body::endpoint, X, &psi);
     robot_.joint_jacobian(xi_, psi, lanes);
-    Endpoint there{{X.R(0), X.p(0)}, Eigen::MatrixXd(6, lanes.cols())};
+    Endpoint there{X.at(0), Eigen::MatrixXd(6, lanes.cols())};
     for (int c = 0; c < 6; ++c) there.J.row(c) = lanes.row(c * kLanes);
     return there;
   }

@@ -81,6 +81,17 @@ Eigen::VectorXd nominal_values(const Robot& robot) {
   return xi;
 }
 
+ConfigurationBlock block_of(const Eigen::VectorXd& q) {
+  return {q.transpose().replicate(kLanes, 1).array(), 1};
+}
+
+Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
+                Body body) {
+  Locations X;
+  robot.locate(block_of(q), xi, body, X, nullptr);
+  return X.at(0);
+}
+
 std::vector<int> match_parameters(const Robot& robot, std::string_view pattern) {
   std::vector<int> found;
   const std::vector<Parameter>& list = robot.parameters();

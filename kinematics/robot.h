@@ -45,13 +45,20 @@ struct ConfigurationBlock {
   Conditions conditions = {};
 };
 
-/// Location of a body in the world frame, lane by lane.
+/// Location of a body in the world frame.
+struct Location {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// The same lane by lane.
 struct Locations {
   LaneArray<9> rotation{kLanes, 9};  ///< column 3 j + i holds R(i, j)
   LaneArray<3> position{kLanes, 3};  ///< m
 
   Eigen::Matrix3d R(int lane) const;
   Eigen::Vector3d p(int lane) const { return position.row(lane).matrix().transpose(); }
+  Location at(int lane) const { return {R(lane), p(lane)}; }
 };
 
 /// Psi of a block, (6 kLanes) x parameters: row c kLanes + lane is component c (dx dy dz of the
@@ -117,6 +124,12 @@ class Robot {
 Eigen::VectorXd values(const Robot& robot);
 /// Centres of the priors.
 Eigen::VectorXd nominal_values(const Robot& robot);
+
+/// Readings `q` alone, in every lane.
+ConfigurationBlock block_of(const Eigen::VectorXd& q);
+/// Location of `body` at readings `q`.
+Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
+                Body body = Body::endpoint);
 
 /// Index of the parameter called `name` (its name or FRAME.FIELD), or -1.
 int find_parameter(const Robot& robot, std::string_view name);

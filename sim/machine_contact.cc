@@ -128,12 +128,10 @@ Eigen::VectorXd Machine::seat(const MotionRequest& request, const Eigen::VectorX
   DataSet data;
   data.sets = sets_;
   double nearest = HUGE_VAL;
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
+  const Eigen::Vector3d p = locate(*robot_, truth_.xi, q).p;
   for (std::size_t s = 0; s < sets_.size(); ++s)
     for (std::size_t g = 0; g < scenario_.sets[s].places.size(); ++g) {
-      const double far = (scenario_.sets[s].places[g].p - X.p(0)).norm();
+      const double far = (scenario_.sets[s].places[g].p - p).norm();
       if (far >= nearest) continue;
       nearest = far;
       data.rows.set = {static_cast<int>(s)};

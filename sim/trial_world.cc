@@ -61,12 +61,9 @@ double TrialWorld::largest_torque(int joint) const {
 
 Eigen::Vector3d tip_of(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
                        Eigen::MatrixXd* J) {
-  ConfigurationBlock block;
-  block.q = q.transpose().replicate(kLanes, 1).array();
-  block.count = 1;
   Locations X;
   PsiBlock psi;
-  robot.locate(block, xi, Body::endpoint, X, J ? &psi : nullptr);
+  robot.locate(block_of(q), xi, Body::endpoint, X, J ? &psi : nullptr);
   if (J) {
     Eigen::MatrixXd all;
     robot.joint_jacobian(xi, psi, all);

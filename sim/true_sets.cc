@@ -31,7 +31,7 @@ Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, cons
     block.count = kLanes;
     robot.locate(block, xi, body, X, nullptr);
     for (int lane = 0; lane < kLanes; ++lane)
-      if (patch.contains(X.p(lane))) return {X.R(lane), X.p(lane)};
+      if (patch.contains(X.p(lane))) return X.at(lane);
   }
   return {Eigen::Matrix3d::Identity(), patch.centre};
 }

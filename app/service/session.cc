@@ -50,10 +50,7 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
 }  // namespace
 
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q) {
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  robot.locate(block, values(robot), Body::endpoint, X, nullptr);
-  return X.p(0);
+  return locate(robot, values(robot), q).p;
 }
 
 Eigen::VectorXd vector_of(const std::vector<double>& readings) {

@@ -17,7 +17,7 @@ inline Eigen::VectorXd home() {
   return (Eigen::VectorXd(6) << 0.0, -0.6, 0.9, 0.0, 1.2, 0.0).finished();
 }
 
-inline Location located(const Eigen::VectorXd& q) { return located(rx90(), values(rx90()), q); }
+inline Location located(const Eigen::VectorXd& q) { return locate(rx90(), values(rx90()), q); }
 
 inline Set set_of(const std::string& name, const std::string& method) {
   Problems none;

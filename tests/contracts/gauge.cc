@@ -28,8 +28,7 @@ Eigen::MatrixXd of_lane(const MethodOutput::Block& D, int lane, int equations) {
 void satisfy(Instance& at) {
   if (!at.method().constrains()) {
     for (int lane = 0; lane < kLanes; ++lane)
-      at.method().measure({at.now.R(lane), at.now.p(lane)}, {at.before.R(lane), at.before.p(lane)},
-                          at.own, at.data, lane);
+      at.method().measure(at.now.at(lane), at.before.at(lane), at.own, at.data, lane);
     return;
   }
   for (int step = 0; step < 30; ++step) {
@@ -46,7 +45,7 @@ void satisfy(Instance& at) {
 std::vector<Location> locations_of(const Instance& at, int group) {
   std::vector<Location> list;
   for (int lane = 0; lane < kLanes; ++lane)
-    if (group < 0 || at.data.group[lane] == group) list.push_back({at.now.R(lane), at.now.p(lane)});
+    if (group < 0 || at.data.group[lane] == group) list.push_back(at.now.at(lane));
   return list;
 }
 

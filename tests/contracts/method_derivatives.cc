@@ -22,7 +22,7 @@ using Block = MethodOutput::Block;
 Locations moved(const Locations& X, int c, double h) {
   Locations next = X;
   for (int lane = 0; lane < kLanes; ++lane) {
-    Location at{X.R(lane), X.p(lane)};
+    Location at = X.at(lane);
     if (c < 3)
       at.p[c] += h;
     else

@@ -57,9 +57,7 @@ inline Moved moved(const std::string& robot, const std::string& entries, const H
   const auto corrected = correct(geometry, list.items[0].items, site, problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   if (!corrected) return {};
-  ConfigurationBlock block;
-  block.q = held.q.transpose().replicate(kLanes, 1).array();
-  block.count = 1;
+  ConfigurationBlock block = block_of(held.q);
   Conditions& at = block.conditions;
   if (held.velocity.size() > 0) at.velocity = held.velocity.transpose();
   if (held.wrench.size() > 0) at.wrench = held.wrench.transpose();

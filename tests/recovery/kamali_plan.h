@@ -10,14 +10,6 @@ namespace selfcal::recovery {
 
 inline constexpr int kWrenches = 7;  ///< at each pose
 
-/// One configuration, for Robot::locate.
-inline ConfigurationBlock block_of(const Eigen::VectorXd& q) {
-  ConfigurationBlock block;
-  block.q = q.transpose().replicate(kLanes, 1).array();
-  block.count = 1;
-  return block;
-}
-
 /// 125 x 6: five by five by five points in a cube of 500 mm in front of the robot, the tool
 /// pointing away from it and down, give or take a radian about each axis, so that the tracker sees
 /// it. Any of the inverse kinematics' solutions.

@@ -103,11 +103,9 @@ inline double height(const Machine& machine, const Touched& touched, Nanoseconds
   EXPECT_TRUE(around);
   if (!around) return 0;
   const Reading reading = reading_between(around->first, around->second, at, machine.scales());
-  ConfigurationBlock block{reading.q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  machine.robot().locate(block, machine.truth().xi, Body::endpoint, X, nullptr);
+  const Eigen::Vector3d p = locate(machine.robot(), machine.truth().xi, reading.q).p;
   const Eigen::Vector3d n = Eigen::Vector3d(0.004, 0, 1).normalized();
-  return n.dot(X.p(0) - Eigen::Vector3d(0.75, 0, 0.147));
+  return n.dot(p - Eigen::Vector3d(0.75, 0, 0.147));
 }
 
 }  // namespace selfcal

@@ -90,11 +90,7 @@ TEST(Machine, NeedsToKnowHowFarItsSurfacesReach) {
 // ---------------------------------------------------------------------------- sockets
 
 Eigen::Vector3d true_endpoint(const Machine& machine, const EncoderSample& sample) {
-  const Eigen::VectorXd q = reading_of(sample, machine.scales());
-  ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  machine.robot().locate(block, machine.truth().xi, Body::endpoint, X, nullptr);
-  return X.p(0);
+  return locate(machine.robot(), machine.truth().xi, reading_of(sample, machine.scales())).p;
 }
 
 TEST(Machine, SeatsTheToolInTheTrueSocketAndClosesTheTriggerThere) {
@@ -106,10 +102,8 @@ TEST(Machine, SeatsTheToolInTheTrueSocketAndClosesTheTriggerThere) {
     q[0] += 0.1 * i - 0.6;
     q[1] += 0.05 * (i % 5);
     q[4] -= 0.07 * (i % 3);
-    ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-    Locations X;
-    rx90().locate(block, values(rx90()), Body::endpoint, X, nullptr);
-    const Eigen::Vector3d p = X.p(0) + 1e-3 * Eigen::Vector3d(i % 2, 1, -1);
+    const Eigen::Vector3d p =
+        locate(rx90(), values(rx90()), q).p + 1e-3 * Eigen::Vector3d(i % 2, 1, -1);
     places += (i ? ", [" : "[") + format_number(p.x()) + ", " + format_number(p.y()) + ", " +
               format_number(p.z()) + "]";
     readings.push_back(q);

@@ -6,15 +6,8 @@
 
 namespace selfcal {
 
-Location located(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q) {
-  const ConfigurationBlock block{q.transpose().replicate(kLanes, 1).array(), 1};
-  Locations X;
-  robot.locate(block, xi, Body::endpoint, X, nullptr);
-  return {X.R(0), X.p(0)};
-}
-
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q) {
-  return located(robot, xi, q).p;
+  return locate(robot, xi, q).p;
 }
 
 std::vector<double> aligned_errors(const Robot& robot, const Eigen::VectorXd& xi,

@@ -3,13 +3,11 @@
 
 #include <vector>
 
-#include "constraints/method.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
 
 /// The endpoint at readings q (rad or m).
-Location located(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q);
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q);
 
 /// Length of the end position's error (m), in ascending order, over 500 random poses after the
