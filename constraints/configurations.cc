@@ -157,7 +157,9 @@ class Sampler {
                                           : everywhere(method, block, X);
       bool taken = false;
       for (const int lane : found) {
-        if (!within_limits(block, lane) || !request.patch.contains(X.p(lane))) continue;
+        if (!within_limits(robot_, block.q.row(lane).transpose()) ||
+            !request.patch.contains(X.p(lane)))
+          continue;
         if (taken) {
           spare_.push_back({block.q.row(lane), X.at(lane)});
           continue;
@@ -235,15 +237,6 @@ class Sampler {
       if (left[lane] < kExact) reached.push_back(lane);
     robot_.locate(block, xi_, method.body(), X, nullptr);
     return reached;
-  }
-
-  bool within_limits(const ConfigurationBlock& block, int lane) const {
-    for (size_t j = 0; j < robot_.joints().size(); ++j) {
-      const Joint& joint = robot_.joints()[j];
-      const double q = block.q(lane, static_cast<Eigen::Index>(j));
-      if (joint.limited() && (q < joint.lower || q > joint.upper)) return false;
-    }
-    return true;
   }
 
   const Robot& robot_;

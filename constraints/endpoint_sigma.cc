@@ -3,7 +3,6 @@
 #include "constraints/endpoint_sigma.h"
 
 #include <algorithm>
-#include <numbers>
 #include <random>
 
 #include "kinematics/linear_algebra.h"
@@ -30,7 +29,7 @@ Eigen::MatrixXd random_poses(const Robot& robot, const Observations* data, int c
       double lower = joints[j].lower, upper = joints[j].upper;
       if (!joints[j].limited()) {
         const auto column = static_cast<Eigen::Index>(j);
-        const double reach = joints[j].quantity == Quantity::angle ? std::numbers::pi : 1.0;
+        const double reach = joints[j].range() / 2;
         lower = data ? data->q.col(column).minCoeff() : -reach;
         upper = data ? data->q.col(column).maxCoeff() : reach;
       }

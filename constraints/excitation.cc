@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "constraints/configurations.h"
 
@@ -24,11 +23,7 @@ Movement movement(const Robot& robot, const DataSet& data, size_t j) {
     lower = std::min(lower, data.rows.q(row, static_cast<Eigen::Index>(j)));
     upper = std::max(upper, data.rows.q(row, static_cast<Eigen::Index>(j)));
   }
-  const Joint& joint = robot.joints()[j];
-  const double range = joint.limited()                     ? joint.upper - joint.lower
-                       : joint.quantity == Quantity::angle ? 2 * std::numbers::pi
-                                                           : 1.0;
-  return {upper - lower, range};
+  return {upper - lower, robot.joints()[j].range()};
 }
 
 /// The joint whose movement parameter `p` needs most: of its own frame and the ones around it, the

@@ -15,22 +15,11 @@ constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
 constexpr int kPathBlocks = 3;      // of kLanes places along a path
 constexpr int kRounds = 12;         // of sampling, until enough candidates are usable
 
-bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
-  for (Eigen::Index j = 0; j < q.size(); ++j) {
-    const Joint& joint = robot.joints()[j];
-    if (joint.limited() && (q[j] < joint.lower + margin || q[j] > joint.upper - margin))
-      return false;
-  }
-  return true;
-}
-
 /// Distance of two configurations, each joint counted against its range.
 double distance(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double sum = 0;
   for (Eigen::Index j = 0; j < a.size(); ++j) {
-    const Joint& joint = robot.joints()[j];
-    const double range = joint.limited() ? joint.upper - joint.lower : M_PI;
-    sum += std::pow((a[j] - b[j]) / range, 2);
+    sum += std::pow((a[j] - b[j]) / robot.joints()[j].range(), 2);
   }
   return std::sqrt(sum);
 }

@@ -50,12 +50,9 @@ Node Effect::describe(const Eigen::VectorXd& v) const {
 
 int EffectPlan::joint() const {
   const std::string at = fields.text("at");
-  const std::vector<Joint>& joints = robot.joints();
+  if (const int joint = find_joint(robot, at); joint >= 0) return joint;
   std::string known;
-  for (size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].name == at) return static_cast<int>(j);
-    known += (known.empty() ? "" : ", ") + joints[j].name;
-  }
+  for (const Joint& joint : robot.joints()) known += (known.empty() ? "" : ", ") + joint.name;
   fields.fail("at", "a joint of the robot: " + known);
   return 0;
 }

@@ -1,6 +1,7 @@
 // What every kind of robot shares: looking parameters up by name, making a robot from its file.
 #include "kinematics/robot.h"
 
+#include <numbers>
 #include <set>
 
 #include "kinematics/corrected_robot.h"
@@ -67,6 +68,11 @@ std::string_view unit(Quantity quantity) {
   return "1";
 }
 
+double Joint::range() const {
+  if (limited()) return upper - lower;
+  return quantity == Quantity::angle ? 2 * std::numbers::pi : 2;
+}
+
 Eigen::Matrix3d Locations::R(int lane) const { return rotation.row(lane).reshaped(3, 3).matrix(); }
 
 Eigen::VectorXd values(const Robot& robot) {
@@ -79,6 +85,18 @@ Eigen::VectorXd nominal_values(const Robot& robot) {
   Eigen::VectorXd xi(static_cast<Eigen::Index>(robot.parameters().size()));
   for (Eigen::Index i = 0; i < xi.size(); ++i) xi[i] = robot.parameters()[i].nominal;
   return xi;
+}
+
+int find_joint(const Robot& robot, std::string_view name) {
+  for (size_t j = 0; j < robot.joints().size(); ++j)
+    if (robot.joints()[j].name == name) return static_cast<int>(j);
+  return -1;
+}
+
+bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    if (!robot.joints()[j].allows(q[j], margin)) return false;
+  return true;
 }
 
 ConfigurationBlock block_of(const Eigen::VectorXd& q) {

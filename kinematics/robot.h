@@ -74,6 +74,13 @@ struct Joint {
   Quantity quantity = Quantity::angle;
   double lower = 0, upper = 0;  ///< of the joint reading; equal when the file gives none
   bool limited() const { return upper > lower; }
+  /// How far the reading can go altogether: without limits a turn or 2 m, half of it to each side
+  /// of zero.
+  double range() const;
+  /// The reading keeps `margin` from the limits, if there are any.
+  bool allows(double reading, double margin = 0) const {
+    return !limited() || !(reading < lower + margin || reading > upper - margin);
+  }
 };
 
 /// One kind of machine. Immutable; a vector xi of parameter values goes beside it.
@@ -124,6 +131,11 @@ class Robot {
 Eigen::VectorXd values(const Robot& robot);
 /// Centres of the priors.
 Eigen::VectorXd nominal_values(const Robot& robot);
+
+/// Index of the joint called `name`, or -1.
+int find_joint(const Robot& robot, std::string_view name);
+/// Every reading keeps `margin` (rad or m) from its joint's limits.
+bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin = 0);
 
 /// Readings `q` alone, in every lane.
 ConfigurationBlock block_of(const Eigen::VectorXd& q);

@@ -174,7 +174,7 @@ void Machine::request(const MotionRequest& request) {
     return refuse("the robot has " + std::to_string(robot_->joints().size()) + " joints");
   for (std::size_t j = 0; j < request.q.size(); ++j) {
     const Joint& joint = robot_->joints()[j];
-    if (joint.limited() && (request.q[j] < joint.lower || request.q[j] > joint.upper))
+    if (!joint.allows(request.q[j]))
       return refuse(joint.name + " cannot go to " + format_number(request.q[j]));
   }
   if (moving_) stop("another move was asked for");

@@ -25,13 +25,6 @@ double sigma_of(const Parameter& parameter, const Errors& errors) {
   return 0;
 }
 
-/// Index of the joint called `name`, or -1.
-int find_joint(const Robot& robot, const std::string& name) {
-  for (std::size_t j = 0; j < robot.joints().size(); ++j)
-    if (robot.joints()[j].name == name) return static_cast<int>(j);
-  return -1;
-}
-
 double mass(const serial::Model& model) {
   double sum = 0;
   for (const serial::Frame& frame : model.frames) sum += frame.mass.value_or(0);

@@ -85,8 +85,7 @@ class Reader {
     for (std::size_t j = 0; home && j < c_.robot->joints().size(); ++j) {
       const Joint& joint = c_.robot->joints()[j];
       const double q = (*home)[static_cast<Eigen::Index>(j)];
-      if (joint.limited() && (q < joint.lower || q > joint.upper))
-        f.fail("home", "a reading of " + joint.name + " within its limits");
+      if (!joint.allows(q)) f.fail("home", "a reading of " + joint.name + " within its limits");
     }
     c_.speeds.travel = number_within(f, "speed", c_.speeds.travel, 1e-3, 100);
     c_.speeds.touch = number_within(f, "touch_speed", c_.speeds.touch, 1e-4, 1);

@@ -56,7 +56,7 @@ std::string Service::beyond_limits() const {
   const Eigen::VectorXd q = *senses_.q();
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const Joint& joint = config_.robot->joints()[j];
-    if (joint.limited() && (q[j] < joint.lower - kBeyond || q[j] > joint.upper + kBeyond))
+    if (!joint.allows(q[j], -kBeyond))
       return joint.name + " reads " + format_number(std::round(1e3 * q[j]) / 1e3) +
              ", beyond its limits: are its zero, its sign and its turns right?";
   }

@@ -11,8 +11,7 @@ class JointCoupling final : public Effect {
   JointCoupling(const EffectPlan& plan, int joint) : joint_(joint) {
     const std::string from = plan.fields.text("from");
     const std::vector<Joint>& joints = plan.robot.joints();
-    for (size_t j = 0; j < joints.size(); ++j)
-      if (joints[j].name == from) from_ = static_cast<int>(j);
+    from_ = find_joint(plan.robot, from);
     if (from_ < 0 || from_ == joint) plan.fields.fail("from", "another joint of the robot");
     from_name_ = from;
     const Quantity driven = joints[joint].quantity;
