@@ -22,12 +22,10 @@ constexpr size_t kMostListed = 12;
 
 /// "touches" when every row that identifies is one, else "rows".
 const char* noun(const DataSet& data, const Solution& solution) {
-  for (size_t s = 0; s < data.sets.size(); ++s) {
-    const std::string_view method = data.sets[s].method->name();
-    if (solution.sets.size() > s && solution.sets[s].identifies && method != "plane" &&
-        method != "plane-normal" && method != "sphere")
+  for (size_t s = 0; s < data.sets.size(); ++s)
+    if (solution.sets.size() > s && solution.sets[s].identifies &&
+        data.sets[s].method->touches() == TouchedSurface::none)
       return "rows";
-  }
   return "touches";
 }
 

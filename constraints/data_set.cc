@@ -42,8 +42,7 @@ void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
     const Place place = entry ? entry->place : node.place;
     if (other == sets.end())
       problems.add(place, "set " + set.name + ": parallel_to names no set '" + wanted + "'");
-    else if (!other->method || other->method->name() != "plane" ||
-             !other->method->reference().empty())
+    else if (!other->method || !set.method->can_refer_to(*other->method))
       problems.add(place, "set " + set.name + ": parallel_to needs a set of method plane that is " +
                               "not itself parallel to another, '" + wanted + "' is not");
     else

@@ -19,6 +19,12 @@ bool Method::has_angles() const {
   return std::find(all.begin(), all.end(), Quantity::angle) != all.end();
 }
 
+std::optional<Plane> Method::plane(const Eigen::VectorXd&, const Eigen::VectorXd*) const {
+  return std::nullopt;
+}
+Eigen::VectorXd Method::own_of(const Plane&) const { return {}; }
+bool Method::can_refer_to(const Method&) const { return false; }
+
 Eigen::VectorXd Method::start(const std::vector<Location>&, const std::vector<int>&,
                               const Observations&, const Eigen::VectorXd*, const Location&) const {
   return {};

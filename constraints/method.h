@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
@@ -21,6 +22,15 @@ using Random = std::mt19937_64;
 
 /// Most scalar equations that one row of any method gives (the calibration index of 11.5).
 inline constexpr int kMostEquations = 6;
+
+/// The plane n . P = d.
+struct Plane {
+  Eigen::Vector3d n = Eigen::Vector3d::UnitZ();  ///< unit
+  std::optional<double> d = {};                  ///< m; nothing where only the direction is known
+};
+
+/// The surface that the tool touches; instruments, sockets and nests have none.
+enum class TouchedSurface { none, plane, curved };
 
 /// Rows of one set to be evaluated together, one a lane.
 struct MethodInput {
@@ -97,8 +107,18 @@ class Method {
   bool has_angles() const;
   Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
+  virtual TouchedSurface touches() const { return TouchedSurface::none; }
+  /// The touched plane; nothing of other methods.
+  virtual std::optional<Plane> plane(const Eigen::VectorXd& own,
+                                     const Eigen::VectorXd* reference) const;
+  /// Own values of the plane as the method keeps them, n perhaps turned; empty of methods that
+  /// touch none and of those that refer to another set.
+  virtual Eigen::VectorXd own_of(const Plane& plane) const;
+
   /// Name of another set whose own unknowns this one shares, or empty.
   virtual std::string reference() const { return {}; }
+  /// True when it can share the own unknowns of `other`.
+  virtual bool can_refer_to(const Method& other) const;
 
   virtual int own_freedom() const { return 0; }
   /// Own values that fit locations X (of body()) of the rows best, as a start.

@@ -30,8 +30,7 @@ Eigen::Vector3d thin_direction(const std::vector<Eigen::Vector3d>& points,
 SiteSet describe(const Robot& robot, const DataSet& data, int set) {
   SiteSet site;
   site.name = data.sets[set].name;
-  const std::string_view method = data.sets[set].method->name();
-  site.touch = method == "plane" || method == "plane-normal";
+  site.touch = data.sets[set].method->touches() == TouchedSurface::plane;
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
   if (points.empty()) return site;
   for (const Eigen::Vector3d& p : points) site.centre += p / static_cast<double>(points.size());

@@ -6,6 +6,7 @@
 
 #include "constraints/contact.h"
 #include "constraints/endpoint_sigma.h"
+#include "constraints/methods/plane.h"
 #include "constraints/spread.h"
 
 namespace selfcal {
@@ -22,13 +23,6 @@ double distance(const Robot& robot, const Eigen::VectorXd& a, const Eigen::Vecto
     sum += std::pow((a[j] - b[j]) / robot.joints()[j].range(), 2);
   }
   return std::sqrt(sum);
-}
-
-std::shared_ptr<const Method> plain_plane() {
-  Problems none;
-  Node entry = Node::map();
-  entry.set("method", Node::of(std::string("plane")));
-  return make_set("surface", entry, none).method;
 }
 
 /// Candidates of one target with their way in, as far as they are usable.
@@ -53,14 +47,14 @@ class Candidates {
     DataSet data;
     data.sets = {sets_[target.set]};
     // The nominal surface is given whole, whatever the set knows or shares of it.
-    if (target.own) data.sets[0].method = plain_plane();
+    if (target.plane) data.sets[0].method = point_on_plane();
     data.sets[0].reference = -1;
     SampleRequest request;
     request.rows = rows;
     request.together = target.places.empty();
     request.rows_per_group =
         std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
-    request.own = target.own;
+    if (target.plane) request.own = data.sets[0].method->own_of(*target.plane);
     request.patch = target.within;
     request.places = target.places;
     const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
@@ -96,10 +90,11 @@ class Candidates {
   /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
   bool move_out(const TouchTarget& target, const DataSet& data, const State& truth, int row,
                 const Location& X, double distance, Eigen::VectorXd& q) const {
-    const std::size_t equations = data.sets[0].method->equations().size();
-    Eigen::VectorXd wanted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(equations));
-    if (equations == 1)
-      wanted[0] = distance * truth.own[0].head<3>().dot(target.outward);
+    const Method& method = *data.sets[0].method;
+    Eigen::VectorXd wanted =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
+    if (const auto plane = method.plane(truth.own[0], nullptr))
+      wanted[0] = distance * plane->n.dot(target.outward);
     else
       wanted.head<3>() = distance * (X.R.transpose() * target.outward);
     return move_to_residual(robot_, data, truth, row, wanted, q);

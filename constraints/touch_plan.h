@@ -24,9 +24,9 @@ struct Obstacle {
 struct TouchTarget {
   int set = 0;
   int touches = 0;
-  Eigen::Vector3d outward;             ///< direction of the way out (world, unit)
-  std::optional<Eigen::VectorXd> own;  ///< nominal own values (a plane's normal and distance)
-  std::vector<Location> places;        ///< nominal sockets or nests, one a group; empty for planes
+  Eigen::Vector3d outward;       ///< direction of the way out (world, unit)
+  std::optional<Plane> plane;    ///< nominal, with its distance; nothing for sockets
+  std::vector<Location> places;  ///< nominal sockets or nests, one a group; empty for planes
   Patch within;
   int obstacle = -1;  ///< what lies behind its surface, of the obstacles; -1 for sockets
 };

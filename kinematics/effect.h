@@ -44,7 +44,7 @@ struct Influence {
 /// One surface or target of a data set, as far as effects at it ask.
 struct SiteSet {
   std::string name;
-  bool touch = false;                                ///< a surface was touched
+  bool touch = false;                                ///< a flat surface was touched
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
 };

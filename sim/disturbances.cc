@@ -86,9 +86,9 @@ class Disturber {
         if (equations[a] == Quantity::length) r[a] = normal(errors_);
       return size * r.normalized();
     }
-    const auto n = residual_normal(made_.data.sets, set, made_.truth.own);
+    const auto plane = true_plane(made_.data.sets, set, made_.truth.own);
     const auto outward = outward_normal(scenario_, made_.data.sets, set, made_.truth.own);
-    r[0] = n && n->dot(*outward) < 0 ? -size : size;
+    r[0] = plane && plane->n.dot(*outward) < 0 ? -size : size;
     return r;
   }
 

@@ -27,12 +27,11 @@ std::vector<TrueSurface> true_surfaces(const Scenario& scenario, const std::vect
                                        const std::vector<Eigen::VectorXd>& own) {
   std::vector<TrueSurface> surfaces;
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const auto n = residual_normal(sets, s, own);
-    if (!n) continue;
+    const std::optional<Plane> plane = true_plane(sets, s, own);
+    if (!plane || !plane->d) continue;
     const Eigen::Vector3d outward = *outward_normal(scenario, sets, s, own);
-    const double d = sets[s].reference < 0 ? own[s][3] : own[s][0];
     surfaces.push_back(
-        {static_cast<int>(s), outward, n->dot(outward) * d, scenario.sets[s].within});
+        {static_cast<int>(s), outward, plane->n.dot(outward) * *plane->d, scenario.sets[s].within});
   }
   return surfaces;
 }
@@ -63,11 +62,12 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
   truth_.own = true_own_values(scenario, sets_, *robot_, truth_.xi, problems);
   if (problems.any()) return;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
-    const bool planes = residual_normal(sets_, s, truth_.own).has_value();
-    if (planes && scenario.sets[s].within.radius <= 0)
+    const std::optional<Plane> plane = true_plane(sets_, s, truth_.own);
+    const bool known = plane && plane->d;
+    if (known && scenario.sets[s].within.radius <= 0)
       problems.add(scenario.sets[s].entry.place,
                    "set " + sets_[s].name + ": a machine needs `within` of every surface");
-    if (!planes && scenario.sets[s].places.empty())
+    if (!known && scenario.sets[s].places.empty())
       problems.add(scenario.sets[s].entry.place,
                    "set " + sets_[s].name + ": a machine needs planes or `places`");
     truth_.groups.push_back(true_groups(scenario.sets[s], *sets_[s].method));

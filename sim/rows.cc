@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "constraints/configurations.h"
+#include "constraints/methods/plane.h"
 #include "sim/streams.h"
 #include "sim/true_sets.h"
 
@@ -29,16 +30,11 @@ int configurations(const SetScenario& set, const Repeats& repeats, const Method&
 }
 
 /// The centre's plane of a set touched by a probe, as a set of its own.
-void touch_by_point(const Eigen::Vector3d& outward, const Eigen::Vector3d& n, double radius,
-                    Set& set, Eigen::VectorXd& own) {
-  Problems none;
-  const double d = set.reference < 0 ? own[3] : own[0];
-  own.resize(4);
-  own << n, d + radius * n.dot(outward);
-  Node entry = Node::map();
-  entry.set("method", Node::of(std::string("plane")));
-  set.method = make_set(set.name, entry, none).method;
+void touch_by_point(const Eigen::Vector3d& outward, const Plane& plane, double radius, Set& set,
+                    Eigen::VectorXd& own) {
+  set.method = point_on_plane();
   set.reference = -1;
+  own = set.method->own_of({plane.n, *plane.d + radius * plane.n.dot(outward)});
 }
 
 std::vector<int> shuffled(int count, Random& random) {
@@ -132,8 +128,7 @@ void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made) {
     const int count = configurations(wanted, scenario.repeats, *set.method);
     if (const double radius = probe_radius(wanted); radius > 0) {
       normals[s] = *outward_normal(scenario, made.data.sets, s, made.truth.own);
-      touch_by_point(normals[s], *residual_normal(made.data.sets, s, made.truth.own), radius, set,
-                     own);
+      touch_by_point(normals[s], *true_plane(made.data.sets, s, made.truth.own), radius, set, own);
     }
     SampleRequest& request = requests.emplace_back();
     request.set = static_cast<int>(s);

@@ -91,9 +91,7 @@ class SessionMaker {
       request.rows = count / sets + (s < count % sets ? 1 : 0);
       if (plan_.touches) {
         const TrialSurface& surface = out_.world.surfaces[static_cast<size_t>(s)];
-        Eigen::VectorXd own(4);
-        own << (surface.distance < 0 ? -1 : 1) * surface.normal, std::abs(surface.distance);
-        request.own = own;
+        request.own = out_.data.sets[s].method->own_of({surface.normal, surface.distance});
       }
       requests.push_back(request);
     }

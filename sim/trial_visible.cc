@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinematics/linear_algebra.h"
+#include "sim/true_sets.h"
 
 namespace selfcal {
 namespace {
@@ -37,7 +38,8 @@ Calibration::Calibration(const TrialSession& session, double noise) {
     const auto row = static_cast<size_t>(row_[i]);
     const auto e = static_cast<Eigen::Index>(i);
     if (session.world.touches())
-      along_.row(e) = session.truth.own[data.rows.set[row]].head<3>().transpose() / noise;
+      along_.row(e) =
+          true_plane(data.sets, data.rows.set[row], session.truth.own)->n.transpose() / noise;
     else
       along_(e, seen[row]++) = 1 / noise;
     (session.data.rows.check[row] ? check_ : fit_).push_back(static_cast<int>(i));

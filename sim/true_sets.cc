@@ -1,6 +1,6 @@
 // Own values come from Method::through, which knows what the options fix, unless the scenario gives
-// them: a surface's as the plane methods keep them ([n d], n), any others by the names under which
-// the method reports them, found by Newton steps of least length on report's gradients.
+// them: a surface's as the method keeps them, any others by the names under which the method
+// reports them, found by Newton steps of least length on report's gradients.
 #include "sim/true_sets.h"
 
 #include <cmath>
@@ -16,10 +16,6 @@ constexpr int kTries = 60;     // blocks of random configurations
 constexpr int kSteps = 100;    // Newton steps
 constexpr double kMet = 1e-9;  // what is left of the wanted values (m, rad)
 
-bool is_plane(const Method& method) {
-  return method.name() == "plane" || method.name() == "plane-normal";
-}
-
 /// A random location of the set's body within the patch, or the patch's centre if it is out of
 /// reach.
 Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, const Patch& patch,
@@ -34,15 +30,6 @@ Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, cons
       if (patch.contains(X.p(lane))) return X.at(lane);
   }
   return {Eigen::Matrix3d::Identity(), patch.centre};
-}
-
-/// Own values of the plane with this surface; d >= 0 as the result reports it.
-Eigen::VectorXd values_of(const Surface& surface, const Method& method) {
-  const double d = surface.normal.dot(surface.point);
-  if (method.name() == "plane-normal") return surface.normal;
-  Eigen::VectorXd own(4);
-  own << (d < 0 ? -1.0 : 1.0) * surface.normal, std::abs(d);
-  return own;
 }
 
 const OwnReport* find(const std::vector<OwnReport>& reports, const std::string& name) {
@@ -96,8 +83,9 @@ std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
     const SetScenario& each = scenario.sets[s];
     const Set& set = sets[s];
     if (!set.method) continue;
+    const bool plane = set.method->touches() == TouchedSurface::plane;
     const bool free_plane =
-        is_plane(*set.method) && set.method->own_freedom() > 0 && set.method->reference().empty();
+        plane && set.method->own_freedom() > 0 && set.method->reference().empty();
     if (each.surface && !free_plane)
       problems.add(each.entry.place,
                    "set " + each.name + ": `surface` is for planes whose place is unknown");
@@ -105,7 +93,7 @@ std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
       problems.add(*each.noise_angle_true, "set " + each.name +
                                                ": `noise_angle_true` is for methods with angles, " +
                                                std::string(set.method->name()) + " has none");
-    if (each.outward && !is_plane(*set.method))
+    if (each.outward && !plane)
       problems.add(each.entry.place, "set " + each.name + ": `outward` is for planes");
   }
   return sets;
@@ -124,34 +112,35 @@ std::vector<Eigen::VectorXd> true_own_values(const Scenario& scenario, const std
       const SetScenario& wanted = scenario.sets[s];
       const Eigen::VectorXd* reference = referring ? &own[sets[s].reference] : nullptr;
       const Location X = anywhere(robot, xi, method.body(), wanted.within, random);
-      own[s] = wanted.surface ? values_of(*wanted.surface, method)
-                              : method.through(X, reference, random);
+      if (const auto& surface = wanted.surface)
+        own[s] = method.own_of({surface->normal, surface->normal.dot(surface->point)});
+      else
+        own[s] = method.through(X, reference, random);
       if (!wanted.truth.empty()) bring_to_truth(wanted, method, reference, own[s], problems);
     }
   return own;
 }
 
-std::optional<Eigen::Vector3d> residual_normal(const std::vector<Set>& sets, std::size_t set,
-                                               const std::vector<Eigen::VectorXd>& own) {
-  if (!is_plane(*sets[set].method)) return std::nullopt;
+std::optional<Plane> true_plane(const std::vector<Set>& sets, std::size_t set,
+                                const std::vector<Eigen::VectorXd>& own) {
   const int reference = sets[set].reference;
-  return Eigen::Vector3d(own[reference < 0 ? set : reference].head<3>());
+  return sets[set].method->plane(own[set], reference < 0 ? nullptr : &own[reference]);
 }
 
 std::optional<Eigen::Vector3d> outward_normal(const Scenario& scenario,
                                               const std::vector<Set>& sets, std::size_t set,
                                               const std::vector<Eigen::VectorXd>& own) {
-  const std::optional<Eigen::Vector3d> n = residual_normal(sets, set, own);
-  if (!n) return std::nullopt;
+  const std::optional<Plane> plane = true_plane(sets, set, own);
+  if (!plane) return std::nullopt;
   const SetScenario& wanted = scenario.sets[set];
-  double side = 1;  // the normal of a plane-normal is the outward one
+  double side = 1;  // a normal alone is the outward one
   if (wanted.surface)
-    side = n->dot(wanted.surface->normal);
+    side = plane->n.dot(wanted.surface->normal);
   else if (wanted.outward)
-    side = n->dot(*wanted.outward);
-  else if (sets[set].method->name() == "plane")
-    side = sets[set].reference < 0 ? -own[set][3] : -own[set][0];
-  return side < 0 ? Eigen::Vector3d(-*n) : *n;
+    side = plane->n.dot(*wanted.outward);
+  else if (plane->d)
+    side = -*plane->d;
+  return side < 0 ? Eigen::Vector3d(-plane->n) : plane->n;
 }
 
 }  // namespace selfcal

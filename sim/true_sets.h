@@ -21,12 +21,11 @@ std::vector<Eigen::VectorXd> true_own_values(const Scenario& scenario, const std
                                              const Robot& robot, const Eigen::VectorXd& xi,
                                              Problems& problems);
 
-/// Unit normal of the residual of a touched plane: the residual is n . P and a constant. Nothing
-/// for other methods.
-std::optional<Eigen::Vector3d> residual_normal(const std::vector<Set>& sets, std::size_t set,
-                                               const std::vector<Eigen::VectorXd>& own);
+/// The touched plane of a set, n as its residual has it; nothing for other methods.
+std::optional<Plane> true_plane(const std::vector<Set>& sets, std::size_t set,
+                                const std::vector<Eigen::VectorXd>& own);
 
-/// The same turned to the side from which the plane is touched.
+/// Its normal turned to the side from which it is touched.
 std::optional<Eigen::Vector3d> outward_normal(const Scenario& scenario,
                                               const std::vector<Set>& sets, std::size_t set,
                                               const std::vector<Eigen::VectorXd>& own);

@@ -190,7 +190,7 @@ class Reader {
     target.set = set;
     target.touches = f.integer("touches", 40, 4, 10000);
     const Node *surface = f.node("surface"), *within = f.node("within"), *places = f.node("places");
-    if (method->name() == "plane")
+    if (method->touches() == TouchedSurface::plane && !method->paired())
       read_plane(f, surface, within, target);
     else if (method->group_freedom() > 0 && method->columns() == std::vector<std::string>{"group"})
       read_sockets(f, places, target);
@@ -207,7 +207,7 @@ class Reader {
     const Surface s = read_surface(*surface, f.what() + " surface", problems_);
     target.within = read_patch(*within, f.what() + " within", problems_);
     target.outward = s.normal;
-    target.own = (Eigen::VectorXd(4) << s.normal, s.normal.dot(s.point)).finished();
+    target.plane = Plane{s.normal, s.normal.dot(s.point)};
     target.obstacle = static_cast<int>(c_.obstacles.size());
     c_.obstacles.push_back({s.point, s.normal, target.within});
   }

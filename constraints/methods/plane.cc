@@ -4,6 +4,8 @@
 // rho is the probe's radius, n_out the outward normal of the touched surface (columns nx ny nz).
 // The chapter's coefficients (a x + b y + c z + 1 = 0, 11.51) are a b c = -n / d.
 // With `parallel_to` the normal is that of another set and |d - d_other| is known.
+#include "constraints/methods/plane.h"
+
 #include <cmath>
 
 #include "constraints/methods/maker.h"
@@ -12,20 +14,21 @@
 namespace selfcal {
 namespace {
 
-/// The plane that own values [nx ny nz d] describe.
-struct Plane {
+/// What own values [nx ny nz d] mean.
+struct NormalForm {
   Eigen::Vector3d n;
   double d;
 };
 
-Plane plane_of(const Eigen::VectorXd& v) { return {v.head<3>(), v[3]}; }
+NormalForm normal_form(const Eigen::VectorXd& v) { return {v.head<3>(), v[3]}; }
 
+/// Own values of the plane, d >= 0.
 Eigen::VectorXd values_of(const Eigen::Vector3d& n, double d) {
-  return (Eigen::VectorXd(4) << n, d).finished();
+  return (Eigen::VectorXd(4) << (d < 0 ? -1.0 : 1.0) * n, std::abs(d)).finished();
 }
 
 /// nx ny nz d a b c of a plane whose n moves by D_n (3 x tangents) and d by D_d, over all freedoms.
-std::vector<OwnReport> describe(Plane plane, Eigen::MatrixXd D_n, Eigen::RowVectorXd D_d) {
+std::vector<OwnReport> describe(NormalForm plane, Eigen::MatrixXd D_n, Eigen::RowVectorXd D_d) {
   if (plane.d < 0) {
     plane = {-plane.n, -plane.d};
     D_n = -D_n;
@@ -51,6 +54,7 @@ class Touch : public Method {
   explicit Touch(double probe_radius) : probe_radius_(probe_radius) {}
   std::string_view name() const override { return "plane"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  TouchedSurface touches() const override { return TouchedSurface::plane; }
   std::vector<std::string> columns() const override {
     if (probe_radius_ > 0) return {"nx", "ny", "nz"};
     return {};
@@ -73,11 +77,15 @@ class Touch : public Method {
 
 class OnePlane final : public Touch {
  public:
-  OnePlane(double probe_radius, const std::optional<Plane>& known)
+  OnePlane(double probe_radius, const std::optional<NormalForm>& known)
       : Touch(probe_radius), known_(known) {}
 
   bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 3; }
+  std::optional<Plane> plane(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+    return Plane{own.head<3>(), own[3]};
+  }
+  Eigen::VectorXd own_of(const Plane& plane) const override { return values_of(plane.n, *plane.d); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd*,
@@ -86,7 +94,7 @@ class OnePlane final : public Touch {
     const Eigen::Vector3d n = best_normal(X);
     double d = 0;
     for (const Location& each : X) d += n.dot(each.p) / static_cast<double>(X.size());
-    return values_of(d < 0 ? Eigen::Vector3d(-n) : n, std::abs(d));
+    return values_of(n, d);
   }
   void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
     if (known_) return;
@@ -97,11 +105,11 @@ class OnePlane final : public Touch {
     if (known_) return {};
     Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 3);
     D_n.leftCols<2>() = tangents(own.head<3>());
-    return describe(plane_of(own), D_n, Eigen::RowVector3d(0, 0, 1));
+    return describe(normal_form(own), D_n, Eigen::RowVector3d(0, 0, 1));
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const Plane plane = plane_of(*in.own);
+    const NormalForm plane = normal_form(*in.own);
     const Eigen::Matrix<double, 3, 2> T = tangents(plane.n);
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d P = touched(in, lane);
@@ -117,12 +125,11 @@ class OnePlane final : public Touch {
                           Random& random) const override {
     if (known_) return values_of(known_->n, known_->d);
     const Eigen::Vector3d n = random_direction(random);
-    const double d = n.dot(X.p);
-    return values_of(d < 0 ? Eigen::Vector3d(-n) : n, std::abs(d));
+    return values_of(n, n.dot(X.p));
   }
 
  private:
-  std::optional<Plane> known_;
+  std::optional<NormalForm> known_;
 };
 
 /// Own values [d, side]: the normal is the reference's, d - d_reference has the sign of `side`.
@@ -133,7 +140,14 @@ class ParallelPlane final : public Touch {
 
   bool may_leave_scale_free() const override { return true; }
   std::string reference() const override { return reference_; }
+  bool can_refer_to(const Method& other) const override {
+    return dynamic_cast<const OnePlane*>(&other) != nullptr;
+  }
   int own_freedom() const override { return 1; }
+  std::optional<Plane> plane(const Eigen::VectorXd& own,
+                             const Eigen::VectorXd* reference) const override {
+    return Plane{reference->head<3>(), own[0]};
+  }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd* reference,
@@ -158,7 +172,7 @@ class ParallelPlane final : public Touch {
   }
   std::vector<OwnReport> report(const Eigen::VectorXd& own,
                                 const Eigen::VectorXd* reference) const override {
-    const Plane plane{reference->head<3>(), own[0]};
+    const NormalForm plane{reference->head<3>(), own[0]};
     Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 4);
     D_n.middleCols<2>(1) = tangents(plane.n);
     std::vector<OwnReport> list = describe(plane, D_n, Eigen::RowVector4d(1, 0, 0, 0));
@@ -188,6 +202,10 @@ class ParallelPlane final : public Touch {
 
 }  // namespace
 
+std::shared_ptr<const Method> point_on_plane() {
+  return std::make_shared<OnePlane>(0, std::nullopt);
+}
+
 MethodPtr make_plane(SetEntry& entry) {
   const double radius = entry.fields.number("probe_radius", 0);
   if (radius < 0) entry.fields.fail("probe_radius", "a radius of at least 0 m");
@@ -206,7 +224,7 @@ MethodPtr make_plane(SetEntry& entry) {
   if (!known) return std::make_unique<OnePlane>(radius, std::nullopt);
   const Eigen::Vector3d abc = *known;
   if (abc.norm() < 1e-9) entry.fields.fail("plane", "[a, b, c] of a x + b y + c z + 1 = 0");
-  return std::make_unique<OnePlane>(radius, Plane{-abc.normalized(), 1 / abc.norm()});
+  return std::make_unique<OnePlane>(radius, NormalForm{-abc.normalized(), 1 / abc.norm()});
 }
 
 }  // namespace selfcal

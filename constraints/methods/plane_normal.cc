@@ -14,6 +14,11 @@ class PlaneNormal final : public Method {
 
   std::string_view name() const override { return "plane-normal"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  TouchedSurface touches() const override { return TouchedSurface::plane; }
+  std::optional<Plane> plane(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+    return Plane{own, std::nullopt};
+  }
+  Eigen::VectorXd own_of(const Plane& plane) const override { return plane.n; }
   bool paired() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 2; }

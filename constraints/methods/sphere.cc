@@ -17,6 +17,7 @@ class Sphere final : public Method {
 
   std::string_view name() const override { return "sphere"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  TouchedSurface touches() const override { return TouchedSurface::curved; }
   bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return radius_at() + (radius_ ? 0 : 1); }
 

@@ -40,7 +40,7 @@ struct Cell {
     target.set = static_cast<int>(sets.size());
     target.touches = touches;
     target.outward = normal.normalized();
-    target.own = (Eigen::VectorXd(4) << target.outward, target.outward.dot(point)).finished();
+    target.plane = Plane{target.outward, target.outward.dot(point)};
     target.within = {point, radius};
     sets.push_back(set_of("plane" + std::to_string(sets.size()), "plane"));
     target.obstacle = static_cast<int>(obstacles.size());

@@ -64,7 +64,7 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
     data.sets = cell.sets;
     SampleRequest request;
     request.rows = kTouches;
-    request.own = cell.targets[0].own;
+    request.own = cell.sets[0].method->own_of(*cell.targets[0].plane);
     request.patch = cell.targets[0].within;
     sample_rows(rx90(), values(rx90()), {request}, random, data);
     std::vector<Eigen::VectorXd> rows;

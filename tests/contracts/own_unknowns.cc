@@ -132,6 +132,25 @@ TEST_P(OwnUnknowns, OfLinkedGroupsHaveResidualsWithTheirDerivatives) {
   }
 }
 
+TEST_P(OwnUnknowns, OfATouchedPlaneAreThoseOfThatPlane) {
+  Random random(77);
+  const Instance at = random_instance(GetParam(), random);
+  const auto plane = at.method().plane(at.own, reference_of(at));
+  EXPECT_EQ(plane.has_value(), at.method().touches() == TouchedSurface::plane);
+  if (!plane || at.referred()) return;
+  const Plane turned{-plane->n, plane->d ? std::optional(-*plane->d) : std::nullopt};
+  for (const Plane& wanted : {*plane, turned}) {
+    const auto back = at.method().plane(at.method().own_of(wanted), nullptr);
+    ASSERT_TRUE(back);
+    const double side = back->n.dot(wanted.n);
+    EXPECT_NEAR(std::abs(side), 1, 1e-15);  // rounding
+    ASSERT_EQ(back->d.has_value(), wanted.d.has_value());
+    if (wanted.d) {
+      EXPECT_NEAR(side * *back->d, *wanted.d, 1e-15);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, OwnUnknowns, testing::ValuesIn(method_cases()), title_of);
 
 std::vector<std::pair<std::string, double>> plane_report(const Eigen::VectorXd& own) {

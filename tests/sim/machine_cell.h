@@ -39,7 +39,7 @@ inline const std::vector<PlannedTouch>& planned_touches() {
     TouchTarget target;
     target.touches = 20;
     target.outward = Eigen::Vector3d::UnitZ();
-    target.own = (Eigen::VectorXd(4) << 0, 0, 1, 0.15).finished();
+    target.plane = Plane{Eigen::Vector3d::UnitZ(), 0.15};
     target.within = {{0.75, 0, 0.15}, 0.25};
     target.obstacle = 0;
     TouchPlanOptions options;

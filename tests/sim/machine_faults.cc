@@ -87,6 +87,14 @@ TEST(Machine, NeedsToKnowHowFarItsSurfacesReach) {
   EXPECT_THAT(problems.list.front(), testing::HasSubstr("`within`"));
 }
 
+TEST(Machine, RefusesAPlaneOfWhichOnlyTheNormalIsKnown) {
+  Problems problems;
+  const Machine machine(scenario_of("robot: r\nsets: {a: {method: plane-normal}}\n"),
+                        {std::shared_ptr<void>(), &rx90()}, home(), problems);
+  ASSERT_TRUE(problems.any());
+  EXPECT_THAT(problems.list.front(), testing::HasSubstr("planes or `places`"));
+}
+
 // ---------------------------------------------------------------------------- sockets
 
 Eigen::Vector3d true_endpoint(const Machine& machine, const EncoderSample& sample) {
