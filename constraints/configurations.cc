@@ -41,6 +41,7 @@ class Sampler {
     Eigen::Index rows = 0;
     for (const SampleRequest& request : requests) rows += request.rows + 1;
     Observations& d = data_.rows;
+    d = {};
     d.q.resize(rows, static_cast<Eigen::Index>(robot_.joints().size()));
     d.position.setConstant(rows, 3, std::nan(""));
     d.orientation.setConstant(rows, 4, std::nan(""));

@@ -43,9 +43,9 @@ struct Sampled {
   std::string unreached;  ///< why rows are missing; empty when all were found
 };
 
-/// Appends rows for every request to `data`, whose sets are given, for a robot with parameters
-/// `xi`: readings, groups "g0", "g1"… and, for instruments, perfect readings. Rows of requests with
-/// fewer reachable configurations are missing and `unreached` says so.
+/// Makes the rows of `data`, whose sets are given, anew: those of every request, for a robot with
+/// parameters `xi`: readings, groups "g0", "g1"… and, for instruments, perfect readings. Rows of
+/// requests with fewer reachable configurations are missing and `unreached` says so.
 Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
                     const std::vector<SampleRequest>& requests, Random& random, DataSet& data);
 
