@@ -1,13 +1,11 @@
-// Newton steps of least length on a method's residual, kLanes random starts at once:
-//   dq = (G J)^+ (wanted - r),  J the joint Jacobian of the body.
+// Newton steps of least length on a method's residual from kLanes random starts at once.
 #include "constraints/configurations.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "constraints/endpoint_sigma.h"
 #include "constraints/methods/unit_normal.h"
-#include "kinematics/linear_algebra.h"
+#include "constraints/newton.h"
 
 namespace selfcal {
 namespace {
@@ -154,7 +152,7 @@ class Sampler {
       ConfigurationBlock block = starts();
       Locations X;
       const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
-      const std::vector<int> found = must ? newton(request, wanted, row, last_of_group, block, X)
+      const std::vector<int> found = must ? newton(method, wanted, row, last_of_group, block, X)
                                           : everywhere(method, block, X);
       bool taken = false;
       for (const int lane : found) {
@@ -188,46 +186,21 @@ class Sampler {
   }
 
   /// Lanes that reached the wanted residual; moves block.q there and leaves their locations in X.
-  std::vector<int> newton(const SampleRequest& request, const Eigen::VectorXd& wanted, int row,
+  std::vector<int> newton(const Method& method, const Eigen::VectorXd& wanted, int row,
                           int previous, ConfigurationBlock& block, Locations& X) const {
-    const Set& set = data_.sets[request.set];
-    const Method& method = *set.method;
-    const auto equations = static_cast<int>(wanted.size());
-    Locations before = X;
+    Locations before;
     if (previous >= 0)
       robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
                     nullptr);
-    const std::vector<int> rows(kLanes, row);
-    MethodInput in{kLanes,
-                   &data_.rows,
-                   rows.data(),
-                   &X,
-                   &before,
-                   &sampled_.truth.own[request.set],
-                   set.reference < 0 ? nullptr : &sampled_.truth.own[set.reference],
-                   &sampled_.truth.groups[request.set]};
-    MethodOutput out;
-    PsiBlock psi;
-    Eigen::MatrixXd J;
+    NewtonStep newton(robot_, data_, sampled_.truth, row, before);
     Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
     for (int step = 0; step < kSteps; ++step) {
-      robot_.locate(block, xi_, method.body(), X, &psi);
-      robot_.joint_jacobian(xi_, psi, J);
-      out.resize(equations, method.own_freedom(),
-                 set.reference < 0 ? 0 : data_.sets[set.reference].method->own_freedom(),
-                 method.group_freedom());
-      method.evaluate(in, out);
+      newton.evaluate(block);
       for (int lane = 0; lane < kLanes; ++lane) {
-        const Eigen::VectorXd miss = wanted - out.r.row(lane).matrix().transpose();
+        const Eigen::VectorXd miss = newton.miss(lane, wanted);
         left[lane] = miss.norm();
         if (left[lane] < kExact / 10) continue;
-        Eigen::MatrixXd A(equations, J.cols());
-        for (int a = 0; a < equations; ++a) {
-          A.row(a).setZero();
-          for (int c = 0; c < 6; ++c)
-            A.row(a) += out.G_now(lane, 6 * a + c) * J.row(c * kLanes + lane);
-        }
-        Eigen::VectorXd dq = least_squares(A, miss);
+        Eigen::VectorXd dq = newton.step(lane, miss);
         if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
         block.q.row(lane) += dq.transpose().array();
       }
