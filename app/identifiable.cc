@@ -62,10 +62,13 @@ Result<Answered> of_robot(const Arguments& arguments) {
   sets.push_back(make_set(arguments.method, set_entry(**robot, arguments), problems));
   if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
   Answered answered{nullptr, arguments.method, arguments.count, 0, {}, {}};
-  std::string unreached;
-  answered.rank = structural(**robot, sets, std::vector<char>((*robot)->parameters().size(), 1),
-                             arguments.count, arguments.seed, &unreached, &answered.own);
-  if (!unreached.empty()) return tl::unexpected(Failure{kAnswerIsNo, unreached});
+  StructuralRank structure =
+      structural(**robot, sets, std::vector<char>((*robot)->parameters().size(), 1),
+                 arguments.count, arguments.seed);
+  if (!structure.unreached.empty())
+    return tl::unexpected(Failure{kAnswerIsNo, structure.unreached});
+  answered.rank = std::move(structure.rank);
+  answered.own = structure.own;
   answered.robot = std::move(*robot);
   return answered;
 }

@@ -30,11 +30,9 @@ Movement movement(const Robot& robot, const DataSet& data, size_t j) {
 /// one that moved least of what it could.
 size_t missing_joint(const Robot& robot, const DataSet& data, const Parameter& p) {
   size_t at = 0;
-  for (const Parameter& each : robot.parameters()) {
-    if (each.frame == p.frame) break;
-    if (each.field == "alpha" && at < robot.joints().size() &&
-        each.frame == robot.joints()[at].name)
-      ++at;
+  for (const Link& link : robot.mechanics().links) {
+    if (link.frame == p.frame) break;
+    if (link.joint >= 0) ++at;
   }
   size_t best = std::min(at, robot.joints().size() - 1);
   for (size_t j = at > 0 ? at - 1 : 0; j <= at + 1 && j < robot.joints().size(); ++j)
@@ -64,10 +62,9 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
 
 }  // namespace
 
-Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
-                           const std::vector<char>& candidate, int rows, unsigned long long seed,
-                           std::string* unreached, int* own_freedom,
-                           const std::vector<char>& used) {
+StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
+                          const std::vector<char>& candidate, int rows, unsigned long long seed,
+                          const std::vector<char>& used) {
   DataSet data;
   std::vector<SampleRequest> requests;
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -81,17 +78,16 @@ Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
   Random random(seed);
   const Eigen::VectorXd xi = nominal_values(robot);
   const Sampled sampled = sample_rows(robot, xi, requests, random, data);
-  if (unreached) *unreached = sampled.unreached;
   const Equations equations(robot, data, Use::fit);
   State state = sampled.truth;
   state.xi = xi;
   const Weighting weighting{std::vector<Scale>(sets.size()),
                             std::vector<char>(data.rows.rows(), 0)};
   const Linearised at = equations.linearise(state, weighting);
-  if (own_freedom) *own_freedom = equations.all_own_freedoms();
   RankRule rule;
   rule.rows = at.equations;
-  return identifiability(equations, at.R, candidate, rule);
+  return {identifiability(equations, at.R, candidate, rule), equations.all_own_freedoms(),
+          sampled.unreached};
 }
 
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
@@ -100,8 +96,7 @@ std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Ident
   for (int row = 0; row < data.rows.rows(); ++row)
     if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
   constexpr int kRows = 80;
-  const Identifiability possible =
-      structural(robot, data.sets, candidate, kRows, 1, nullptr, nullptr, used);
+  const Identifiability possible = structural(robot, data.sets, candidate, kRows, 1, used).rank;
   std::vector<Note> notes;
   for (size_t i = 0; i < robot.parameters().size(); ++i)
     if (possible.status[i] == Status::identified &&

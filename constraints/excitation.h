@@ -2,6 +2,7 @@
 // missing.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "constraints/data_set.h"
@@ -10,13 +11,19 @@
 
 namespace selfcal {
 
+/// What the methods could tell.
+struct StructuralRank {
+  Identifiability rank;
+  int own = 0;            ///< freedoms of the sets' and groups' own unknowns
+  std::string unreached;  ///< why rows are missing; empty when all were found
+};
+
 /// The structural answer: status of every parameter on random configurations that satisfy the
-/// methods of `data.sets` (fresh random surfaces and groups), `rows` of each set that `used` marks
-/// (all when it is empty).
-Identifiability structural(const Robot& robot, const std::vector<Set>& sets,
-                           const std::vector<char>& candidate, int rows, unsigned long long seed,
-                           std::string* unreached = nullptr, int* own_freedom = nullptr,
-                           const std::vector<char>& used = {});
+/// methods of `sets` (fresh random surfaces and groups), `rows` of each set that `used` marks (all
+/// when it is empty).
+StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
+                          const std::vector<char>& candidate, int rows, unsigned long long seed,
+                          const std::vector<char>& used = {});
 
 /// Parameters identified structurally but not by `rank`, each with what is missing.
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,

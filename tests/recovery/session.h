@@ -91,7 +91,7 @@ inline Exact without_priors(const Robot& robot, Eigen::VectorXd truth,
   std::vector<char> candidate;
   for (const Parameter& p : robot.parameters()) candidate.push_back(p.free);
   constexpr int kRows = 80;
-  const Identifiability nominal = structural(robot, noisy.data.sets, candidate, kRows, 1);
+  const Identifiability nominal = structural(robot, noisy.data.sets, candidate, kRows, 1).rank;
   const Solution first = identify(robot, noisy.data);
   Options options;
   for (size_t i = 0; i < candidate.size(); ++i) {
