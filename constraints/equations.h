@@ -142,6 +142,11 @@ class Equations {
              Linearised& out) const;
   void gather(int set, const SetPlan::Cluster& cluster, const Block& block,
               const Eigen::MatrixXd& W, Gatherer& gatherer) const;
+  /// Writes the derivatives of a link's whitened residual to its groups, whose columns begin at
+  /// `at_a` and `at_b`, and returns it.
+  double link_row(int set, const GroupLink& link, const State& state, Eigen::Index at_a,
+                  Eigen::Index at_b,
+                  Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
   void gather_links(int set, const SetPlan::Cluster& cluster, const State& state, bool bent,
                     Gatherer& gatherer, Linearised& out) const;
   Linearised sweep(const State& state, const Weighting& weighting, bool motions,

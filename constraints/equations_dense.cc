@@ -68,13 +68,9 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
     }
     for (const SetPlan::Cluster& cluster : plans_[s].clusters)
       for (const GroupLink& link : cluster.links) {
-        Eigen::VectorXd D_a, D_b;
-        const double r = method.link_residual(link, state.groups[s].col(link.a),
-                                              state.groups[s].col(link.b), D_a, D_b);
         Eigen::RowVectorXd& row = collector.add(-1);
-        row.segment(groups_at[s] + freedom * link.a, freedom) = D_a.transpose() / link.noise;
-        row.segment(groups_at[s] + freedom * link.b, freedom) = D_b.transpose() / link.noise;
-        row[all] = -r / link.noise;
+        row[all] = -link_row(s, link, state, groups_at[s] + freedom * link.a,
+                             groups_at[s] + freedom * link.b, row);
       }
   }
   Linearised unused;

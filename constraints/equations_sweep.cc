@@ -105,19 +105,27 @@ void Equations::gather(int set, const SetPlan::Cluster& cluster, const Block& bl
   }
 }
 
+double Equations::link_row(int set, const GroupLink& link, const State& state, Eigen::Index at_a,
+                           Eigen::Index at_b,
+                           Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
+  const Method& method = *data_.sets[set].method;
+  Eigen::VectorXd D_a, D_b;
+  const double r = method.link_residual(link, state.groups[set].col(link.a),
+                                        state.groups[set].col(link.b), D_a, D_b);
+  row.segment(at_a, D_a.size()) = D_a.transpose() / link.noise;
+  row.segment(at_b, D_b.size()) = D_b.transpose() / link.noise;
+  return r / link.noise;
+}
+
 void Equations::gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
                              bool bent, Gatherer& gatherer, Linearised& out) const {
-  const Method& method = *data_.sets[set].method;
-  const int freedom = method.group_freedom();
+  const int freedom = data_.sets[set].method->group_freedom();
   for (const GroupLink& link : cluster.links) {
-    Eigen::VectorXd D_a, D_b;
-    const double r = method.link_residual(link, state.groups[set].col(link.a),
-                                          state.groups[set].col(link.b), D_a, D_b);
     auto row = gatherer.next();
-    row.segment(freedom * cluster.place(link.a), freedom) = D_a.transpose() / link.noise;
-    row.segment(freedom * cluster.place(link.b), freedom) = D_b.transpose() / link.noise;
-    row[row.size() - 1] = bent ? 0 : -r / link.noise;
-    out.cost += std::pow(r / link.noise, 2);
+    const double r = link_row(set, link, state, freedom * cluster.place(link.a),
+                              freedom * cluster.place(link.b), row);
+    row[row.size() - 1] = bent ? 0 : -r;
+    out.cost += r * r;
     ++out.equations;
   }
 }
