@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "constraints/gauge.h"
@@ -119,14 +120,13 @@ class Adjustment {
   }
 
   void hold_scale() {
-    const std::vector<Note> notes = held_scale(equations_, adjusted_.fitted.at.R,
-                                               adjusted_.fitted.state.xi, adjusted_.prior.free);
-    if (notes.empty()) return;
-    for (const Note& note : notes) {
-      adjusted_.scale = find_parameter(robot_, note.parameter);
-      start_.xi[adjusted_.scale] = adjusted_.prior.centre[adjusted_.scale];
-      hold(note);
-    }
+    const std::optional<int> length = held_scale(equations_, adjusted_.fitted.at.R,
+                                                 adjusted_.fitted.state.xi, adjusted_.prior.free);
+    if (!length) return;
+    adjusted_.scale = *length;
+    start_.xi[*length] = adjusted_.prior.centre[*length];
+    hold({parameters()[*length].name,
+          "the touches leave the robot's scale free: its longest link length is held"});
     adjusted_.fitted = fit_all();
   }
 

@@ -35,9 +35,10 @@ std::vector<Note> held_base(const Robot& robot, const Equations& equations) {
   return notes;
 }
 
-std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
-                             const Eigen::VectorXd& xi, const std::vector<char>& free) {
-  if (!every_set(equations, [](const Method& m) { return m.may_leave_scale_free(); })) return {};
+std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
+                              const Eigen::VectorXd& xi, const std::vector<char>& free) {
+  if (!every_set(equations, [](const Method& m) { return m.may_leave_scale_free(); }))
+    return std::nullopt;
   const Robot& robot = equations.robot();
   std::vector<int> others;
   for (int c = equations.robot_columns(); c < equations.columns(); ++c) others.push_back(c);
@@ -45,14 +46,14 @@ std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& 
   int last = -1;
   for (const int i : robot.preference()) {
     const Parameter& p = robot.parameters()[i];
-    if (p.link_length && !free[i]) return {};  // a length that is known gives the scale
+    if (p.link_length && !free[i]) return std::nullopt;  // a length that is known gives the scale
     if (p.quantity == Quantity::length) scale += xi[i] * R.col(i);
     if (p.link_length)
       last = i;
     else if (free[i])
       others.push_back(i);
   }
-  if (last < 0) return {};
+  if (last < 0) return std::nullopt;
   const Parameter& p = robot.parameters()[last];
   // What could mimic the scale is bounded by its own prior, or an ill-seen tool would always do.
   const Eigen::Index K = R.rows(), n = static_cast<Eigen::Index>(others.size());
@@ -64,8 +65,8 @@ std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& 
   Eigen::VectorXd extended = Eigen::VectorXd::Zero(K + n);
   extended.head(K) = scale;
   const double seen = beyond(bounded, extended).norm();
-  if (seen * p.tolerance > std::abs(p.nominal)) return {};
-  return {{p.name, "the touches leave the robot's scale free: its longest link length is held"}};
+  if (seen * p.tolerance > std::abs(p.nominal)) return std::nullopt;
+  return last;
 }
 
 Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd& R) {

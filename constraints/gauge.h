@@ -1,6 +1,7 @@
 // What the rows can never see: the scale of touches, the place of the base, the target's point.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "constraints/equations.h"
@@ -12,11 +13,11 @@ namespace selfcal {
 /// every set is measured by a device whose own frame is unknown.
 std::vector<Note> held_base(const Robot& robot, const Equations& equations);
 
-/// The link length that is held because the rows leave the scale free, if they do: the scale is
+/// Index of the link length to hold because the rows leave the scale free, if they do: the scale is
 /// known worse than the maker's tolerance tells it. Judged on whitened R; `free` are the free
 /// parameters.
-std::vector<Note> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
-                             const Eigen::VectorXd& xi, const std::vector<char>& free);
+std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
+                              const Eigen::VectorXd& xi, const std::vector<char>& free);
 
 /// Orthonormal combinations (columns, 6 x k) of the world's motions that the rows do not see, own
 /// unknowns being unknown. R is whitened, with the six motion columns before its last.
