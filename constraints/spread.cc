@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "constraints/methods/unit_normal.h"
+
 namespace selfcal {
 namespace {
 
@@ -38,12 +40,6 @@ class Columns {
   std::map<std::pair<int, int>, Place> at_;
 };
 
-/// Two unit vectors across n.
-Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
-  const Eigen::Vector3d a = n.unitOrthogonal();
-  return (Eigen::Matrix<double, 3, 2>() << a, n.cross(a)).finished();
-}
-
 /// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket).
 std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& xi,
                                      const std::vector<Set>& sets,
@@ -70,7 +66,7 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
       if (socket)
         W.middleCols(own.column, 3) = -Eigen::Matrix3d::Identity();
       else
-        W.middleCols(own.column, 3) << X.p(lane).transpose() * across(own.normal), -1;
+        W.middleCols(own.column, 3) << X.p(lane).transpose() * tangents(own.normal), -1;
       rows.push_back(W / touch_noise(sets[each.set]));
     }
   }
