@@ -30,14 +30,6 @@ std::optional<Location> read_place(const Node& node) {
 
 }  // namespace
 
-double number_within(Fields& fields, std::string_view key, double fallback, double least,
-                     double most) {
-  const double value = fields.number(key, fallback);
-  if (value < least || value > most)
-    fields.fail(key, "a number from " + format_number(least) + " to " + format_number(most));
-  return value;
-}
-
 Eigen::Vector3d read_unit(Fields& fields, std::string_view key) {
   const Eigen::Vector3d direction = read_point(fields, key);
   if (fields.has(key) && direction.norm() < 1e-9) fields.fail(key, "a direction that is not zero");

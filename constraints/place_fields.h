@@ -14,9 +14,6 @@ struct Surface {
   Eigen::Vector3d point, normal;  ///< m; unit, outwards
 };
 
-/// A number from `least` to `most`.
-double number_within(Fields& fields, std::string_view key, double fallback, double least,
-                     double most);
 /// A direction [x, y, z] of any length but zero, made unit; a problem when missing.
 Eigen::Vector3d read_unit(Fields& fields, std::string_view key);
 /// {point: [x, y, z], normal: [x, y, z]}

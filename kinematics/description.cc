@@ -149,6 +149,13 @@ double Fields::positive(std::string_view key, double fallback) {
   return fallback;
 }
 
+double Fields::number(std::string_view key, double fallback, double least, double most) {
+  const double value = number(key, fallback);
+  if (value >= least && value <= most) return value;
+  fail(key, "a number from " + format_number(least) + " to " + format_number(most));
+  return fallback;
+}
+
 int Fields::integer(std::string_view key, int fallback, int least, int most) {
   const Node* value = node(key);
   if (value == nullptr) return fallback;

@@ -66,6 +66,8 @@ class Fields {
   std::string text(std::string_view key);  ///< required
   double number(std::string_view key, double fallback);
   double number(std::string_view key);  ///< required
+  /// From `least` to `most`.
+  double number(std::string_view key, double fallback, double least, double most);
   std::optional<double> optional_number(std::string_view key);
   double positive(std::string_view key, double fallback);
   int integer(std::string_view key, int fallback, int least, int most);

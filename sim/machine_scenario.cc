@@ -25,8 +25,8 @@ MachineFault read_fault(const Node& node, Problems& problems) {
       known = true;
     }
   if (!known) fields.fail("what", "encoders, stuck, refuse or silent");
-  fault.at = number_within(fields, "at", 0, 0, 1e9);
-  fault.duration = number_within(fields, "for", 1e9, 0, 1e9);
+  fault.at = fields.number("at", 0, 0, 1e9);
+  fault.duration = fields.number("for", 1e9, 0, 1e9);
   fields.refuse_unknown();
   return fault;
 }
@@ -37,7 +37,7 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   Fields fields(node, "machine", problems);
   MachineScenario machine;
   const auto within = [&](const char* key, double& value, double least, double most) {
-    value = number_within(fields, key, value, least, most);
+    value = fields.number(key, value, least, most);
   };
   within("encoder_period", machine.encoder_period, 1e-4, 0.1);
   within("speed", machine.speed, 1e-3, 100);

@@ -9,9 +9,7 @@ namespace {
 constexpr double kLargestError = 1;  // m or rad
 
 void read_errors(Fields& fields, Errors& errors, Problems& problems) {
-  const auto sigma = [&](const char* key) {
-    return number_within(fields, key, 0, 0, kLargestError);
-  };
+  const auto sigma = [&](const char* key) { return fields.number(key, 0, 0, kLargestError); };
   errors.length = sigma("length");
   errors.angle = sigma("angle");
   errors.base_length = sigma("base_length");
@@ -23,12 +21,12 @@ void read_errors(Fields& fields, Errors& errors, Problems& problems) {
 }
 
 void read_repeats(Fields& fields, Repeats& repeats) {
-  repeats.share = number_within(fields, "share", 0, 0, 1);
+  repeats.share = fields.number("share", 0, 0, 1);
   repeats.times = fields.integer("times", repeats.times, 2, 100);
 }
 
 void read_false_triggers(Fields& fields, FalseTriggers& triggers) {
-  triggers.share = number_within(fields, "share", 0, 0, 0.5);
+  triggers.share = fields.number("share", 0, 0, 0.5);
   const auto size = fields.numbers("size", 2);
   if (!size) return;
   triggers.least = (*size)[0];
@@ -70,8 +68,8 @@ Scenario read_scenario(const Node& node, Problems& problems) {
     scenario.errors = read_whole<Errors>(
         *errors, "errors", problems,
         [&](Fields& inner, Errors& result) { read_errors(inner, result, problems); });
-  scenario.encoder_step = number_within(fields, "encoder_step", 0, 0, 0.1);
-  scenario.check = number_within(fields, "check", scenario.check, 0, 0.9);
+  scenario.encoder_step = fields.number("encoder_step", 0, 0, 0.1);
+  scenario.check = fields.number("check", scenario.check, 0, 0.9);
   if (const Node* repeats = fields.node("repeats"))
     scenario.repeats = read_whole<Repeats>(*repeats, "repeats", problems, read_repeats);
   if (const Node* triggers = fields.node("false_triggers"))

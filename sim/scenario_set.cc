@@ -25,8 +25,8 @@ SetScenario read_set_scenario(const std::string& name, const Node& node, Problem
   set.rows_per_group = fields.integer("rows_per_group", set.rows_per_group, 2, 10000);
   // make_set judges `noise` itself.
   const double noise = fields.number("noise", 0), noise_angle = fields.number("noise_angle", 0);
-  set.noise = number_within(fields, "noise_true", noise, 0, kMostNoise);
-  set.noise_angle = number_within(fields, "noise_angle_true", noise_angle, 0, kMostNoise);
+  set.noise = fields.number("noise_true", noise, 0, kMostNoise);
+  set.noise_angle = fields.number("noise_angle_true", noise_angle, 0, kMostNoise);
   if (const Node* given = fields.node("noise_angle_true")) set.noise_angle_true = given->place;
   if (const Node* surface = fields.node("surface"))
     set.surface = read_surface(*surface, "set " + name + " surface", problems);

@@ -34,8 +34,7 @@ class Reader {
     part(fields, "accept", [&](Fields& f) { read_accept(f); });
     part(fields, "schedule", [&](Fields& f) { read_schedule(f); });
     c_.resume = fields.flag("resume", c_.resume);
-    c_.store_bytes =
-        static_cast<std::int64_t>(number_within(fields, "store_mb", 100, 1, 1e6) * 1e6);
+    c_.store_bytes = static_cast<std::int64_t>(fields.number("store_mb", 100, 1, 1e6) * 1e6);
     if (const std::string file = fields.text("simulation", ""); !file.empty())
       c_.simulation = folder_ / file;
     read_sets(fields);
@@ -72,7 +71,7 @@ class Reader {
     c_.state = !state.empty() ? folder_ / state
                : folder       ? std::filesystem::path(folder)
                               : folder_ / "state";
-    c_.target = number_within(fields, "target", c_.target, 1e-6, 1);
+    c_.target = fields.number("target", c_.target, 1e-6, 1);
     c_.domain = fields.integer("domain", c_.domain, 0, 230);
   }
 
@@ -87,28 +86,28 @@ class Reader {
       const double q = (*home)[static_cast<Eigen::Index>(j)];
       if (!joint.allows(q)) f.fail("home", "a reading of " + joint.name + " within its limits");
     }
-    c_.speeds.travel = number_within(f, "speed", c_.speeds.travel, 1e-3, 100);
-    c_.speeds.touch = number_within(f, "touch_speed", c_.speeds.touch, 1e-4, 1);
-    c_.plan.clearance = number_within(f, "clearance", c_.plan.clearance, 1e-3, 0.5);
-    c_.plan.search = number_within(f, "search", c_.plan.search, 1e-4, 0.1);
-    c_.plan.apart = number_within(f, "apart", c_.plan.apart, 0, 0.5);
-    c_.plan.tilt = number_within(f, "tilt", c_.plan.tilt, 0.01, 3.2);
-    c_.plan.limit_margin = number_within(f, "limit_margin", c_.plan.limit_margin, 0, 1);
-    c_.touch.rest = number_within(f, "rest", c_.touch.rest, 1e-7, 0.1);
+    c_.speeds.travel = f.number("speed", c_.speeds.travel, 1e-3, 100);
+    c_.speeds.touch = f.number("touch_speed", c_.speeds.touch, 1e-4, 1);
+    c_.plan.clearance = f.number("clearance", c_.plan.clearance, 1e-3, 0.5);
+    c_.plan.search = f.number("search", c_.plan.search, 1e-4, 0.1);
+    c_.plan.apart = f.number("apart", c_.plan.apart, 0, 0.5);
+    c_.plan.tilt = f.number("tilt", c_.plan.tilt, 0.01, 3.2);
+    c_.plan.limit_margin = f.number("limit_margin", c_.plan.limit_margin, 0, 1);
+    c_.touch.rest = f.number("rest", c_.touch.rest, 1e-7, 0.1);
     if (c_.plan.apart >= c_.plan.clearance) f.fail("apart", "less than clearance");
     if (c_.plan.search >= c_.plan.clearance) f.fail("search", "less than clearance");
   }
 
   void read_touch(Fields& f) {
     c_.touch.repeats = f.integer("repeats", c_.touch.repeats, 1, 20);
-    c_.touch.tolerance = number_within(f, "tolerance", c_.touch.tolerance, 1e-6, 0.01);
+    c_.touch.tolerance = f.number("tolerance", c_.touch.tolerance, 1e-6, 0.01);
     c_.limits.attempts = f.integer("attempts", c_.limits.attempts, 1, 20);
     c_.limits.most_failures = f.integer("most_lost", c_.limits.most_failures, 1, 1000);
   }
 
   void read_limits(Fields& f) {
     const auto limit = [&](const char* key, Nanoseconds& value) {
-      value = nanoseconds(number_within(f, key, seconds(value), 1, 3600));
+      value = nanoseconds(f.number(key, seconds(value), 1, 3600));
     };
     limit("self_test", c_.limits.self_test);
     limit("planning", c_.limits.planning);
@@ -121,13 +120,13 @@ class Reader {
 
   void read_accept(Fields& f) {
     c_.accept.automatic = f.flag("auto", false);
-    c_.accept.check = number_within(f, "check", c_.accept.check, 0.1, 0.9);
+    c_.accept.check = f.number("check", c_.accept.check, 0.1, 0.9);
     c_.plan.check = c_.accept.check;
-    c_.accept.margin = number_within(f, "margin", c_.accept.margin, 0, 0.9);
+    c_.accept.margin = f.number("margin", c_.accept.margin, 0, 0.9);
     part(f, "largest_change", [&](Fields& g) {
       LargestChange& most = c_.accept.largest_change;
       const auto change = [&](const char* key, double& value) {
-        value = number_within(g, key, value, 0, 10);
+        value = g.number(key, value, 0, 10);
       };
       change("length", most.length);
       change("angle", most.angle);
@@ -141,7 +140,7 @@ class Reader {
   std::optional<double> optional_within(Fields& f, std::string_view key, double least,
                                         double most) {
     if (!f.has(key)) return std::nullopt;
-    return number_within(f, key, least, least, most);
+    return f.number(key, least, least, most);
   }
 
   void read_schedule(Fields& f) {
@@ -161,7 +160,7 @@ class Reader {
     }
     s.check_first = f.flag("check_first", s.check_first);
     s.check_touches = f.integer("check_touches", s.check_touches, 8, 200);
-    s.check_p = number_within(f, "check_p", s.check_p, 1e-6, 0.5);
+    s.check_p = f.number("check_p", s.check_p, 1e-6, 0.5);
     s.full_after_checks = f.integer("full_after_checks", s.full_after_checks, 1, 10000);
   }
 

@@ -26,7 +26,7 @@ void read_encoders(const Node& node, const std::filesystem::path& folder, Config
     for (const Joint& joint : of_robot) config.joint_names.push_back(joint.name);
   if (config.joint_names.size() != of_robot.size())
     f.fail("joints", std::to_string(of_robot.size()) + " names");
-  config.silence = number_within(f, "silence", config.silence, 0.01, 60);
+  config.silence = f.number("silence", config.silence, 0.01, 60);
   const Node own = node.without({"kind", mapped ? "kind" : "joints", "silence"});
   const std::string kind = f.text("kind", "dds");
   config.encoders = make_encoders(kind, {own, config.joint_names, of_robot, folder, problems});
@@ -35,8 +35,8 @@ void read_encoders(const Node& node, const std::filesystem::path& folder, Config
 
 void read_trigger(const Node& node, Config& config, Problems& problems) {
   Fields f(node, "trigger", problems);
-  config.touch.debounce = number_within(f, "debounce", config.touch.debounce, 0, 0.1);
-  config.touch.delay = number_within(f, "delay", config.touch.delay, 0, 0.1);
+  config.touch.debounce = f.number("debounce", config.touch.debounce, 0, 0.1);
+  config.touch.delay = f.number("delay", config.touch.delay, 0, 0.1);
   const Node own = node.without({"kind", "debounce", "delay"});
   const std::string kind = f.text("kind", "dds");
   config.trigger = make_trigger(kind, {own, config.id, problems});

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <optional>
 
-#include "constraints/place_fields.h"
-
 namespace selfcal {
 namespace {
 
@@ -27,7 +25,7 @@ std::optional<std::uint32_t> parse_id(std::string_view text) {
 
 std::int64_t whole(Fields& f, std::string_view key, std::int64_t fallback, double least,
                    double most) {
-  const double number = number_within(f, key, static_cast<double>(fallback), least, most);
+  const double number = f.number(key, static_cast<double>(fallback), least, most);
   if (number == std::floor(number)) return static_cast<std::int64_t>(number);
   f.fail(key, "a whole number");
   return fallback;
@@ -117,7 +115,7 @@ void read_meaning(Fields& f, const DbcSignal* signal, CanJoint& joint) {
   joint.wraps_at = f.has("wraps_at") ? whole(f, "wraps_at", 2, 2, 0x1p48) : 0;
   if (static_cast<double>(joint.wraps_at) > std::ldexp(1.0, joint.field.bits))
     f.fail("wraps_at", "at most what its bits can count");
-  joint.most_speed = number_within(f, "speed", joint.most_speed, 1e-3, 1e4);
+  joint.most_speed = f.number("speed", joint.most_speed, 1e-3, 1e4);
 }
 
 }  // namespace

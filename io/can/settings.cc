@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "constraints/place_fields.h"
 #include "io/can/joint_fields.h"
 
 namespace selfcal {
@@ -71,8 +70,7 @@ class Reader {
     }
     Fields sync(*node, f_.what() + " sync", problems_);
     s_.map.sync = read_can_id(sync, kSync);
-    if (sync.has("send_period"))
-      s_.sync_send_period = number_within(sync, "send_period", 0.01, 5e-4, 1);
+    if (sync.has("send_period")) s_.sync_send_period = sync.number("send_period", 0.01, 5e-4, 1);
     sync.refuse_unknown();
   }
 
@@ -80,13 +78,13 @@ class Reader {
     CanTiming& t = s_.timing;
     if (s_.map.sync) {
       if (f_.has("cycle")) f_.fail("cycle", "only without 'sync'");
-      t.window = number_within(f_, "window", 5e-3, 1e-4, 1);
+      t.window = f_.number("window", 5e-3, 1e-4, 1);
     } else {
       if (!f_.has("cycle")) f_.fail("cycle", "the time between two frames of a joint (s)");
-      t.cycle = number_within(f_, "cycle", 0.01, 1e-4, 1);
-      t.window = number_within(f_, "window", 1.6 * t.cycle, t.cycle, 10 * t.cycle);
+      t.cycle = f_.number("cycle", 0.01, 1e-4, 1);
+      t.window = f_.number("window", 1.6 * t.cycle, t.cycle, 10 * t.cycle);
     }
-    t.delay = number_within(f_, "delay", 0, 0, 0.1);
+    t.delay = f_.number("delay", 0, 0, 0.1);
   }
 
   Fields f_;

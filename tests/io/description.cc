@@ -128,6 +128,20 @@ TEST(Fields, HoldWholeNumbersFlagsAndPositivesToWhatTheySay) {
                           "robot.yaml:5: x: key 'texts': expected a list of texts, got 'a'"));
 }
 
+TEST(Fields, HoldNumbersToTheirRange) {
+  Node node = at_line(Node::map(), 1);
+  node.set("low", at_line(Node::of("0.5"), 2)).set("high", at_line(Node::of("3"), 3));
+  Problems problems;
+  Fields fields(node, "x", problems);
+  EXPECT_EQ(fields.number("low", 2, 0.5, 3), 0.5);
+  EXPECT_EQ(fields.number("missing", 2, 0.5, 3), 2);
+  EXPECT_TRUE(problems.list.empty());
+  EXPECT_EQ(fields.number("high", 2, 0.5, 2.5), 2);
+  EXPECT_THAT(problems.list,
+              ElementsAre("robot.yaml:3: x: key 'high': expected a number from 0.5 to 2.5, got "
+                          "'3'"));
+}
+
 TEST(Fields, SayOnceThatANodeIsNoMapping) {
   const Node node = at_line(Node::of("text"), 5);
   Problems problems;
