@@ -9,14 +9,8 @@ namespace {
 constexpr double kLargestError = 1;  // m or rad
 
 void read_errors(Fields& fields, Errors& errors, Problems& problems) {
-  const auto sigma = [&](const char* key) { return fields.number(key, 0, 0, kLargestError); };
-  errors.length = sigma("length");
-  errors.angle = sigma("angle");
-  errors.base_length = sigma("base_length");
-  errors.base_angle = sigma("base_angle");
-  errors.tool_length = sigma("tool_length");
-  errors.tool_angle = sigma("tool_angle");
-  errors.gear = sigma("gear");
+  read_by_part(fields, kLargestError, errors.sigma);
+  errors.gear = fields.number("gear", 0, 0, kLargestError);
   errors.parameters = named_numbers(fields, "parameters", problems);
 }
 

@@ -49,6 +49,7 @@
 #include <vector>
 
 #include "constraints/place_fields.h"
+#include "kinematics/by_part.h"
 #include "kinematics/description.h"
 #include "sim/machine_scenario.h"
 
@@ -62,9 +63,7 @@ struct NamedNumber {
 };
 
 struct Errors {
-  double length = 0, angle = 0;
-  double base_length = 0, base_angle = 0;
-  double tool_length = 0, tool_angle = 0;
+  ByPart sigma;
   double gear = 0;
   std::vector<NamedNumber> parameters;
 };

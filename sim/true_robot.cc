@@ -9,20 +9,8 @@ namespace selfcal {
 namespace {
 
 double sigma_of(const Parameter& parameter, const Errors& errors) {
-  const bool length = parameter.quantity == Quantity::length;
-  switch (parameter.part) {
-    case Part::base:
-      return length ? errors.base_length : errors.base_angle;
-    case Part::tool:
-      return length ? errors.tool_length : errors.tool_angle;
-    case Part::link:
-      return length ? errors.length : errors.angle;
-    case Part::gear:
-      return errors.gear;
-    case Part::effect:
-      return 0;
-  }
-  return 0;
+  if (parameter.part == Part::gear) return errors.gear;
+  return parameter.part == Part::effect ? 0 : errors.sigma.of(parameter);
 }
 
 double mass(const serial::Model& model) {

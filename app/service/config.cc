@@ -123,18 +123,7 @@ class Reader {
     c_.accept.check = f.number("check", c_.accept.check, 0.1, 0.9);
     c_.plan.check = c_.accept.check;
     c_.accept.margin = f.number("margin", c_.accept.margin, 0, 0.9);
-    part(f, "largest_change", [&](Fields& g) {
-      LargestChange& most = c_.accept.largest_change;
-      const auto change = [&](const char* key, double& value) {
-        value = g.number(key, value, 0, 10);
-      };
-      change("length", most.length);
-      change("angle", most.angle);
-      change("base_length", most.base_length);
-      change("base_angle", most.base_angle);
-      change("tool_length", most.tool_length);
-      change("tool_angle", most.tool_angle);
-    });
+    part(f, "largest_change", [&](Fields& g) { read_by_part(g, 10, c_.accept.largest_change); });
   }
 
   std::optional<double> optional_within(Fields& f, std::string_view key, double least,
@@ -226,22 +215,6 @@ class Reader {
 };
 
 }  // namespace
-
-double LargestChange::of(const Parameter& parameter) const {
-  const bool is_length = parameter.quantity == Quantity::length;
-  switch (parameter.part) {
-    case Part::base:
-      return is_length ? base_length : base_angle;
-    case Part::tool:
-      return is_length ? tool_length : tool_angle;
-    case Part::link:
-      return is_length ? length : angle;
-    case Part::gear:
-    case Part::effect:
-      return angle;
-  }
-  return 0;
-}
 
 Result<Config> load_config(const std::filesystem::path& path) {
   const Result<Node> node = read_yaml(path);

@@ -80,20 +80,14 @@
 #include "io/encoders.h"
 #include "io/result.h"
 #include "io/triggers.h"
+#include "kinematics/by_part.h"
 
 namespace selfcal {
-
-struct LargestChange {
-  double length = 5e-3, angle = 5e-3;
-  double base_length = 0.05, base_angle = 0.05;
-  double tool_length = 0.05, tool_angle = 0.05;
-  double of(const Parameter& parameter) const;
-};
 
 struct Acceptance {
   bool automatic = false;
   double check = 0.33, margin = 0.05;
-  LargestChange largest_change;
+  ByPart largest_change{5e-3, 5e-3, 0.05, 0.05, 0.05, 0.05};
 };
 
 struct TouchRules {

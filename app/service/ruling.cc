@@ -25,7 +25,7 @@ struct Change {
 
 /// The parameter that changes most against its limit, and the one that changes most against its
 /// sigma.
-std::pair<Change, Change> largest_changes(const LargestChange& limits, const Robot& active,
+std::pair<Change, Change> largest_changes(const ByPart& limits, const Robot& active,
                                           const Solution& candidate) {
   Change against_limit, against_sigma;
   double most = 0, most_sigmas = 0;

@@ -78,7 +78,7 @@ TEST(Ruling, ComparesTheSameRowsBeforeAndAfter) {
 }
 
 TEST(Ruling, HasALimitOfItsOwnForEachPartOfTheMachine) {
-  const LargestChange limits{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
+  const ByPart limits{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
   const std::tuple<Part, Quantity, double> each[] = {
       {Part::link, Quantity::length, 1e-3}, {Part::link, Quantity::angle, 2e-3},
       {Part::base, Quantity::length, 3e-3}, {Part::base, Quantity::angle, 4e-3},
