@@ -43,7 +43,8 @@ class Columns {
 /// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket).
 std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& xi,
                                      const std::vector<Set>& sets,
-                                     const std::vector<PossibleTouch>& candidates, Columns& columns) {
+                                     const std::vector<PossibleTouch>& candidates,
+                                     Columns& columns) {
   for (const PossibleTouch& each : candidates) columns.of(each);
   const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
   std::vector<Eigen::MatrixXd> rows;
@@ -88,7 +89,8 @@ double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; 
 
 std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,
-                              const std::vector<PossibleTouch>& candidates, std::vector<int> counts) {
+                              const std::vector<PossibleTouch>& candidates,
+                              std::vector<int> counts) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
   Eigen::MatrixXd C = prior(robot, columns.end());

@@ -27,7 +27,8 @@ double touch_noise(const Set& set);
 /// as there are. `xi` are the parameters that are believed.
 std::vector<int> most_telling(const Robot& robot, const Eigen::VectorXd& xi,
                               const std::vector<Set>& sets,
-                              const std::vector<PossibleTouch>& candidates, std::vector<int> counts);
+                              const std::vector<PossibleTouch>& candidates,
+                              std::vector<int> counts);
 
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.

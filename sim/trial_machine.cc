@@ -31,7 +31,7 @@ class TrialMaker {
   MadeTrial run() {
     draw_machine();
     if (!out_.unreached.empty()) return std::move(out_);
-    const Calibration calibration(session_, out_.truth.noise);
+    const TrialCalibration calibration(session_, out_.truth.noise);
     choose_causes(calibration);
     if (!out_.unreached.empty()) return std::move(out_);
     take_rows();
@@ -79,7 +79,7 @@ class TrialMaker {
     return names;
   }
 
-  void choose_causes(const Calibration& calibration) {
+  void choose_causes(const TrialCalibration& calibration) {
     constexpr double kSizes[] = {0.5, 0.75, 1, 1.5, 2.5, 4};
     for (int attempt = 0; attempt < kMixtures; ++attempt) {
       const std::vector<std::string> names = mixture();
@@ -92,7 +92,8 @@ class TrialMaker {
     }
   }
 
-  bool draw_all(const std::vector<std::string>& names, double r, const Calibration& calibration) {
+  bool draw_all(const std::vector<std::string>& names, double r,
+                const TrialCalibration& calibration) {
     causes_.clear();
     for (const std::string& name : names)
       if (!draw(name, r, calibration)) {
@@ -114,11 +115,11 @@ class TrialMaker {
     }
   }
 
-  bool draw(const std::string& name, double r, const Calibration& calibration) {
+  bool draw(const std::string& name, double r, const TrialCalibration& calibration) {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       TrialCause cause = draw_cause(name, session_.world, random_);
       if (!cause.act) continue;
-      const Calibration::Size size = calibration.size(calibration.seen(shifts({cause})));
+      const TrialCalibration::Size size = calibration.size(calibration.seen(shifts({cause})));
       if (!(size.visible > kLeastSurvival * size.whole)) continue;
       cause.size = r / size.visible;
       causes_.push_back(std::move(cause));
@@ -193,7 +194,7 @@ class TrialMaker {
   }
 
   /// What is visible after all at the final rows, and how far a told fit closes the gap.
-  void judge(const Calibration& calibration) {
+  void judge(const TrialCalibration& calibration) {
     out_.shifts = shifts(causes_);
     out_.visible = calibration.size(calibration.seen(out_.shifts)).visible;
     Eigen::MatrixXd columns(calibration.seen(out_.shifts).size(),

@@ -20,7 +20,7 @@ DataSet undivided(const DataSet& data) {
 
 }  // namespace
 
-Calibration::Calibration(const TrialSession& session, double noise) {
+TrialCalibration::TrialCalibration(const TrialSession& session, double noise) {
   const DataSet data = undivided(session.data);
   const Equations equations(*session.robot, data, Use::fit);
   const auto rows = static_cast<size_t>(data.rows.rows());
@@ -46,18 +46,19 @@ Calibration::Calibration(const TrialSession& session, double noise) {
   }
 }
 
-Eigen::VectorXd Calibration::seen(const Eigen::MatrixXd& shifts) const {
+Eigen::VectorXd TrialCalibration::seen(const Eigen::MatrixXd& shifts) const {
   return along_.cwiseProduct(shifts(row_, Eigen::all)).rowwise().sum();
 }
 
-Calibration::Size Calibration::size(const Eigen::VectorXd& seen) const {
+TrialCalibration::Size TrialCalibration::size(const Eigen::VectorXd& seen) const {
   const Eigen::VectorXd rest = left(seen, Eigen::MatrixXd(seen.size(), 0));
   const double n = std::sqrt(static_cast<double>(fit_.size()));
   return {seen(fit_).norm() / n, rest(fit_).norm() / n};
 }
 
 /// What the fit to the rows that identify leaves of every row.
-Eigen::VectorXd Calibration::left(const Eigen::VectorXd& y, const Eigen::MatrixXd& causes) const {
+Eigen::VectorXd TrialCalibration::left(const Eigen::VectorXd& y,
+                                       const Eigen::MatrixXd& causes) const {
   const auto n = static_cast<Eigen::Index>(fit_.size()), k = A_.cols(), c = causes.cols();
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + k, k + c);
   M.topLeftCorner(n, k) = A_(fit_, Eigen::all);
@@ -69,8 +70,8 @@ Eigen::VectorXd Calibration::left(const Eigen::VectorXd& y, const Eigen::MatrixX
   return y - A_ * x.head(k) - causes * x.tail(c);
 }
 
-std::optional<double> Calibration::told_closed(const Eigen::VectorXd& y,
-                                               const Eigen::MatrixXd& causes) const {
+std::optional<double> TrialCalibration::told_closed(const Eigen::VectorXd& y,
+                                                    const Eigen::MatrixXd& causes) const {
   if (check_.empty() || causes.cols() == 0) return std::nullopt;
   const auto square = [&](const Eigen::VectorXd& rest) {
     return rest(check_).squaredNorm() / static_cast<double>(check_.size());

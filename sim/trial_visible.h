@@ -10,9 +10,9 @@ namespace selfcal {
 
 /// The rows' equations with the geometry's columns (links, gears, base, tool, planes), whitened by
 /// `noise` (m) and the makers' priors.
-class Calibration {
+class TrialCalibration {
  public:
-  Calibration(const TrialSession& session, double noise);
+  TrialCalibration(const TrialSession& session, double noise);
 
   /// By equation, what a shift of the tip in each row (rows x 3, m) means, over the noise.
   Eigen::VectorXd seen(const Eigen::MatrixXd& shifts) const;

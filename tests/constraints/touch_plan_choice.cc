@@ -97,7 +97,7 @@ TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
   ASSERT_EQ(plan.touches.size(), 60u);
   std::vector<Eigen::VectorXd> rows;
   std::vector<int> set;
-  std::vector<Candidate> touches;
+  std::vector<PossibleTouch> touches;
   for (const PlannedTouch& each : plan.touches) {
     rows.push_back(each.touch);
     set.push_back(each.set);
