@@ -39,15 +39,19 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   return description;
 }
 
-/// A set that shares another's unknowns needs rows that identify them.
+/// A set that shares another's unknowns needs rows of the other: `fit` rows where its own identify.
 Result<void> check_references(const DataSet& data, const std::string& file) {
-  std::vector<char> fitted(data.sets.size(), 0);
+  std::vector<int> fitted(data.sets.size(), 0), judging = fitted;
   for (int row = 0; row < data.rows.rows(); ++row)
-    if (!data.rows.check[row]) fitted[data.rows.set[row]] = 1;
-  for (const Set& set : data.sets)
-    if (set.reference >= 0 && fitted[&set - data.sets.data()] && !fitted[set.reference])
-      return bad_input(file + ": set " + set.name + " is parallel to " +
-                       data.sets[set.reference].name + ", which has no `fit` rows");
+    ++(data.rows.check[row] ? judging : fitted)[data.rows.set[row]];
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    const int other = data.sets[s].reference;
+    if (other < 0 || fitted[s] + judging[s] == 0 || fitted[other] > 0) continue;
+    if (fitted[s] == 0 && judging[other] > 0) continue;
+    return bad_input(file + ": set " + data.sets[s].name + " is parallel to " +
+                     data.sets[other].name + ", which has no `" +
+                     (fitted[s] > 0 ? "fit" : "fit` or `check") + "` rows");
+  }
   return {};
 }
 
