@@ -54,9 +54,10 @@ bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, con
   const double extra = adjusted.chi2.freedom;
   const double left = adjusted.fitted.at.equations - 2 * extra;
   if (adjusted.priors_fail || rank.total() == 0 || extra < 0.5 || left < 1) return false;
-  const double gain = std::pow(fit.rms_before, 2) - std::pow(fit.rms_after, 2);
-  const double F = gain / extra / (std::pow(fit.rms_after, 2) / left);
-  return F <= 0 || f_exceeds(F, extra, left) > 0.01;
+  const double after = std::pow(fit.rms_after, 2);
+  const double gain = std::pow(fit.rms_before, 2) - after;
+  if (gain <= 0 || after <= 0) return gain <= 0;  // nothing left is no noise to compare with
+  return f_exceeds(gain / extra / (after / left), extra, left) > 0.01;
 }
 
 bool nothing_free(const Adjusted& adjusted) {

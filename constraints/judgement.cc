@@ -125,6 +125,24 @@ std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
   return list;
 }
 
+namespace {
+
+/// The rows' squares fall, of all and of each set that only judges: many small gains must not
+/// outvote one great loss. Outliers are left out, as they are in both.
+bool falls(const Judged& before, const Judged& after, const Residuals& residual) {
+  double all = 0;
+  std::vector<double> of_set(after.aligned.size(), 0);
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    if (residual.check_rows[i].rejected) continue;
+    const double gain = std::pow(before.check[i].length, 2) - std::pow(after.check[i].length, 2);
+    all += gain;
+    if (after.aligned[after.check[i].set]) of_set[after.check[i].set] += gain;
+  }
+  return all > 0 && std::ranges::none_of(of_set, [](double gain) { return gain < 0; });
+}
+
+}  // namespace
+
 Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
                 const EndpointSigma& endpoint, double target, bool converged,
                 bool nominal_explains) {
@@ -142,7 +160,7 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
             1e3 * residual.check.rms_after) +
       (v.p_value < 1e-9 ? "< 1e-9" : print("= %.2g", v.p_value)) + "); end position known to " +
       print("%.3g mm", 1e3 * endpoint.rms);
-  const bool better = v.p_value < kSignificance;
+  const bool better = v.p_value < kSignificance && falls(before, after, residual);
   if (!converged) {
     v.why = "the identification did not converge; " + change;
   } else if (endpoint.rms <= target) {
