@@ -67,6 +67,15 @@ bool read_unknown(Fields& fields, std::string_view key) {
   return true;
 }
 
+Apart read_apart(Fields& fields) {
+  const Apart apart{fields.length("distance", 0), fields.number("noise")};
+  if (!fields.has("distance") || apart.distance < 0)
+    fields.fail("distance", "a distance of at least 0 m");
+  if (!(apart.noise > 0 && apart.noise < 1))
+    fields.fail("noise", "a positive 1 sigma below 1 m");
+  return apart;
+}
+
 std::optional<Eigen::Vector3d> read_direction(Fields& fields, std::string_view key) {
   const auto v = fields.numbers(key, 3);
   if (!v) return std::nullopt;

@@ -9,10 +9,8 @@
 namespace selfcal {
 namespace {
 
-constexpr double kLargestPlace = 1000;                  // m: larger than any robot's cell
-constexpr double kLargestAngle = 8 * std::numbers::pi;  // rad: more turns than any wrist has
-constexpr double kRounding = 1e-3;                      // of the limits' range
-constexpr double kFarOutside = 0.1;                     // of the limits' range
+constexpr double kRounding = 1e-3;   // of the limits' range
+constexpr double kFarOutside = 0.1;  // of the limits' range
 
 /// How far beyond the joint's limits, 0 inside or without limits.
 double excess(const Joint& joint, double reading) {
@@ -41,14 +39,14 @@ std::string likely_slip(const Joint& joint, double reading) {
 }  // namespace
 
 std::optional<std::string> metres_fault(double value) {
-  if (std::abs(value) <= kLargestPlace) return std::nullopt;
+  if (std::abs(value) <= kFarthestPlace) return std::nullopt;
   return format_number(value) + " is too large, metres expected (millimetres?)";
 }
 
 std::optional<std::string> joint_fault(const Joint& joint, double reading) {
   if (joint.quantity == Quantity::length) {
     if (auto fault = metres_fault(reading)) return fault;
-  } else if (std::abs(reading) > kLargestAngle) {
+  } else if (std::abs(reading) > kMostTurned) {
     return format_number(reading) + " is more than four turns (degrees instead of radians?)";
   }
   if (excess(joint, reading) <= kFarOutside * (joint.upper - joint.lower)) return std::nullopt;

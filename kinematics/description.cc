@@ -156,6 +156,20 @@ double Fields::number(std::string_view key, double fallback, double least, doubl
   return fallback;
 }
 
+double Fields::length(std::string_view key, double fallback, double most) {
+  const double value = number(key, fallback);
+  if (std::abs(value) <= most) return value;
+  fail(key, "metres, at most " + format_number(most) + " (millimetres?)");
+  return fallback;
+}
+
+double Fields::angle(std::string_view key, double fallback) {
+  const double value = number(key, fallback);
+  if (std::abs(value) <= kMostTurned) return value;
+  fail(key, "radians, at most four turns (degrees?)");
+  return fallback;
+}
+
 int Fields::integer(std::string_view key, int fallback, int least, int most) {
   const Node* value = node(key);
   if (value == nullptr) return fallback;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -52,6 +53,10 @@ struct Problems {
   void add(const Place& place, const std::string& what);
 };
 
+inline constexpr double kLongestPart = 50;      ///< m: no link, tool or gauge is longer
+inline constexpr double kFarthestPlace = 1000;  ///< m, from the world's origin
+inline constexpr double kMostTurned = 8 * std::numbers::pi;  ///< rad: more turns than any wrist has
+
 /// Reads the fields of one mapping. A getter of a missing or broken field returns its fallback
 /// and notes the problem, so that a reader runs straight through and is judged at its end.
 class Fields {
@@ -70,6 +75,10 @@ class Fields {
   double number(std::string_view key, double fallback, double least, double most);
   std::optional<double> optional_number(std::string_view key);
   double positive(std::string_view key, double fallback);
+  /// Metres, of a magnitude up to `most`: millimetres are guessed beyond it.
+  double length(std::string_view key, double fallback, double most = kLongestPart);
+  /// Radians, up to kMostTurned either way: degrees are guessed beyond it.
+  double angle(std::string_view key, double fallback);
   int integer(std::string_view key, int fallback, int least, int most);
   bool flag(std::string_view key, bool fallback);
   /// A list of exactly `size` finite numbers; nothing when missing.

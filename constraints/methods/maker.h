@@ -26,6 +26,12 @@ int group_index(std::vector<std::string>& groups, const std::string& name);
 /// True when `key: unknown` is given; another text is a problem.
 bool read_unknown(Fields& fields, std::string_view key);
 
+/// `distance` (m) between two loci and its `noise` (1 sigma, m).
+struct Apart {
+  double distance = 0, noise = 0;
+};
+Apart read_apart(Fields& fields);
+
 /// Unit vector of `key`, or nothing when the key is missing; a zero vector is a problem.
 std::optional<Eigen::Vector3d> read_direction(Fields& fields, std::string_view key);
 

@@ -14,6 +14,8 @@
 namespace selfcal {
 namespace {
 
+constexpr double kLargestProbe = 0.2;  // m
+
 /// What own values [nx ny nz d] mean.
 struct NormalForm {
   Eigen::Vector3d n;
@@ -208,18 +210,17 @@ std::shared_ptr<const Method> point_on_plane() {
 
 MethodPtr make_plane(SetEntry& entry) {
   const double radius = entry.fields.number("probe_radius", 0);
-  if (radius < 0) entry.fields.fail("probe_radius", "a radius of at least 0 m");
+  if (!(radius >= 0 && radius < kLargestProbe))
+    entry.fields.fail("probe_radius", "metres from 0 to 0.2 (millimetres?)");
   const auto known = entry.fields.numbers("plane", 3);
   const Node* parallel = entry.fields.node("parallel_to");
   if (known && parallel) entry.fields.fail("parallel_to", "either `plane` or `parallel_to`");
   if (parallel) {
     Fields fields(*parallel, entry.fields.what() + " parallel_to", entry.problems);
     const std::string other = fields.text("set");
-    const double distance = fields.number("distance"), noise = fields.number("noise");
-    if (distance < 0) fields.fail("distance", "a distance of at least 0 m");
-    if (!(noise > 0)) fields.fail("noise", "a positive 1 sigma (m)");
+    const Apart apart = read_apart(fields);
     fields.refuse_unknown();
-    return std::make_unique<ParallelPlane>(radius, other, distance, noise);
+    return std::make_unique<ParallelPlane>(radius, other, apart.distance, apart.noise);
   }
   if (!known) return std::make_unique<OnePlane>(radius, std::nullopt);
   const Eigen::Vector3d abc = *known;

@@ -4,6 +4,8 @@
 //   r = R^T (P(q) - c),   dr = R^T (dP + [P - c]x delta - dc)
 // in the tool's axes: noise has no direction, and a turn of the world then leaves r exactly alone.
 // Two groups' points may be a known distance apart: |c_a - c_b| - D with its own noise.
+#include <algorithm>
+
 #include "constraints/methods/maker.h"
 #include "constraints/statistics.h"
 #include "kinematics/rotation.h"
@@ -74,10 +76,9 @@ GroupLink read_link(const Node& node, SetEntry& entry) {
   } else {
     fields.fail("groups", "two different groups, [FIRST, SECOND]");
   }
-  link.distance = fields.number("distance");
-  link.noise = fields.number("noise");
-  if (link.distance < 0) fields.fail("distance", "a distance of at least 0 m");
-  if (!(link.noise > 0)) fields.fail("noise", "a positive 1 sigma (m)");
+  const Apart apart = read_apart(fields);
+  link.distance = apart.distance;
+  link.noise = apart.noise;
   fields.refuse_unknown();
   return link;
 }
@@ -89,7 +90,14 @@ MethodPtr make_position_constraint(SetEntry& entry) {
   if (const Node* list = entry.fields.node("apart")) {
     if (list->kind != Node::Kind::list)
       entry.fields.fail("apart", "a list of {groups: [A, B], distance: D, noise: S}");
-    for (const Node& item : list->items) links.push_back(read_link(item, entry));
+    for (const Node& item : list->items) {
+      const GroupLink link = read_link(item, entry);
+      if (std::ranges::any_of(links, [&](const GroupLink& other) {
+            return std::minmax(link.a, link.b) == std::minmax(other.a, other.b);
+          }))
+        entry.problems.add(item.place, "these two groups are apart already");
+      links.push_back(link);
+    }
   }
   return std::make_unique<PositionConstraint>(std::move(links));
 }

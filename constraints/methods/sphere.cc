@@ -99,8 +99,11 @@ class Sphere final : public Method {
 MethodPtr make_sphere(SetEntry& entry) {
   std::optional<Eigen::Vector3d> centre;
   if (const auto c = entry.fields.numbers("center", 3)) centre = *c;
+  if (centre && centre->norm() > kFarthestPlace)
+    entry.fields.fail("center", "metres (millimetres?)");
   const std::optional<double> radius = entry.fields.optional_number("radius");
-  if (radius && !(*radius > 0)) entry.fields.fail("radius", "a positive radius (m)");
+  if (radius && !(*radius > 0 && *radius < kLongestPart))
+    entry.fields.fail("radius", "metres, above 0 and below 50 (millimetres?)");
   return std::make_unique<Sphere>(centre, radius);
 }
 

@@ -9,6 +9,7 @@ namespace selfcal::serial {
 namespace {
 
 constexpr const char* kNames[kFields] = {"alpha", "d", "theta", "r", "beta"};
+constexpr double kMostGravity = 100;  // m/s^2
 constexpr const char* kMotions[] = {"fixed", "revolute", "prismatic"};
 
 Motion read_motion(Fields& fields) {
@@ -39,25 +40,37 @@ void read_mass(Fields& fields, Frame& frame) {
   if (const auto com = fields.numbers("com", 3)) frame.com = *com;
 }
 
-Frame read_frame(const Node& node, int index, Problems& problems) {
+/// A fixed frame before the first joint places the robot in its world (`based`); others are its
+/// own.
+Frame read_frame(const Node& node, int index, bool based, Problems& problems) {
   Fields fields(node, "frame " + std::to_string(index), problems);
   Frame frame;
   frame.name = fields.text("name");
   frame.motion = read_motion(fields);
   const bool moves = frame.motion != Motion::fixed;
-  for (int i = 0; i < kFields; ++i) frame.value[i] = fields.number(kNames[i], 0.0);
+  for (int i = 0; i < kFields; ++i)
+    frame.value[i] =
+        i == kD || i == kR
+            ? fields.length(kNames[i], 0, based && !moves ? kFarthestPlace : kLongestPart)
+            : fields.angle(kNames[i], 0);
   frame.nominal = frame.value;
   frame.tolerance.setConstant(-1);
   if (moves) {
     frame.gear = frame.gear_nominal = fields.number("gear", 1.0);
+    if (frame.gear == 0) fields.fail("gear", "a ratio other than 0");
     if (const auto limits = fields.numbers("limits", 2)) {
       frame.lower = (*limits)[0];
       frame.upper = (*limits)[1];
       if (!(frame.lower < frame.upper)) fields.fail("limits", "[lower, upper] with lower < upper");
+      const bool turns = frame.motion == Motion::revolute;
+      if (limits->cwiseAbs().maxCoeff() > (turns ? kMostTurned : kFarthestPlace))
+        fields.fail("limits", turns ? "radians, at most four turns (degrees?)"
+                                    : "metres, at most 1000 (millimetres?)");
     }
   }
   const auto positive = [&](double value) {
-    if (!(value > 0)) fields.fail("tolerance", "positive numbers (1 sigma)");
+    if (!(value > 0 && value < 1))
+      fields.fail("tolerance", "1 sigma each, above 0 and below 1 (m or rad)");
     return value;
   };
   read_named(
@@ -139,13 +152,15 @@ Model read(const Node& node, Problems& problems) {
   model.name = fields.text("robot");
   fields.text("kind");
   if (const auto gravity = fields.numbers("gravity", 3)) model.gravity = *gravity;
+  if (model.gravity.norm() > kMostGravity) fields.fail("gravity", "m/s^2, 9.81 on earth");
   const Node* frames = fields.node("frames");
   if (!frames || frames->kind != Node::Kind::list || frames->items.empty()) {
     fields.fail("frames", "a list of frames from the world to the tool");
     return model;
   }
   for (const Node& item : frames->items)
-    model.frames.push_back(read_frame(item, static_cast<int>(model.frames.size()), problems));
+    model.frames.push_back(read_frame(item, static_cast<int>(model.frames.size()),
+                                      moving_frames(model).empty(), problems));
   check_names(model, *frames, problems);
   const int joints = static_cast<int>(moving_frames(model).size());
   if (joints == 0) fields.fail("frames", "at least one revolute or prismatic joint");
