@@ -242,15 +242,19 @@ void add_history(CLI::App& app, int& status) {
   command->add_option("WHERE", arguments->where,
                       "CONFIG.yaml or the state's folder (default: $STATE_DIRECTORY, or "
                       "/var/lib/selfcal)");
-  command->add_option("--newest", arguments->newest, "So many sessions or events")
-      ->check(CLI::Range(1, kAll))
-      ->capture_default_str();
-  command->add_flag("--events", arguments->events, "The log of the service instead");
+  CLI::Option* newest =
+      command->add_option("--newest", arguments->newest, "So many sessions or events")
+          ->check(CLI::Range(1, kAll))
+          ->capture_default_str();
+  CLI::Option* events =
+      command->add_flag("--events", arguments->events, "The log of the service instead");
   command
       ->add_option("--export", arguments->exported,
                    "SESSION FOLDER: its rows as a data set, to be solved again")
       ->type_name("SESSION FOLDER")
-      ->expected(2);
+      ->expected(2)
+      ->excludes(newest)
+      ->excludes(events);
   command->add_flag("--json", arguments->json, "JSON for programs, SI units");
   command->callback([arguments, &status] { status = history_command(*arguments); });
 }

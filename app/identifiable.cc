@@ -162,6 +162,8 @@ int identifiable_command(const Arguments& arguments) {
   if (is_folder && !arguments.for_robots.empty())
     return wrong_usage(arguments.for_robots +
                        " goes with a robot file and --method; a data set has its own rows");
+  if (arguments.unknown && !arguments.method.starts_with("plane"))
+    return wrong_usage("--unknown goes with plane and plane-normal, not with " + arguments.method);
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)

@@ -24,10 +24,12 @@
 namespace selfcal {
 namespace {
 
+constexpr int kMostSessions = 1'000'000;
+
 struct Arguments {
   std::string config, truth, log = "info";
   bool simulate = false, check = false;
-  int sessions = 0;
+  int sessions = 0;  ///< 0: no end
 };
 
 /// The state folder belongs to one service at a time.
@@ -202,8 +204,6 @@ int serve_command(const Arguments& arguments) {
   if (!config) return tell(config.error());
   if (arguments.simulate && config->simulation.empty())
     return wrong_usage("--simulate needs `simulation: SCENARIO.yaml` in " + arguments.config);
-  if (!arguments.truth.empty() && !arguments.simulate)
-    return wrong_usage("--truth needs --simulate: a real robot has no file of it");
   if (arguments.simulate)
     if (const auto machine = load_machine(config->simulation, *config); !machine)
       return tell(machine.error());
@@ -222,16 +222,24 @@ void add_serve(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("serve", "Run the calibration service of one robot");
   command->add_option("CONFIG", arguments->config, "CONFIG.yaml (see man selfcal-config)")
       ->required();
-  command->add_flag("--simulate", arguments->simulate,
-                    "With the pretend machine of the configuration's `simulation`");
-  command->add_flag("--check", arguments->check, "Validate, print the plan, and end");
-  command->add_option("--sessions", arguments->sessions,
-                      "End after so many sessions (default: never)");
-  command->add_option("--truth", arguments->truth,
-                      "With --simulate: file for what the pretend machine really is");
+  CLI::Option* simulate =
+      command->add_flag("--simulate", arguments->simulate,
+                        "With the pretend machine of the configuration's `simulation`");
+  CLI::Option* check =
+      command->add_flag("--check", arguments->check, "Validate, print the plan, and end");
+  command
+      ->add_option("--sessions", arguments->sessions, "End after so many sessions (default: never)")
+      ->check(CLI::Range(1, kMostSessions))
+      ->excludes(check);
+  command
+      ->add_option("--truth", arguments->truth,
+                   "With --simulate: file for what the pretend machine really is")
+      ->needs(simulate)
+      ->excludes(check);
   command->add_option("--log", arguments->log, "Least level logged")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(check);
   command->callback([arguments, &status] { status = serve_command(*arguments); });
 }
 

@@ -13,16 +13,23 @@ void add_seal(CLI::App& app, int& status) {
   auto arguments = std::make_shared<SealArguments>();
   CLI::App* command =
       app.add_subcommand("seal", "Make or take data sets and put their truth aside");
-  command->add_option("DATASET", arguments->data_sets,
-                      "Given data sets, whose truth is in --truth");
-  command->add_option("--truth", arguments->truth, "truth.json of the given data sets");
-  command->add_option("--make", arguments->make, "How many to make")->check(CLI::Range(1, 100000));
-  command->add_option("--seed", arguments->seed, "Of what is made; 1 by default");
+  CLI::Option* given = command->add_option("DATASET", arguments->data_sets,
+                                           "Given data sets, whose truth is in --truth");
+  CLI::Option* truth =
+      command->add_option("--truth", arguments->truth, "truth.json of the given data sets");
+  CLI::Option* make = command->add_option("--make", arguments->make, "How many to make")
+                          ->check(CLI::Range(1, 100000));
+  given->needs(truth)->excludes(make);
+  truth->needs(given);
+  command->add_option("--seed", arguments->seed, "Of what is made; 1 by default")->needs(make);
   command->add_option("--measure", arguments->measure, "planes or positions; both by default")
-      ->check(CLI::IsMember({"planes", "positions"}));
-  command->add_option("--rows", arguments->rows, "LEAST-MOST, 120-400 by default");
-  command->add_option("--robot", arguments->robot,
-                      "Serial robot with masses and limits; an arm for each by default");
+      ->check(CLI::IsMember({"planes", "positions"}))
+      ->needs(make);
+  command->add_option("--rows", arguments->rows, "LEAST-MOST, 120-400 by default")->needs(make);
+  command
+      ->add_option("--robot", arguments->robot,
+                   "Serial robot with masses and limits; an arm for each by default")
+      ->needs(make);
   command->add_option("--out", arguments->out, "Folder of the trials")->required();
   command->callback([arguments, &status] { status = seal_trials(*arguments); });
 }

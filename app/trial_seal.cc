@@ -160,11 +160,9 @@ int take_trials(const SealArguments& arguments) {
 }  // namespace
 
 int seal_trials(const SealArguments& arguments) {
-  const bool make = arguments.make > 0, take = !arguments.data_sets.empty();
-  if (make == take) return wrong_usage("give --make N, or data sets with --truth FILE");
-  if (take && arguments.truth.empty())
-    return wrong_usage("data sets that are given need --truth FILE");
-  return make ? make_trials(arguments) : take_trials(arguments);
+  if (arguments.make > 0) return make_trials(arguments);
+  if (!arguments.data_sets.empty()) return take_trials(arguments);
+  return wrong_usage("give --make N, or data sets with --truth FILE");
 }
 
 }  // namespace selfcal

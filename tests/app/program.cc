@@ -180,6 +180,28 @@ TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
   }
 }
 
+TEST_F(Program, RefusesOptionsThatWouldChangeNothing) {
+  const std::string robot = SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml";
+  const std::string config = SELFCAL_SOURCE_DIR "/app/examples/rx90_cell.config.yaml";
+  const std::string out = " --out " + (folder_ / "out").string();
+  for (const std::string& arguments :
+       {"identifiable " + robot + " --method position --unknown",
+        "trial seal a --truth t --seed 2" + out, "trial seal a --truth t --rows 80-90" + out,
+        "trial seal a --truth t --measure planes" + out,
+        "trial seal a --truth t --robot " + robot + out, "trial seal a" + out,
+        "trial seal --make 1 --truth t" + out, "trial seal --make 1 a --truth t" + out,
+        "trial seal --truth t" + out, "trial seal" + out,
+        "history " + folder_.string() + " --export 1 x --events",
+        "history " + folder_.string() + " --export 1 x --newest 3",
+        "serve " + config + " --check --sessions 1", "serve " + config + " --check --log debug",
+        "serve " + config + " --check --simulate --truth t", "serve " + config + " --truth t",
+        "serve " + config + " --sessions -1"}) {
+    const Ran ran = selfcal_run(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
 TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
   const std::string data = simulated();
   const std::filesystem::path other = folder_ / "other";
