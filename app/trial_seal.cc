@@ -123,36 +123,66 @@ int make_trials(const SealArguments& arguments) {
   return sealed ? kDone : tell(sealed.error());
 }
 
-/// Copies the data set at `from` whole; it must read in its new place.
-Result<void> take_one(const fs::path& from, const fs::path& to) {
+/// A data set that is given, and where its copy goes.
+struct Given {
+  std::string name;
+  fs::path from, to;
+  std::vector<fs::path> files;  ///< relative to `from`
+};
+
+/// The data set at `folder` reads, reads as well elsewhere, and its place in `out` is free.
+Result<Given> examine(const fs::path& folder, const fs::path& out) {
+  const fs::path from = folder.lexically_normal();
+  const std::string name = (from.has_filename() ? from : from.parent_path()).filename().string();
+  Given given{name, from, out / name, {}};
   std::error_code error;
-  if (fs::exists(to, error)) return bad_input(to.string() + ": is there already");
-  fs::copy(from, to, fs::copy_options::recursive, error);
-  if (error) return device_failed(to.string() + ": cannot copy: " + error.message());
-  const auto loaded = load_data_set(to);
+  if (fs::exists(given.to, error)) return bad_input(given.to.string() + ": is there already");
+  const auto loaded = load_data_set(from);
   if (!loaded) return tl::unexpected(loaded.error());
+  given.files = loaded->files;
+  for (const fs::path& file : given.files)
+    if (file.is_absolute() || *file.lexically_normal().begin() == "..")
+      return bad_input((from / "dataset.yaml").string() + ": " + file.string() +
+                       " lies outside the data set's folder");
+  return given;
+}
+
+/// Copies the files that the data set is made of, and nothing else that lies beside them.
+Result<void> copy(const Given& given) {
+  for (const fs::path& file : given.files) {
+    const fs::path to = given.to / file;
+    std::error_code error;
+    fs::create_directories(to.parent_path(), error);
+    if (!error) fs::copy_file(given.from / file, to, error);
+    if (error) return device_failed(to.string() + ": cannot copy: " + error.message());
+  }
   return {};
 }
 
+/// All of them are examined before the first is copied: a refused run leaves nothing behind.
 int take_trials(const SealArguments& arguments) {
   const auto truth = read_file(arguments.truth, kMostTrialBytes);
   if (!truth) return tell(truth.error());
   const auto truths = parse_truths(*truth, arguments.truth);
   if (!truths) return tell(truths.error());
   const fs::path out(arguments.out);
-  if (const auto free = check_unsealed(out); !free) return tell(free.error());
+  std::vector<Given> all;
   std::set<std::string> taken;
   for (const std::string& each : arguments.data_sets) {
-    const fs::path from = fs::path(each).lexically_normal();
-    const std::string name = (from.has_filename() ? from : from.parent_path()).filename().string();
-    if (!truths->contains(name))
-      return wrong_usage(arguments.truth + ": says nothing of the data set " + name);
-    if (const auto done = take_one(from, out / name); !done) return tell(done.error());
-    taken.insert(name);
+    auto given = examine(each, out);
+    if (!given) return tell(given.error());
+    if (!truths->contains(given->name))
+      return wrong_usage(arguments.truth + ": says nothing of the data set " + given->name);
+    if (!taken.insert(given->name).second)
+      return wrong_usage("two data sets are called " + given->name);
+    all.push_back(std::move(*given));
   }
   for (const auto& [name, each] : *truths)
     if (!taken.contains(name))
       return wrong_usage(arguments.truth + ": names " + name + ", which was not given");
+  if (const auto free = check_unsealed(out); !free) return tell(free.error());
+  for (const Given& given : all)
+    if (const auto done = copy(given); !done) return tell(done.error());
   const auto sealed = seal(out, *truth);
   return sealed ? kDone : tell(sealed.error());
 }

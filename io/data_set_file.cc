@@ -77,6 +77,7 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   Problems problems;
   const Description description = read_description(*node, loaded.data, problems);
   if (problems.any()) return bad_input(problems);
+  loaded.files = {file.filename(), description.robot, description.observations};
 
   Result<std::unique_ptr<Robot>> robot = load_robot(folder / description.robot);
   if (!robot) return tl::unexpected(robot.error());

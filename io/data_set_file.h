@@ -17,6 +17,8 @@ struct LoadedDataSet {
   std::unique_ptr<Robot> robot;      ///< nominal, as its file has it
   DataSet data;                      ///< fits the robot: one column of q for each joint
   std::vector<std::string> notices;  ///< what a person should know of an accepted data set
+  /// What it is made of, as dataset.yaml names them (relative to the folder); itself first.
+  std::vector<std::filesystem::path> files;
 };
 
 /// Reads the data set at `path`, a folder or the dataset.yaml in it. Everything that a file breaks

@@ -9,6 +9,7 @@
 #include "io/data_set_file.h"
 #include "io/file.h"
 #include "tests/io/scratch.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -110,10 +111,42 @@ TEST_F(TrialCommand, TakesGivenDataSetsWithTheirTruth) {
   EXPECT_EQ(text("a/truth.json"), text("b/truth.json"));
   EXPECT_EQ(text("a/TRUTH.sha256"), text("b/TRUTH.sha256"));
   EXPECT_TRUE(load_data_set(path("b/t001")));
-  scratch_.write("other.json", R"({"x": {"effect": "none"}})");
-  EXPECT_EQ(trial("seal " + both + " --truth " + path("other.json").string() + " --out " +
-                  path("c").string()),
-            2);
+}
+
+TEST_F(TrialCommand, LeavesNothingBehindWhenItRefusesGivenDataSets) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  const std::string first = path("a/t000").string(), both = first + " " + path("a/t001").string();
+  const std::string sealed = " --truth " + path("a/truth.json").string(),
+                    other = " --truth " +
+                            scratch_.write("o.json", R"({"t000": {"effect": "none"}})").string(),
+                    out = " --out " + path("b").string();
+
+  EXPECT_EQ(trial("seal " + both + other + out), 2);    // says nothing of t001
+  EXPECT_EQ(trial("seal " + first + sealed + out), 2);  // names t001 besides
+  EXPECT_EQ(trial("seal " + both + " " + first + sealed + out), 2);
+  EXPECT_FALSE(fs::exists(path("b")));
+  EXPECT_EQ(trial("seal " + both + sealed + out), 0) << said_;
+}
+
+TEST_F(TrialCommand, TakesTheFilesThatADataSetIsMadeOfAndNoOther) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  fs::create_directory(path("a/t000/robots"));
+  fs::rename(path("a/t000/arm.robot.yaml"), path("a/t000/robots/arm.robot.yaml"));
+  std::string description = text("a/t000/dataset.yaml");
+  replace(description, "arm.robot.yaml", "robots/arm.robot.yaml");
+  scratch_.write("a/t000/dataset.yaml", description);
+  scratch_.write("a/t000/truth.txt", "elbow");
+  const std::string given = path("a/t000").string() + " " + path("a/t001").string() + " --truth " +
+                            path("a/truth.json").string() + " --out ";
+
+  ASSERT_EQ(trial("seal " + given + path("b").string()), 0) << said_;
+  EXPECT_TRUE(load_data_set(path("b/t000")));
+  EXPECT_FALSE(fs::exists(path("b/t000/truth.txt")));
+
+  replace(description, "robots/arm.robot.yaml", "../t001/arm.robot.yaml");
+  scratch_.write("a/t000/dataset.yaml", description);
+  EXPECT_EQ(trial("seal " + given + path("c").string()), kBadInput);
+  EXPECT_THAT(said_, HasSubstr("outside the data set's folder"));
 }
 
 }  // namespace
