@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct TrialAnswerFile {
   std::string by;      ///< "diagnose", or the baseline
   std::string sealed;  ///< SHA-256 that was published when the answers were given; empty: none was
   TrialAnswers answers;
+  std::map<std::string, std::string> unanswered = {};  ///< why, by trial
 };
 Result<TrialAnswerFile> parse_answers(const std::string& text, const std::string& file);
 std::string answers_text(const TrialAnswerFile& file);

@@ -112,7 +112,7 @@ Result<TrialAnswerFile> parse_answers(const std::string& text, const std::string
   const auto all = mapping(text, file, "answers");
   if (!all) return tl::unexpected(all.error());
   const Json head = Json::parse(text, nullptr, false);
-  TrialAnswerFile out{text_or_empty(head, "by"), text_or_empty(head, "sealed"), {}};
+  TrialAnswerFile out{text_or_empty(head, "by"), text_or_empty(head, "sealed"), {}, {}};
   for (const auto& [name, node] : all->items()) {
     out.answers[name] = answer_of(node);
     if (out.answers[name].verdict.effect.empty())
@@ -131,7 +131,9 @@ std::string answers_text(const TrialAnswerFile& file) {
                  {"closed_fraction", number_or_null(answer.closed)},
                  {"seconds", answer.seconds}};
   }
-  return Json{{"by", file.by}, {"sealed", file.sealed}, {"answers", all}}.dump(1) + "\n";
+  Json whole{{"by", file.by}, {"sealed", file.sealed}, {"answers", all}};
+  if (!file.unanswered.empty()) whole["unanswered"] = file.unanswered;
+  return whole.dump(1) + "\n";
 }
 
 Result<std::string> published_hash(const std::filesystem::path& folder) {

@@ -28,12 +28,17 @@ TrialAnswer answer_of(const Diagnosis& diagnosis) {
   return answer;
 }
 
+/// Works through the trials, and keeps the file of answers up to date while it does: what was
+/// answered outlives an interruption, and a trial that cannot be answered stops no other.
 class Runner {
  public:
   Runner(const RunArguments& arguments, std::vector<std::string> names)
-      : arguments_(arguments), names_(std::move(names)) {}
+      : arguments_(arguments), names_(std::move(names)) {
+    file_.by = arguments.baseline.empty() ? "diagnose" : arguments.baseline;
+    file_.sealed = published_hash(arguments.folder).value_or("");
+  }
 
-  Result<TrialAnswers> run() {
+  int run() {
     const auto cores = std::max(1U, std::thread::hardware_concurrency());
     const auto jobs = std::min<std::size_t>(
         names_.size(), arguments_.jobs > 0 ? static_cast<unsigned>(arguments_.jobs) : cores);
@@ -41,28 +46,46 @@ class Runner {
       std::vector<std::jthread> workers;
       for (std::size_t i = 0; i < jobs; ++i) workers.emplace_back([this] { work(); });
     }
-    if (failed_) return tl::unexpected(*failed_);
-    return std::move(answers_);
+    if (saved_) save();
+    if (!saved_) return tell(saved_.error());
+    if (file_.unanswered.empty()) return kDone;
+    return tell({kInputIsBad, std::to_string(file_.unanswered.size()) + " of " +
+                                  std::to_string(names_.size()) + " trials were not answered"});
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kBetweenSaves{1};
+
   void work() {
     for (std::size_t i = next_++; i < names_.size(); i = next_++) {
-      const auto begin = std::chrono::steady_clock::now();
+      const auto begin = Clock::now();
       Result<TrialAnswer> answer = answer_to(names_[i]);
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+      const std::chrono::duration<double> spent = Clock::now() - begin;
       const std::scoped_lock lock(mutex_);
-      if (!answer) {
-        failed_ = answer.error();
-        next_ = names_.size();
-        return;
-      }
-      answer->seconds = spent.count();
-      std::fprintf(stderr, "%zu/%zu %s %s %.3f (%.1f s)\n", answers_.size() + 1, names_.size(),
-                   names_[i].c_str(), answer->verdict.effect.c_str(), answer->verdict.probability,
-                   answer->seconds);
-      answers_[names_[i]] = std::move(*answer);
+      if (answer) answer->seconds = spent.count();
+      take(names_[i], std::move(answer));
+      if (saved_ && Clock::now() - last_save_ >= kBetweenSaves) save();
+      if (!saved_) next_ = names_.size();
     }
+  }
+
+  void take(const std::string& name, Result<TrialAnswer> answer) {
+    const std::size_t done = file_.answers.size() + file_.unanswered.size() + 1;
+    std::fprintf(stderr, "%zu/%zu %s ", done, names_.size(), name.c_str());
+    if (answer) {
+      std::fprintf(stderr, "%s %.3f (%.1f s)\n", answer->verdict.effect.c_str(),
+                   answer->verdict.probability, answer->seconds);
+      file_.answers[name] = std::move(*answer);
+    } else {
+      std::fprintf(stderr, "not answered: %s\n", answer.error().what.c_str());
+      file_.unanswered[name] = answer.error().what;
+    }
+  }
+
+  void save() {
+    saved_ = write_file_atomically(arguments_.out, answers_text(file_));
+    last_save_ = Clock::now();
   }
 
   Result<TrialAnswer> answer_to(const std::string& name) const {
@@ -80,8 +103,10 @@ class Runner {
   const std::vector<std::string> names_;
   std::atomic<std::size_t> next_{0};
   std::mutex mutex_;  ///< of all below
-  TrialAnswers answers_;
-  std::optional<Failure> failed_;
+  TrialAnswerFile file_;
+  Result<void> saved_;
+  Clock::time_point
+      last_save_{};  ///< so that the first answer shows whether the file can be written
 };
 
 }  // namespace
@@ -89,12 +114,7 @@ class Runner {
 int run_trials(const RunArguments& arguments) {
   auto names = trial_names(arguments.folder);
   if (!names) return tell(names.error());
-  const auto answers = Runner(arguments, std::move(*names)).run();
-  if (!answers) return tell(answers.error());
-  const std::string by = arguments.baseline.empty() ? "diagnose" : arguments.baseline;
-  const std::string sealed = published_hash(arguments.folder).value_or("");
-  const auto written = write_file_atomically(arguments.out, answers_text({by, sealed, *answers}));
-  return written ? kDone : tell(written.error());
+  return Runner(arguments, std::move(*names)).run();
 }
 
 }  // namespace selfcal

@@ -81,6 +81,28 @@ TEST_F(TrialCommand, PutsBaselinesBesideTheAnswersThatAreJudged) {
     EXPECT_EQ(both[line]["beside"]["bic"], figures["value"]) << line;
 }
 
+TEST_F(TrialCommand, AnswersTheOthersWhereADataSetIsBad) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  std::ofstream(path("a/t000/dataset.yaml"), std::ios::app) << "tarket: 1\n";
+  const std::string answers = path("answers.json").string();
+
+  EXPECT_EQ(trial("run " + path("a").string() + " --baseline compliance --out " + answers),
+            kBadInput);
+  EXPECT_THAT(said_, HasSubstr("1 of 2 trials were not answered"));
+  const auto written = nlohmann::json::parse(text("answers.json"));
+  EXPECT_TRUE(written["answers"].contains("t001"));
+  EXPECT_THAT(written["unanswered"]["t000"].get<std::string>(), HasSubstr("tarket"));
+  EXPECT_LE(trial("score " + path("a").string() + " " + answers), 1) << said_;
+}
+
+TEST_F(TrialCommand, EndsAtOnceWhereItsAnswersCannotBeWritten) {
+  ASSERT_EQ(make("a"), 0) << said_;
+  EXPECT_EQ(trial("run " + path("a").string() + " --jobs 1 --baseline compliance --out " +
+                  path("nowhere/answers.json").string()),
+            kDeviceFailed);
+  EXPECT_THAT(said_, testing::Not(HasSubstr("2/2")));
+}
+
 TEST_F(TrialCommand, NoticesATruthThatWasChangedAfterSealing) {
   ASSERT_EQ(make("a"), 0) << said_;
   const std::string answers = path("answers.json").string();
