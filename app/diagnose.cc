@@ -10,9 +10,6 @@
 #include "app/diagnosis_report.h"
 #include "app/diagnosis_summary.h"
 #include "app/progress_line.h"
-#include "diagnosis/compare.h"
-#include "diagnosis/diagnosis.h"
-#include "diagnosis/simulation.h"
 #include "io/data_set_file.h"
 #include "io/file.h"
 #include "io/robot_file.h"
@@ -24,19 +21,6 @@ struct Arguments {
   std::string data_set, since, simulated, next, out;
   bool json = false;
 };
-
-Result<void> write(const Arguments& arguments, const Diagnosis& diagnosis, const std::string& name,
-                   const std::string& json) {
-  const std::filesystem::path out(arguments.out);
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) return device_failed(arguments.out + ": cannot create the folder: " + error.message());
-  if (auto done = write_file_atomically(out / "diagnosis.json", json + "\n"); !done) return done;
-  if (auto done = write_file_atomically(out / "report.html", html_report(diagnosis, name)); !done)
-    return done;
-  return write_file_atomically(out / "corrected.robot.yaml",
-                               robot_text(*diagnosis.model, diagnosis.values));
-}
 
 std::function<void(std::string_view, double)> shown_on(ProgressLine& line) {
   return [&line](std::string_view stage, double share) { line.show(stage, share); };
@@ -73,56 +57,74 @@ Result<Inputs> load(const Arguments& arguments) {
   return Inputs{*std::move(measured), robot, *std::move(before), *std::move(simulated)};
 }
 
+Result<Findings> find(const Arguments& arguments, const Inputs& inputs) {
+  const DataSet& data = inputs.measured.data;
+  ProgressLine line;
+  Findings found{inputs.measured.name, diagnose(inputs.robot, data, {}, shown_on(line)), {}, {}};
+  if (!found.diagnosis.problem.empty())
+    return bad_input(arguments.data_set + ": " + found.diagnosis.problem);
+  if (inputs.before)
+    found.since = {inputs.before->name, compare(inputs.robot, inputs.before->data, data,
+                                                Between::sessions, {}, shown_on(line))};
+  if (!inputs.simulated) return found;
+  const DataSet& simulated = inputs.simulated->data;
+  const Diagnosis other = diagnose(inputs.robot, simulated, {}, shown_on(line));
+  if (!other.problem.empty()) return bad_input(arguments.simulated + ": " + other.problem);
+  found.sim = {inputs.simulated->name, differences(found.diagnosis, other,
+                                                   compare(inputs.robot, simulated, data,
+                                                           Between::machines, {}, shown_on(line)))};
+  return found;
+}
+
+std::string json_of(const Findings& findings) {
+  nlohmann::ordered_json whole = to_json(findings.diagnosis);
+  if (findings.since) whole["since"] = to_json(findings.since->comparison);
+  if (findings.sim) whole["sim"] = to_json(findings.sim->differences);
+  return whole.dump(1);
+}
+
+std::string words_of(const Findings& findings) {
+  std::string text = summary(findings.diagnosis);
+  if (findings.since)
+    text += "Since " + findings.since->name + ": " + findings.since->comparison.why + "\n";
+  if (findings.sim)
+    for (const std::string& each : findings.sim->differences.sentences)
+      text += "Against " + findings.sim->name + ": " + each + "\n";
+  return text;
+}
+
+Result<void> write_folder(const std::filesystem::path& out, const Findings& findings) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) return device_failed(out.string() + ": cannot create the folder: " + error.message());
+  const Diagnosis& diagnosis = findings.diagnosis;
+  const std::pair<const char*, std::string> files[] = {
+      {"diagnosis.json", json_of(findings) + "\n"},
+      {"report.html", html_report(findings)},
+      {"corrected.robot.yaml", robot_text(*diagnosis.model, diagnosis.values)}};
+  for (const auto& [name, text] : files)
+    if (auto done = write_file_atomically(out / name, text); !done) return done;
+  return {};
+}
+
+/// Writes what is asked for to be kept.
+Result<void> write(const Arguments& arguments, const Inputs& inputs, const Findings& findings) {
+  if (!arguments.out.empty())
+    if (auto done = write_folder(arguments.out, findings); !done) return done;
+  if (arguments.next.empty()) return {};
+  return write_file_atomically(arguments.next,
+                               next_json(findings.diagnosis, inputs.measured.data).dump(1) + "\n");
+}
+
 int diagnose_command(const Arguments& arguments) {
   const auto inputs = load(arguments);
   if (!inputs) return tell(inputs.error());
-  const DataSet& data = inputs->measured.data;
-  Diagnosis diagnosis;
-  std::optional<Comparison> since;
-  std::optional<Differences> sim;
-  {
-    ProgressLine line;
-    diagnosis = diagnose(inputs->robot, data, {}, shown_on(line));
-    if (!diagnosis.problem.empty())
-      return tell({kBadInput, arguments.data_set + ": " + diagnosis.problem});
-    if (inputs->before)
-      since =
-          compare(inputs->robot, inputs->before->data, data, Between::sessions, {}, shown_on(line));
-    if (inputs->simulated) {
-      const DataSet& simulated = inputs->simulated->data;
-      const Diagnosis other = diagnose(inputs->robot, simulated, {}, shown_on(line));
-      if (!other.problem.empty())
-        return tell({kBadInput, arguments.simulated + ": " + other.problem});
-      sim = differences(
-          diagnosis, other,
-          compare(inputs->robot, simulated, data, Between::machines, {}, shown_on(line)));
-    }
-  }
-  nlohmann::ordered_json whole = to_json(diagnosis);
-  std::string more;
-  if (since) {
-    whole["since"] = to_json(*since);
-    more += "Since " + inputs->before->name + ": " + since->why + "\n";
-  }
-  if (sim) {
-    whole["sim"] = to_json(*sim);
-    for (const std::string& each : sim->sentences)
-      more += "Against " + inputs->simulated->name + ": " + each + "\n";
-  }
-  const std::string json = whole.dump(1);
-  if (!arguments.out.empty())
-    if (const auto written = write(arguments, diagnosis, inputs->measured.name, json); !written)
-      return tell(written.error());
-  if (!arguments.next.empty())
-    if (const auto written =
-            write_file_atomically(arguments.next, next_json(diagnosis, data).dump(1) + "\n");
-        !written)
-      return tell(written.error());
-  if (arguments.json)
-    std::printf("%s\n", json.c_str());
-  else
-    std::fputs((summary(diagnosis) + more).c_str(), stdout);
-  return diagnosis.converged ? kDone : kAnswerIsNo;
+  const auto findings = find(arguments, *inputs);
+  if (!findings) return tell(findings.error());
+  if (const auto written = write(arguments, *inputs, *findings); !written)
+    return tell(written.error());
+  std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
+  return findings->diagnosis.converged ? kDone : kAnswerIsNo;
 }
 
 }  // namespace

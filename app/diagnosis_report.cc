@@ -1,5 +1,5 @@
-// In the order of the questions: what is it, how far does it close, where does it lie, what else
-// could it be, what would have been seen, what to do next.
+// In the order of the questions: what is it, how far does it close, what else could it be, what to
+// do next, what is different elsewhere, where does it lie, what would have been seen.
 #include "app/diagnosis_report.h"
 
 #include <algorithm>
@@ -143,15 +143,82 @@ std::string next(const Diagnosis& diagnosis) {
   return text + "</ul>";
 }
 
+/// "1.2e-03 ± 1e-05 rad", for each value on a line of its own.
+std::string sizes(const std::vector<NamedValue>& values) {
+  std::string text;
+  for (const NamedValue& each : values)
+    text += (text.empty() ? "" : "<br>") +
+            (values.size() > 1 ? escaped(each.name) + " " : std::string()) +
+            printed("%.3g &plusmn; %.1g %s", each.value, each.sigma, each.unit.c_str());
+  return text;
+}
+
+std::string change_table(const std::vector<Change>& changes) {
+  if (changes.empty()) return "";
+  std::string text = "<table><tr><th>change<th>where<th>probability<th>size";
+  for (const Change& each : changes)
+    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+            printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) +
+            "<td class=num>" + sizes(each.values);
+  return text + "</table>";
+}
+
+std::string changed(const SinceBefore& since) {
+  return "<h2>What changed since " + escaped(since.name) + "</h2><p>" +
+         escaped(since.comparison.why) + "</p>" + change_table(since.comparison.changes);
+}
+
+std::string shown_table(const char* title, const std::vector<ShownCause>& causes) {
+  if (causes.empty()) return "";
+  std::string text = std::string("<h3>") + title +
+                     "</h3><table><tr><th>cause<th>where<th>probability<th>size<th>cannot be told "
+                     "from";
+  for (const ShownCause& each : causes)
+    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+            printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) +
+            "<td class=num>" + sizes(each.parameters) + "<td class=muted>" +
+            joined(each.confounded_with);
+  return text + "</table>";
+}
+
+std::string shared_table(const std::vector<SharedCause>& causes) {
+  if (causes.empty()) return "";
+  std::string text =
+      "<h3>In both</h3><table><tr><th>cause<th>where<th>robot<th>simulation<th>apart";
+  for (const SharedCause& each : causes) {
+    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) + "<td><td><td>";
+    for (const SideBySide& p : each.parameters)
+      text += "<tr><td class=muted>" + escaped(p.robot.name) + "<td><td class=num>" +
+              sizes({p.robot}) + "<td class=num>" + sizes({p.simulation}) +
+              printed("<td class=num>%.1f sigma", p.sigmas);
+  }
+  return text + "</table>";
+}
+
+std::string differs(const AgainstSimulation& sim) {
+  const Differences& of = sim.differences;
+  std::string text = "<h2>Against the simulation " + escaped(sim.name) + "</h2><ul>";
+  for (const std::string& each : of.sentences) text += "<li>" + escaped(each);
+  text += "</ul>" + shown_table("In the robot alone", of.robot_only) +
+          shown_table("In the simulation alone", of.simulation_only) + shared_table(of.both);
+  const std::string geometry = change_table(of.geometry.changes);
+  return geometry.empty() ? text
+                          : text + "<h3>In the geometry: robot less simulation</h3>" + geometry;
+}
+
 }  // namespace
 
-std::string html_report(const Diagnosis& diagnosis, const std::string& name) {
+std::string html_report(const Findings& findings) {
+  const Diagnosis& diagnosis = findings.diagnosis;
+  const std::string& name = findings.name;
   std::string text = "<!doctype html><html lang=en><meta charset=utf-8><title>Diagnosis of " +
                      escaped(name) + "</title><style>" + kStyle + "</style>";
   text += "<h1>" + escaped(name) + "</h1><p class=why>" + escaped(diagnosis.why) + "</p>";
   text += "<h2>How far the gap closes</h2>" + gap_table(diagnosis.gap);
   text += "<h2>What causes it</h2>" + cause_table(diagnosis.candidates);
   text += parameter_table(diagnosis.candidates) + next(diagnosis);
+  if (findings.since) text += changed(*findings.since);
+  if (findings.sim) text += differs(*findings.sim);
   text += "<h2>Where what calibration leaves lies</h2>" + where(diagnosis.where);
   text += "<h2>What would have been seen</h2>" + limits(diagnosis);
   if (!diagnosis.rejected.empty()) {

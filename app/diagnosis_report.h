@@ -2,13 +2,33 @@
 // fetched.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "diagnosis/compare.h"
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/simulation.h"
 
 namespace selfcal {
 
-/// `name` is the data set's.
-std::string html_report(const Diagnosis& diagnosis, const std::string& name);
+/// Another data set, by its name, and what the comparison with it came to.
+struct SinceBefore {
+  std::string name;
+  Comparison comparison;
+};
+struct AgainstSimulation {
+  std::string name;
+  Differences differences;
+};
+
+/// All that a person asked of one data set.
+struct Findings {
+  std::string name;  ///< the data set's
+  Diagnosis diagnosis;
+  std::optional<SinceBefore> since;
+  std::optional<AgainstSimulation> sim;
+};
+
+std::string html_report(const Findings& findings);
 
 }  // namespace selfcal
