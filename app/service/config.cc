@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "app/service/config_transports.h"
+#include "io/dds/participant.h"
 #include "io/file.h"
 #include "io/robot_file.h"
 #include "io/yaml.h"
@@ -72,7 +73,7 @@ class Reader {
                : folder       ? std::filesystem::path(folder)
                               : folder_ / "state";
     c_.target = fields.number("target", c_.target, 1e-6, 1);
-    c_.domain = fields.integer("domain", c_.domain, 0, 230);
+    c_.domain = fields.integer("domain", c_.domain, 0, static_cast<int>(kMostDdsDomain));
   }
 
   void read_motion(Fields& f) {

@@ -7,7 +7,7 @@
 //   serial           id                         hardware_id in the diagnostics
 //   state            $STATE_DIRECTORY or state  folder of what must not be lost
 //   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted (1 sigma)
-//   domain           0          0 to 230        of DDS
+//   domain           0          0 to 232        of DDS
 //   encoders         {}                         where joint readings come from:
 //     kind           dds                        one of io/encoders.def; its own keys are listed in
 //                                               io/encoders/dds.cc, those of socketcan in
