@@ -142,12 +142,12 @@ Result<std::optional<Nanoseconds>> PacedOutput::moment_of_sample(Nanoseconds loo
   if (!joints_.marks()) return std::optional(now() + preparing_);
   const auto edge = next_edge();
   const Nanoseconds latest = edge ? *edge - delay_ - kFrame : looked + kLongestMark;
-  auto mark = joints_.mark(std::clamp<Nanoseconds>(latest - now(), 0, kLongestMark));
+  const auto mark = joints_.mark(std::clamp<Nanoseconds>(latest - now(), 0, kLongestMark));
   if (!mark || !*mark) return mark;
   // A mark after the contact that lies ahead: the machine has stood still for it.
-  if (edge && looked<latest&&* * mark - began_> latest) began_ = **mark - looked;
-  **mark -= began_;
-  return mark;
+  const Nanoseconds came = **mark;
+  if (edge && looked < latest && came - began_ > latest) began_ = came - looked;
+  return std::optional(came - began_);
 }
 
 Result<void> PacedOutput::send_sample() {

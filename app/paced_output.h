@@ -77,7 +77,7 @@ class PacedOutput {
   std::vector<DrivenEdge> driven_;
 };
 
-/// One JSON object a line: closed, before_ns, after_ns, label, q, dq.
+/// One JSON object a line: closed, before_ns, after_ns, late_ns, label, q, dq.
 std::string driven_text(const std::vector<DrivenEdge>& driven);
 
 }  // namespace selfcal
