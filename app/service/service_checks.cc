@@ -71,7 +71,7 @@ void Service::begin_test() {
 void Service::check_self() {
   if (!testing_) return;
   const std::string why = missing();
-  if (!why.empty() && now_ - test_began_ < config_.limits.self_test - kSecond) return;
+  if (!why.empty() && now_ - test_began_ < config_.limits.self_test) return;
   testing_ = false;
   Event event;
   event.what = Event::What::self_tested;

@@ -39,13 +39,13 @@ CellTest::CellTest()
                                folder / name);
 }
 
-std::unique_ptr<Running> CellTest::serve(const std::string& id) {
+std::unique_ptr<Running> CellTest::serve(const std::string& id, const std::string& more) {
   std::string text = text_of(SELFCAL_SOURCE_DIR "/app/examples/rx90_cell.config.yaml");
   const std::string named = "\nid: rx90 ";
   text.replace(
       text.find(named), named.size(),
       "\nid: " + id + "\nstate: state_" + id + "\ndomain: " + std::to_string(domain) + " ");
-  std::ofstream(config(id)) << text;
+  std::ofstream(config(id)) << text << more;
   return std::make_unique<Running>(
       std::vector<std::string>{"serve", config(id).string(), "--simulate"}, folder / (id + ".log"));
 }

@@ -25,8 +25,8 @@ Ran run_selfcal(const std::string& arguments);
 class CellTest : public ::testing::Test {
  protected:
   CellTest();
-  /// The service of robot `id`, its state in state_ID.
-  std::unique_ptr<Running> serve(const std::string& id);
+  /// The service of robot `id`, its state in state_ID; `more` keys go into its configuration.
+  std::unique_ptr<Running> serve(const std::string& id, const std::string& more = {});
   std::filesystem::path config(const std::string& id) const {
     return folder / (id + ".config.yaml");
   }

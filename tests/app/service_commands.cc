@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "io/store/store.h"
 #include "tests/app/cell.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -38,6 +38,17 @@ TEST_F(ServiceCommands, MonitorsOnceInJson) {
   ASSERT_TRUE(by_topic.contains("health")) << ran.out;
   EXPECT_EQ(by_topic["health"]["lines"].size(), 5);
   EXPECT_FALSE(by_topic.contains("result"));
+}
+
+TEST_F(ServiceCommands, TestThemselvesForAsLongAsTheLimitSays) {
+  const auto service = serve("rx90", "limits: {self_test: 1}\n");
+
+  const json first = heard([](const json& message) { return message["topic"] == "status"; });
+
+  EXPECT_FALSE(first.is_null());
+  EXPECT_FALSE(heard(ready).is_null());
+  EXPECT_EQ(text_of(folder / "rx90.log").find("fault"), std::string::npos)
+      << text_of(folder / "rx90.log");
 }
 
 TEST_F(ServiceCommands, SayWhenNoServiceIsHeard) {
