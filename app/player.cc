@@ -24,13 +24,8 @@ struct RobotEnds {
   static Result<RobotEnds> open(const DdsParticipant& participant, const Config& config,
                                 const Machine& machine, Wakeup& wakeup) {
     const RobotContext context{participant, wakeup, machine.settings().trigger_pull};
-    auto dds = DdsRobotSide::open(participant,
-                                  {.robot = config.id,
-                                   .joints = {},
-                                   .joint_states = "",
-                                   .trigger = "",
-                                   .temperature = config.temperature_topic},
-                                  wakeup);
+    auto dds = DdsRobotSide::open(
+        participant, {.robot = config.id, .temperature = config.temperature_topic}, wakeup);
     if (!dds) return tl::unexpected(dds.error());
     auto joints = config.encoders->open_sender(context);
     if (!joints) return tl::unexpected(joints.error());

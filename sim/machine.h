@@ -82,7 +82,6 @@ class Machine {
   };
 
   bool broken(MachineFault::What what, Nanoseconds t) const;
-  bool any_broken(MachineFault::What what) const;
   void begin(const MotionRequest& request);
   void reply(std::uint64_t id, MotionReply::Outcome outcome, std::string why);
   void pass_crossings(Nanoseconds until);

@@ -22,7 +22,6 @@ void Computation::start(Job job) {
       const std::lock_guard lock(mutex_);
       progress_.stage = stage;
       progress_.share = share;
-      ++progress_.beats;
     };
     std::string failure;
     try {

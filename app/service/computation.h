@@ -32,7 +32,6 @@ class Computation {
   struct Progress {
     std::string stage;
     double share = 0;
-    std::uint64_t beats = 0;  ///< grows as long as the job is alive
   };
   Progress progress() const;
 

@@ -91,7 +91,7 @@ struct Acceptance {
 };
 
 struct TouchRules {
-  int repeats = 1, attempts = 3, most_lost = 5;
+  int repeats = 1;
   double tolerance = 1e-4;             ///< m
   double debounce = 0.002, delay = 0;  ///< s
   double rest = 1e-4;                  ///< rad/s

@@ -23,14 +23,6 @@ class DdsOpening {
             Wakeup* wakeup = nullptr) {
     take(reader, DdsReader<T>::open(participant_, topic, qos, wakeup));
   }
-  /// Moves what was opened elsewhere to its place, or keeps its failure.
-  template <class T>
-  void take(T& place, Result<T> opened) {
-    if (opened)
-      place = *std::move(opened);
-    else if (!failure_)
-      failure_ = std::move(opened).error();
-  }
   /// What `make` returns, or the failure.
   template <class Make>
   auto finish(Make make) -> Result<decltype(make())> {
@@ -39,6 +31,14 @@ class DdsOpening {
   }
 
  private:
+  /// Moves what was opened to its place, or keeps its failure.
+  template <class T>
+  void take(T& place, Result<T> opened) {
+    if (opened)
+      place = *std::move(opened);
+    else if (!failure_)
+      failure_ = std::move(opened).error();
+  }
   const DdsParticipant& participant_;
   std::optional<Failure> failure_;
 };

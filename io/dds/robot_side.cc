@@ -18,17 +18,13 @@ dds::Header header(Nanoseconds stamp) {
 }  // namespace
 
 Result<std::unique_ptr<DdsRobotSide>> DdsRobotSide::open(const DdsParticipant& participant,
-                                                         DdsRobotConfig config, Wakeup& wakeup) {
+                                                         const DdsRobotConfig& config,
+                                                         Wakeup& wakeup) {
   Endpoints endpoints;
   DdsOpening opening(participant);
   opening.open(endpoints.replies, robot_topic(config.robot, "motion_reply"), kExchange, &wakeup);
   opening.open(endpoints.requests, robot_topic(config.robot, "motion_request"), kExchange, &wakeup);
   opening.open(endpoints.temperature, ros_topic(config.temperature), kSensorWriter, &wakeup);
-  if (!config.joint_states.empty())
-    opening.take(endpoints.joints, DdsJointSender::open(participant, config.joint_states,
-                                                        std::move(config.joints), wakeup));
-  if (!config.trigger.empty())
-    opening.take(endpoints.trigger, DdsTriggerSender::open(participant, config.trigger, wakeup));
   return opening.finish(
       [&] { return std::unique_ptr<DdsRobotSide>(new DdsRobotSide(std::move(endpoints))); });
 }

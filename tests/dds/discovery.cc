@@ -9,6 +9,7 @@
 #include "io/dds/messenger.h"
 #include "io/dds/names.h"
 #include "io/dds/robot_side.h"
+#include "io/dds/senders.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -82,8 +83,9 @@ TEST_F(DdsDiscovery, ShowsWhatRosLooksFor) {
 }
 
 TEST_F(DdsDiscovery, ShowsARobotsSide) {
-  const auto robot = must(DdsRobotSide::open(
-      participant, {.robot = "r", .joints = {}, .joint_states = "/cell/joint_states"}, wakeup));
+  const auto robot = must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
+  const auto joints = must(DdsJointSender::open(participant, "/cell/joint_states", {}, wakeup));
+  const auto trigger = must(DdsTriggerSender::open(participant, "touch_trigger", wakeup));
 
   const auto writers = endpoints(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
   const auto readers = endpoints(participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "io/dds/names.h"
-#include "io/dds/robot_side.h"
+#include "io/dds/senders.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -18,7 +18,7 @@ class DdsEncodersTest : public DdsTest {
  protected:
   // A robot that names its joints so, heard by the encoders.
   void connect(const std::vector<std::string>& names) {
-    robot = must(DdsRobotSide::open(participant, {.robot = "r", .joints = names}, wakeup));
+    robot = must(DdsJointSender::open(participant, "joint_states", names, wakeup));
     ASSERT_TRUE(eventually([&] { return encoders->senders() == 1; }));
   }
   std::vector<EncoderSample> take() {
@@ -30,13 +30,13 @@ class DdsEncodersTest : public DdsTest {
   std::shared_ptr<TimeMapping> mapping = std::make_shared<TimeMapping>();
   std::unique_ptr<DdsEncoders> encoders =
       must(DdsEncoders::open(participant, {.joints = {"a", "b", "c"}}, mapping));
-  std::unique_ptr<DdsRobotSide> robot;
+  std::unique_ptr<DdsJointSender> robot;
 };
 
 TEST_F(DdsEncodersTest, TakeJointsInTheirOwnOrder) {
   connect({"gripper", "c", "a", "b"});
 
-  must(robot->publish_joints(1000, {9, 0.3, -0.1, 0.2}));
+  must(robot->send(1000, {9, 0.3, -0.1, 0.2}));
   const auto samples = take();
 
   ASSERT_EQ(samples.size(), 1);
@@ -51,12 +51,11 @@ TEST_F(DdsEncodersTest, TakeJointsInTheirOwnOrder) {
 
 TEST_F(DdsEncodersTest, FollowAnOrderThatChanges) {
   connect({"a", "b", "c"});
-  auto other =
-      must(DdsRobotSide::open(participant, {.robot = "q", .joints = {"c", "b", "a"}}, wakeup));
+  auto other = must(DdsJointSender::open(participant, "joint_states", {"c", "b", "a"}, wakeup));
   ASSERT_TRUE(eventually([&] { return encoders->senders() == 2; }));
 
-  must(robot->publish_joints(1000, {1, 2, 3}));
-  must(other->publish_joints(2000, {3, 2, 1}));
+  must(robot->send(1000, {1, 2, 3}));
+  must(other->send(2000, {3, 2, 1}));
   const auto samples = take();
 
   ASSERT_EQ(samples.size(), 2);
@@ -66,7 +65,7 @@ TEST_F(DdsEncodersTest, FollowAnOrderThatChanges) {
 TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageThatLacksAJoint) {
   connect({"a", "b"});
 
-  must(robot->publish_joints(1000, {1, 2}));
+  must(robot->send(1000, {1, 2}));
 
   EXPECT_TRUE(take().empty());
   EXPECT_EQ(encoders->incomplete(), 1);
@@ -76,11 +75,11 @@ TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageThatLacksAJoint) {
 TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageWithoutAPositionOrWithOneThatIsNone) {
   connect({"a", "b", "c"});
 
-  must(robot->publish_joints(1000, {1, 2}));
-  must(robot->publish_joints(2000, {}));
-  must(robot->publish_joints(3000, {1, std::nan(""), 3}));
-  must(robot->publish_joints(4000, {1, std::numeric_limits<double>::infinity(), 3}));
-  must(robot->publish_joints(5000, {1, 1e300, 3}));
+  must(robot->send(1000, {1, 2}));
+  must(robot->send(2000, {}));
+  must(robot->send(3000, {1, std::nan(""), 3}));
+  must(robot->send(4000, {1, std::numeric_limits<double>::infinity(), 3}));
+  must(robot->send(5000, {1, 1e300, 3}));
 
   EXPECT_TRUE(take().empty());
   EXPECT_EQ(encoders->incomplete(), 5);
@@ -89,11 +88,11 @@ TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageWithoutAPositionOrWithOneThatIsNon
 TEST_F(DdsEncodersTest, StampTheFirstWithItsArrivalAndKeepDifferences) {
   connect({"a", "b", "c"});
   const Nanoseconds before = monotonic_now();
-  must(robot->publish_joints(1000, {1, 2, 3}));
+  must(robot->send(1000, {1, 2, 3}));
   const Nanoseconds after = monotonic_now();
   const auto first = take();
 
-  must(robot->publish_joints(1'234'567, {1, 2, 3}));
+  must(robot->send(1'234'567, {1, 2, 3}));
   const auto second = take();
 
   ASSERT_EQ(first.size(), 1);
@@ -105,11 +104,11 @@ TEST_F(DdsEncodersTest, StampTheFirstWithItsArrivalAndKeepDifferences) {
 
 TEST_F(DdsEncodersTest, DropWhatIsBeforeAStepOfTheSendersClock) {
   connect({"a", "b", "c"});
-  must(robot->publish_joints(0, {1, 2, 3}));
+  must(robot->send(0, {1, 2, 3}));
   take();
 
-  must(robot->publish_joints(1000, {1, 2, 3}));
-  must(robot->publish_joints(100 * kSecond, {4, 5, 6}));
+  must(robot->send(1000, {1, 2, 3}));
+  must(robot->send(100 * kSecond, {4, 5, 6}));
   const auto samples = take();
 
   ASSERT_EQ(samples.size(), 1);
@@ -124,7 +123,7 @@ TEST_F(DdsEncodersTest, LoseNothingOfTenThousandWhenTakenInTime) {
   std::vector<EncoderSample> samples;
   const Nanoseconds start = realtime_now();
   for (int i = 0; i < 10'000; ++i) {
-    must(robot->publish_joints(start + i * 1000, {i * 1e-9, 0, 0}));
+    must(robot->send(start + i * 1000, {i * 1e-9, 0, 0}));
     if (i % 10 == 9) must(encoders->take(samples));
   }
 
@@ -140,7 +139,7 @@ TEST_F(DdsEncodersTest, LoseNothingOfTenThousandWhenTakenInTime) {
 TEST_F(DdsEncodersTest, DropTheOldestAndCountThemWhenNotTakenInTime) {
   connect({"a", "b", "c"});
   const Nanoseconds start = realtime_now();
-  for (int i = 0; i < 10'000; ++i) must(robot->publish_joints(start + i, {i * 1e-9, 0, 0}));
+  for (int i = 0; i < 10'000; ++i) must(robot->send(start + i, {i * 1e-9, 0, 0}));
 
   const auto samples = take();
   take();
@@ -154,7 +153,7 @@ TEST_F(DdsEncodersTest, DropTheOldestAndCountThemWhenNotTakenInTime) {
 TEST_F(DdsEncodersTest, CountNothingWhenAPublisherComesAndGoes) {
   for (int i = 0; i < 3; ++i) {
     connect({"a", "b", "c"});
-    must(robot->publish_joints(1000, {1, 2, 3}));
+    must(robot->send(1000, {1, 2, 3}));
     EXPECT_EQ(take().size(), 1);
     robot.reset();
     EXPECT_TRUE(eventually([&] { return encoders->senders() == 0; }));

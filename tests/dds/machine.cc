@@ -7,6 +7,7 @@
 #include "io/dds/encoders.h"
 #include "io/dds/motion.h"
 #include "io/dds/robot_side.h"
+#include "io/dds/senders.h"
 #include "io/dds/thermometer.h"
 #include "io/dds/trigger.h"
 #include "tests/support/domain.h"
@@ -17,10 +18,9 @@ namespace {
 class DdsMachine : public DdsTest {
  protected:
   void SetUp() override {
-    robot = must(DdsRobotSide::open(participant, {.robot = "r", .joints = {"a"}}, wakeup));
     ASSERT_TRUE(eventually([&] {
-      return robot->connected() && robot->heard() && motion->connected() &&
-             encoders->senders() == 1 && trigger->publishers() == 1;
+      return robot->connected() && joints->matched() == 1 && contact->matched() == 1 &&
+             motion->connected() && encoders->senders() == 1 && trigger->publishers() == 1;
     }));
   }
   std::vector<Edge> edges() {
@@ -34,13 +34,18 @@ class DdsMachine : public DdsTest {
       must(DdsEncoders::open(participant, {.joints = {"a"}}, mapping));
   std::unique_ptr<DdsTrigger> trigger = must(DdsTrigger::open(participant, {}, mapping, wakeup));
   std::unique_ptr<DdsMotion> motion = must(DdsMotion::open(participant, "r", wakeup));
-  std::unique_ptr<DdsRobotSide> robot;
+  std::unique_ptr<DdsRobotSide> robot =
+      must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
+  std::unique_ptr<DdsJointSender> joints =
+      must(DdsJointSender::open(participant, "joint_states", {"a"}, wakeup));
+  std::unique_ptr<DdsTriggerSender> contact =
+      must(DdsTriggerSender::open(participant, "touch_trigger", wakeup));
 };
 
 TEST_F(DdsMachine, TellsTheTriggersLevelBeforeAnyEdge) {
   EXPECT_FALSE(trigger->closed());
 
-  must(robot->publish_trigger(1000, true));
+  must(contact->send(1000, true));
 
   EXPECT_EQ(trigger->closed(), true);
   EXPECT_TRUE(edges().empty());
@@ -49,12 +54,12 @@ TEST_F(DdsMachine, TellsTheTriggersLevelBeforeAnyEdge) {
 TEST_F(DdsMachine, MakesAnEdgeOfEachChangeAndNoneOfARepetition) {
   const Nanoseconds start = 1'790'000'000 * kSecond;
   std::vector<EncoderSample> samples;
-  must(robot->publish_trigger(start, false));
-  must(robot->publish_joints(start + 10, {0}));
-  must(robot->publish_trigger(start + 17, true));
-  must(robot->publish_trigger(start + 17, true));
-  must(robot->publish_trigger(start + 23, false));
-  must(robot->publish_joints(start + 30, {0}));
+  must(contact->send(start, false));
+  must(joints->send(start + 10, {0}));
+  must(contact->send(start + 17, true));
+  must(contact->send(start + 17, true));
+  must(contact->send(start + 23, false));
+  must(joints->send(start + 30, {0}));
 
   must(encoders->take(samples));
   const auto taken = edges();
@@ -70,12 +75,12 @@ TEST_F(DdsMachine, MakesAnEdgeOfEachChangeAndNoneOfARepetition) {
 }
 
 TEST_F(DdsMachine, KeepsEdgesUntilTheirTimeIsKnown) {
-  must(robot->publish_trigger(0, false));
-  must(robot->publish_trigger(7, true));
+  must(contact->send(0, false));
+  must(contact->send(7, true));
   EXPECT_TRUE(edges().empty());
   std::vector<EncoderSample> samples;
 
-  must(robot->publish_joints(10, {0}));
+  must(joints->send(10, {0}));
   must(encoders->take(samples));
   const auto taken = edges();
 
@@ -85,11 +90,11 @@ TEST_F(DdsMachine, KeepsEdgesUntilTheirTimeIsKnown) {
 
 TEST_F(DdsMachine, BoundsTheEdgesThatWait) {
   for (int i = 0; i < 400; ++i) {
-    must(robot->publish_trigger(i, i % 2 == 1));
+    must(contact->send(i, i % 2 == 1));
     trigger->closed();
   }
   std::vector<EncoderSample> samples;
-  must(robot->publish_joints(1000, {0}));
+  must(joints->send(1000, {0}));
   must(encoders->take(samples));
 
   EXPECT_EQ(edges().size(), TouchTrigger::kMostEdges);
@@ -97,10 +102,10 @@ TEST_F(DdsMachine, BoundsTheEdgesThatWait) {
 }
 
 TEST_F(DdsMachine, ForgetsTheLevelOfAPublisherThatIsGone) {
-  must(robot->publish_trigger(1000, true));
+  must(contact->send(1000, true));
   EXPECT_EQ(trigger->closed(), true);
 
-  robot.reset();
+  contact.reset();
 
   EXPECT_TRUE(eventually([&] { return !trigger->closed(); }));
 }
@@ -109,9 +114,9 @@ TEST_F(DdsMachine, WakesTheServiceForTheTriggerAndRepliesButNotForJointStates) {
   while (wakeup.wait(0)) {
   }
 
-  must(robot->publish_joints(0, {0}));
+  must(joints->send(0, {0}));
   EXPECT_FALSE(wakeup.wait(0));
-  must(robot->publish_trigger(0, true));
+  must(contact->send(0, true));
   EXPECT_TRUE(wakeup.wait(kLimit));
   must(robot->reply(MotionReply()));
   EXPECT_TRUE(wakeup.wait(kLimit));

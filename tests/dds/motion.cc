@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 class DdsMotionTest : public DdsTest {
  protected:
   void SetUp() override {
-    robot = must(DdsRobotSide::open(participant, {.robot = "r", .joints = {"a"}}, wakeup));
+    robot = must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
     ASSERT_TRUE(eventually([&] { return robot->connected() && motion->connected(); }));
   }
 

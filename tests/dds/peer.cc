@@ -9,6 +9,7 @@
 
 #include "io/dds/messenger.h"
 #include "io/dds/robot_side.h"
+#include "io/dds/senders.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -20,16 +21,17 @@ std::atomic<bool> ending = false;
 // move is done at once.
 void play_robot(const DdsParticipant& participant) {
   Wakeup wakeup;
-  const auto robot =
-      must(DdsRobotSide::open(participant, {.robot = "r", .joints = {"a", "b"}}, wakeup));
+  const auto robot = must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
+  const auto joints = must(DdsJointSender::open(participant, "joint_states", {"a", "b"}, wakeup));
+  const auto trigger = must(DdsTriggerSender::open(participant, "touch_trigger", wakeup));
   bool closed = false;
   Nanoseconds changed = realtime_now();
   for (Nanoseconds next = 0; !ending;) {
     const Nanoseconds now = realtime_now();
     if (now >= next) {
       next = now + kMillisecond;
-      must(robot->publish_joints(now, {1, 2}));
-      must(robot->publish_trigger(changed, closed));
+      must(joints->send(now, {1, 2}));
+      must(trigger->send(changed, closed));
     }
     std::vector<RobotRequest> requests;
     must(robot->take(requests));
