@@ -8,6 +8,8 @@
 
 namespace selfcal {
 
+struct LoadedDataSet;
+
 /// Exit statuses, the same for every command.
 enum ExitStatus : int {
   kDone = 0,        ///< done; for identify: improved
@@ -34,5 +36,7 @@ void add_history(CLI::App& app, int& status);
 int tell(const Failure& failure);
 /// Says what is wrong with the arguments and returns kWrongUsage.
 int wrong_usage(const std::string& what);
+/// Says on standard error what a person should know of a data set that was accepted.
+void print_notices(const LoadedDataSet& loaded);
 
 }  // namespace selfcal

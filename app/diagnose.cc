@@ -38,8 +38,7 @@ Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const R
   if (!other) return tl::unexpected(other.error());
   if (const std::string why = incomparable(*other->robot, robot); !why.empty())
     return bad_input(path + " " + why);
-  for (const std::string& notice : other->notices)
-    std::fprintf(stderr, "selfcal: note: %s: %s\n", path.c_str(), notice.c_str());
+  print_notices(*other);
   return std::optional(*std::move(other));
 }
 
@@ -47,8 +46,7 @@ Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const R
 Result<Inputs> load(const Arguments& arguments) {
   auto measured = load_data_set(arguments.data_set);
   if (!measured) return tl::unexpected(measured.error());
-  for (const std::string& notice : measured->notices)
-    std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
+  print_notices(*measured);
   const std::shared_ptr<const Robot> robot = std::move(measured->robot);
   auto before = load_other(arguments.since, *robot);
   if (!before) return tl::unexpected(before.error());

@@ -76,6 +76,7 @@ Result<Answered> of_robot(const Arguments& arguments) {
 Result<Answered> of_data_set(const Arguments& arguments) {
   auto loaded = load_data_set(arguments.subject);
   if (!loaded) return tl::unexpected(loaded.error());
+  print_notices(*loaded);
   Options options;
   options.free = {"K*"};
   Solution solution;

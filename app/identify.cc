@@ -80,8 +80,7 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
 int identify_command(const Arguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
-  for (const std::string& notice : loaded->notices)
-    std::fprintf(stderr, "selfcal: note: %s\n", notice.c_str());
+  print_notices(*loaded);
   const auto model = with_effects(std::move(loaded->robot), loaded->data, arguments);
   if (!model) return wrong_usage(model.error());
   const Robot& robot = **model;

@@ -91,6 +91,7 @@ class Runner {
   Result<TrialAnswer> answer_to(const std::string& name) const {
     auto loaded = load_data_set(std::filesystem::path(arguments_.folder) / name);
     if (!loaded) return tl::unexpected(loaded.error());
+    print_notices(*loaded);
     const std::shared_ptr<const Robot> robot = std::move(loaded->robot);
     if (const auto baseline = find_baseline(arguments_.baseline))
       return (*baseline)(robot, loaded->data);

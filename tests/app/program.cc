@@ -171,6 +171,18 @@ TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
   EXPECT_GT(json["total"], 20);
 }
 
+TEST_F(Program, TellsOfAColumnThatItIgnoresWhateverItIsAsked) {
+  const std::string data = simulated();
+  std::string rows = text_of(data + "/observations.csv");
+  for (size_t at = 0, line = 0; (at = rows.find('\n', at)) != std::string::npos; at += 4, ++line)
+    rows.insert(at, line == 0 ? ",zz" : ",00");
+  std::ofstream(data + "/observations.csv") << rows;
+  for (const std::string command : {"identify ", "identifiable "}) {
+    const Ran ran = selfcal_run(command + data);
+    EXPECT_NE(ran.out.find("unknown columns are ignored: zz"), std::string::npos) << ran.out;
+  }
+}
+
 TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
   const std::string data = simulated();
   for (const std::string option : {"--count 50", "--seed 2", "--unknown", "--method plane"}) {
