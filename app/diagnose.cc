@@ -92,9 +92,7 @@ std::string words_of(const Findings& findings) {
 }
 
 Result<void> write_folder(const std::filesystem::path& out, const Findings& findings) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) return device_failed(out.string() + ": cannot create the folder: " + error.message());
+  if (auto made = make_folder(out); !made) return made;
   const Diagnosis& diagnosis = findings.diagnosis;
   const std::pair<const char*, std::string> files[] = {
       {"diagnosis.json", json_of(findings) + "\n"},

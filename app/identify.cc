@@ -36,9 +36,7 @@ std::string unknown_name(const Robot& robot, const Options& options) {
 Result<void> write(const Arguments& arguments, const Robot& robot, const Solution& solution,
                    const std::string& json) {
   const std::filesystem::path out(arguments.out);
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) return device_failed(arguments.out + ": cannot create the folder: " + error.message());
+  if (auto made = make_folder(out); !made) return made;
   if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }

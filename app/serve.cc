@@ -121,9 +121,7 @@ void run(Service& service, int sessions) {
 }
 
 Result<void> serve(const Arguments& arguments, Config config) {
-  std::error_code error;
-  std::filesystem::create_directories(config.state, error);
-  if (error) return device_failed(config.state.string() + ": " + error.message());
+  if (auto made = make_folder(config.state); !made) return made;
   const auto lock = Lock::take(config.state);
   if (!lock) return tl::unexpected(lock.error());
   auto opened = Store::open(config.state);

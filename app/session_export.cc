@@ -24,10 +24,7 @@ Result<void> make_empty_folder(const fs::path& folder) {
   if (fs::exists(folder, error) &&
       (!fs::is_directory(folder, error) || !fs::is_empty(folder, error)))
     return bad_input(folder.string() + ": is not an empty folder: choose a new one");
-  fs::create_directories(folder, error);
-  if (error)
-    return device_failed(folder.string() + ": cannot create the folder: " + error.message());
-  return {};
+  return make_folder(folder);
 }
 
 /// The file of the robot that the session measured, as its maker gives it.

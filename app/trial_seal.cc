@@ -70,9 +70,7 @@ Result<void> check_unsealed(const fs::path& out) {
   std::error_code error;
   if (fs::exists(out / kTruthFile, error))
     return bad_input((out / kTruthFile).string() + ": is sealed already: choose a new folder");
-  fs::create_directories(out, error);
-  if (error) return device_failed(out.string() + ": cannot create the folder: " + error.message());
-  return {};
+  return make_folder(out);
 }
 
 /// Fills in what the arguments ask for; false when `rows` or `measure` make no sense.
@@ -151,9 +149,9 @@ Result<Given> examine(const fs::path& folder, const fs::path& out) {
 Result<void> copy(const Given& given) {
   for (const fs::path& file : given.files) {
     const fs::path to = given.to / file;
+    if (auto made = make_folder(to.parent_path()); !made) return made;
     std::error_code error;
-    fs::create_directories(to.parent_path(), error);
-    if (!error) fs::copy_file(given.from / file, to, error);
+    fs::copy_file(given.from / file, to, error);
     if (error) return device_failed(to.string() + ": cannot copy: " + error.message());
   }
   return {};

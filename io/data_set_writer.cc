@@ -38,10 +38,7 @@ Result<void> check_replaceable(const fs::path& folder) {
 
 Result<void> write_data_set(const fs::path& folder, const NewDataSet& data_set) {
   if (auto free = check_replaceable(folder); !free) return free;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    return device_failed(folder.string() + ": cannot create the folder: " + error.message());
+  if (auto made = make_folder(folder); !made) return made;
   const std::string mark(kMark);
   const std::pair<std::string, std::string> files[] = {
       {"dataset.yaml", mark},
