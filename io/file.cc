@@ -24,15 +24,11 @@ tl::unexpected<Failure> unwritable(const std::filesystem::path& path, int error)
   return device_failed(path.string() + ": cannot be written: " + why(error));
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-}
-
 /// A name beside `path` that no other writer uses: process and count make it so.
 std::filesystem::path beside(const std::filesystem::path& path) {
   static std::atomic<unsigned> count = 0;
-  return folder_of(path) / ("." + path.filename().string() + "." + std::to_string(getpid()) + "." +
-                            std::to_string(count++) + ".new");
+  return path.parent_path() / ("." + path.filename().string() + "." + std::to_string(getpid()) +
+                               "." + std::to_string(count++) + ".new");
 }
 
 /// 0, or the error that stopped the writing.
@@ -56,16 +52,6 @@ int write_new(const std::filesystem::path& path, std::string_view text) {
   if (::close(descriptor) != 0 && error == 0) error = errno;
   if (error != 0) ::unlink(path.c_str());
   return error;
-}
-
-/// 0, or the error that kept the folder's entries from reaching the disk.
-int sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  // A file system that cannot sync folders (some network ones) says EINVAL: nothing more to do.
-  return error == EINVAL ? 0 : error;
 }
 
 }  // namespace
@@ -129,7 +115,17 @@ Result<void> write_file_atomically(const std::filesystem::path& path, std::strin
     ::unlink(fresh.c_str());
     return unwritable(path, error);
   }
-  if (const int error = sync_folder(folder_of(path)); error != 0) return unwritable(path, error);
+  return sync_folder(path.parent_path());
+}
+
+Result<void> sync_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder.empty() ? "." : folder;
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return unwritable(path, errno);
+  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  // A file system that cannot sync folders (some network ones) says EINVAL: nothing more to do.
+  if (error != 0 && error != EINVAL) return unwritable(path, error);
   return {};
 }
 

@@ -39,6 +39,9 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 /// After a failure nothing is left behind and the old content stands.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
+/// Keeps what was made, renamed or removed in the folder (empty: the current one) over a power cut.
+Result<void> sync_folder(const std::filesystem::path& folder);
+
 /// Makes the folder, and those that it is to lie in, where they are not there yet.
 Result<void> make_folder(const std::filesystem::path& folder);
 

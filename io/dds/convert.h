@@ -18,6 +18,7 @@ namespace selfcal {
 
 dds::Time time_of(Nanoseconds t);  ///< of any clock, before its epoch too
 Nanoseconds nanoseconds(const dds::Time& time);
+dds::Header header_of(Nanoseconds stamp);  ///< of no frame
 
 dds::Status borrow(const StatusMessage& status);
 dds::Progress borrow(const ProgressMessage& progress);

@@ -45,9 +45,8 @@ DiagnosticsToSend::DiagnosticsToSend(const std::vector<HealthMessage>& health,
                       .hardware_id_ = text(hardware_id),
                       .values_ = {size, size, values_[i].data(), false}});
   }
-  static const std::string no_frame;
   const auto size = static_cast<std::uint32_t>(lines_.size());
-  message_ = {.header_ = {.stamp_ = time_of(unix_ms * kMillisecond), .frame_id_ = text(no_frame)},
+  message_ = {.header_ = header_of(unix_ms * kMillisecond),
               .status_ = {size, size, lines_.data(), false}};
 }
 

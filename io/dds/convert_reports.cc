@@ -19,6 +19,11 @@ dds::Time time_of(Nanoseconds t) {
           .nanosec_ = static_cast<std::uint32_t>(t - whole * kSecond)};
 }
 
+dds::Header header_of(Nanoseconds stamp) {
+  static const std::string kNoFrame;
+  return {.stamp_ = time_of(stamp), .frame_id_ = text(kNoFrame)};
+}
+
 Nanoseconds nanoseconds(const dds::Time& time) { return time.sec_ * kSecond + time.nanosec_; }
 
 dds::Status borrow(const StatusMessage& status) {

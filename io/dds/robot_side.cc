@@ -7,15 +7,6 @@
 #include "io/dds/opened.h"
 
 namespace selfcal {
-namespace {
-
-const std::string kNoFrame;
-
-dds::Header header(Nanoseconds stamp) {
-  return {.stamp_ = time_of(stamp), .frame_id_ = borrowed::text(kNoFrame)};
-}
-
-}  // namespace
 
 Result<std::unique_ptr<DdsRobotSide>> DdsRobotSide::open(const DdsParticipant& participant,
                                                          const DdsRobotConfig& config,
@@ -49,7 +40,7 @@ Result<void> DdsRobotSide::reply(const MotionReply& reply) {
 
 Result<void> DdsRobotSide::publish_temperature(Nanoseconds stamp, double celsius) {
   return dds_.temperature.write(
-      {.header_ = header(stamp), .temperature_ = celsius, .variance_ = 0});
+      {.header_ = header_of(stamp), .temperature_ = celsius, .variance_ = 0});
 }
 
 }  // namespace selfcal

@@ -6,15 +6,6 @@
 #include "io/dds/names.h"
 
 namespace selfcal {
-namespace {
-
-const std::string kNoFrame;
-
-dds::Header header(Nanoseconds stamp) {
-  return {.stamp_ = time_of(stamp), .frame_id_ = borrowed::text(kNoFrame)};
-}
-
-}  // namespace
 
 Result<std::unique_ptr<DdsJointSender>> DdsJointSender::open(const DdsParticipant& participant,
                                                              const std::string& topic,
@@ -34,7 +25,7 @@ DdsJointSender::DdsJointSender(std::vector<std::string> joints, DdsWriter<dds::J
 Result<void> DdsJointSender::send(Nanoseconds stamp, const std::vector<double>& q) {
   const auto names = static_cast<std::uint32_t>(names_.size());
   const auto positions = static_cast<std::uint32_t>(q.size());
-  return writer_.write({.header_ = header(stamp),
+  return writer_.write({.header_ = header_of(stamp),
                         .name_ = {names, names, names_.data(), false},
                         .position_ = {positions, positions, const_cast<double*>(q.data()), false},
                         .velocity_ = {},
@@ -51,7 +42,7 @@ Result<std::unique_ptr<DdsTriggerSender>> DdsTriggerSender::open(const DdsPartic
 }
 
 Result<void> DdsTriggerSender::send(Nanoseconds stamp, bool closed) {
-  return writer_.write({.header_ = header(stamp), .data_ = closed});
+  return writer_.write({.header_ = header_of(stamp), .data_ = closed});
 }
 
 }  // namespace selfcal

@@ -3,13 +3,12 @@
 // Until all of it went well the connection leaves the write-ahead log alone when it closes, so
 // that a damaged or newer store keeps what it has. WAL with synchronous=FULL syncs the log in
 // every commit; see sqlite.org/wal.html and sqlite.org/pragma.html.
-#include <fcntl.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <system_error>
 #include <utility>
 
+#include "io/file.h"
 #include "io/store/schema.h"
 #include "io/store/sqlite.h"
 #include "io/store/store.h"
@@ -76,13 +75,6 @@ Result<void> configure(sqlite3* database) {
   return migrate(database, migrations());
 }
 
-void sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 /// Renames the store and its log to the first free damaged-N; what is said of it.
 Result<std::string> put_aside(const fs::path& path) {
   std::error_code error;
@@ -100,7 +92,7 @@ Result<std::string> put_aside(const fs::path& path) {
   fs::rename(path.string() + "-wal", aside.string() + "-wal", error);
   fs::remove(path.string() + "-wal", error);
   fs::remove(path.string() + "-shm", error);
-  sync_folder(path.parent_path());
+  if (auto synced = sync_folder(path.parent_path()); !synced) return tl::unexpected(synced.error());
   return path.string() + ": was damaged and is now " + aside.filename().string() +
          "; a new store was begun";
 }

@@ -37,18 +37,6 @@ constexpr std::array kKinds{
          "DELETE FROM plan WHERE session = ?1"},
 };
 
-Result<std::vector<std::int64_t>> ids(sqlite3* database, const char* sql) {
-  auto rows = sqlite::Statement::prepare(database, sql);
-  if (!rows) return tl::unexpected(rows.error());
-  std::vector<std::int64_t> ids;
-  for (;;) {
-    const Result<bool> row = rows->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return ids;
-    ids.push_back(rows->integer(0));
-  }
-}
-
 Result<void> forget(sqlite3* database, const Kind& kind, std::int64_t id) {
   for (const char* sql : {kind.forget, kind.forget_too}) {
     if (sql == nullptr) continue;
@@ -71,7 +59,9 @@ Result<std::int64_t> bytes_used(sqlite3* database) {
 
 /// Whether it fits after forgetting what there is of `kind`, or a part of it.
 Result<bool> forget_until(sqlite3* database, const Kind& kind, std::int64_t most_bytes) {
-  const auto oldest_first = ids(database, kind.oldest_first);
+  const auto oldest_first =
+      sqlite::all(sqlite::Statement::prepare(database, kind.oldest_first),
+                  [](const sqlite::Statement& row) { return row.integer(0); });
   if (!oldest_first) return tl::unexpected(oldest_first.error());
   for (auto id = oldest_first->begin();; ++id) {
     const Result<std::int64_t> used = bytes_used(database);
