@@ -100,6 +100,8 @@ class Messenger {
   virtual void reply(const CommandReplyMessage& reply) = 0;
   /// Appends the commands since the last call, oldest first; at most 16, others are refused.
   virtual void take(std::vector<CommandMessage>& out) = 0;
+  /// Messages that could not be sent in time since the start.
+  virtual std::uint64_t unsent() const = 0;
 };
 
 }  // namespace selfcal

@@ -45,7 +45,8 @@ HealthMessage Service::health_of_service() const {
           level,
           std::string(to_string(situation_.state)) + ": " + situation_.why,
           {{"hardware", std::string(hardware_may(situation_.state, situation_.phase))},
-           {"session", std::to_string(situation_.session)}}};
+           {"session", std::to_string(situation_.session)},
+           {"unsent", std::to_string(messenger_.unsent())}}};
 }
 
 HealthMessage Service::health_of_encoders() const {

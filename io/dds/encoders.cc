@@ -43,10 +43,15 @@ Result<void> DdsEncoders::take(std::vector<EncoderSample>& out) {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   auto taken = reader_.take(kMostSamples, [&](const dds::JointState& state) {
     EncoderSample sample;
-    if (read(state, sample))
+    const auto lack = read(state, sample);
+    if (!lack) {
       out.push_back(sample);
-    else
-      ++incomplete_;
+      in_a_row_ = 0;
+      return;
+    }
+    lack_ = *lack;
+    ++incomplete_;
+    ++in_a_row_;
   });
   if (!taken) return taken;
   if (out.begin() + first == out.end()) return {};
@@ -59,22 +64,35 @@ Result<void> DdsEncoders::take(std::vector<EncoderSample>& out) {
   return {};
 }
 
-// The sample with the sender's stamp; false when the message is not complete.
-bool DdsEncoders::read(const dds::JointState& state, EncoderSample& sample) {
+std::string DdsEncoders::trouble() const {
+  if (in_a_row_ == 0) return {};
+  const bool one = in_a_row_ == 1;
+  const std::string last =
+      one ? "the last message" : "the last " + std::to_string(in_a_row_) + " messages";
+  const std::string& joint = joints_[lack_.joint];
+  if (lack_.named) return last + (one ? " has" : " have") + " no position of joint " + joint;
+  return last + (one ? " lacks" : " lack") + " joint " + joint;
+}
+
+// The sample with the sender's stamp, or what the message lacks.
+std::optional<DdsEncoders::Lack> DdsEncoders::read(const dds::JointState& state,
+                                                   EncoderSample& sample) {
   sample.time = nanoseconds(state.header_.stamp_);
   sample.joints = static_cast<int>(joints_.size());
   for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-    if (!find(joint, state)) return false;
-    const double position = state.position_._buffer[places_[joint]];
-    if (!(std::abs(position) < kFarthest)) return false;
+    if (!find(joint, state)) return Lack{joint, false};
+    const std::uint32_t place = places_[joint];
+    if (place >= state.position_._length) return Lack{joint, true};
+    const double position = state.position_._buffer[place];
+    if (!(std::abs(position) < kFarthest)) return Lack{joint, true};
     sample.counts[joint] = std::llround(position / kStep);
   }
-  return true;
+  return std::nullopt;
 }
 
 // Where the joint stands in the message: nearly always where it stood in the last one.
 bool DdsEncoders::find(std::size_t joint, const dds::JointState& state) {
-  const std::uint32_t size = std::min(state.name_._length, state.position_._length);
+  const std::uint32_t size = state.name_._length;
   std::uint32_t& place = places_[joint];
   if (place < size && joints_[joint] == state.name_._buffer[place]) return true;
   for (place = 0; place < size; ++place)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,15 +33,22 @@ class DdsEncoders : public EncoderSource {
   Result<void> take(std::vector<EncoderSample>& out) override;
   /// Lost on the way, pushed out before they were taken, or before a step of the sender's clock.
   std::uint64_t dropped() const override { return reader_.lost() + stepped_; }
-  /// Messages that were no sample.
-  std::uint64_t incomplete() const { return incomplete_; }
+  /// `incomplete`: messages that were no sample.
+  std::vector<Tally> tallies() const override { return {{"incomplete", incomplete_}}; }
+  /// Which joint the last messages lack, if they were no sample.
+  std::string trouble() const override;
   /// Publishers heard at the moment.
   int senders() const override { return reader_.matched(); }
 
  private:
+  /// Why a message is no sample.
+  struct Lack {
+    std::size_t joint = 0;
+    bool named = false;  ///< it is there, but its position is none
+  };
   DdsEncoders(std::vector<std::string> joints, std::shared_ptr<TimeMapping> mapping,
               DdsReader<dds::JointState> reader);
-  bool read(const dds::JointState& state, EncoderSample& sample);
+  std::optional<Lack> read(const dds::JointState& state, EncoderSample& sample);
   bool find(std::size_t joint, const dds::JointState& state);
 
   std::vector<std::string> joints_;
@@ -49,7 +57,9 @@ class DdsEncoders : public EncoderSource {
   std::shared_ptr<TimeMapping> mapping_;
   DdsReader<dds::JointState> reader_;
   std::uint64_t incomplete_ = 0;
-  std::uint64_t stepped_ = 0;  ///< samples dropped because the sender's clock stepped
+  std::uint64_t in_a_row_ = 0;  ///< of these the last ones, after the last sample
+  Lack lack_;                   ///< of the last of them
+  std::uint64_t stepped_ = 0;   ///< samples dropped because the sender's clock stepped
 };
 
 }  // namespace selfcal

@@ -28,8 +28,7 @@ class DdsMessenger : public Messenger {
   /// A command that was sent again is not taken again: its reply is repeated.
   void take(std::vector<CommandMessage>& out) override;
 
-  /// Messages that could not be sent in time since the start.
-  std::uint64_t unsent() const { return unsent_; }
+  std::uint64_t unsent() const override { return unsent_; }
 
  private:
   struct Endpoints {

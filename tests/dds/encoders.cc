@@ -68,8 +68,29 @@ TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageThatLacksAJoint) {
   must(robot->send(1000, {1, 2}));
 
   EXPECT_TRUE(take().empty());
-  EXPECT_EQ(encoders->incomplete(), 1);
+  EXPECT_EQ(encoders->tallies().at(0).name, "incomplete");
+  EXPECT_EQ(encoders->tallies().at(0).count, 1);
   EXPECT_EQ(encoders->dropped(), 0);
+}
+
+TEST_F(DdsEncodersTest, SayWhatTheLastMessagesLackUntilASampleComes) {
+  connect({"a", "b", "x"});
+  const auto other =
+      must(DdsJointSender::open(participant, "joint_states", {"a", "b", "c"}, wakeup));
+  ASSERT_TRUE(eventually([&] { return encoders->senders() == 2; }));
+
+  must(robot->send(1000, {1, 2, 3}));
+  take();
+  EXPECT_EQ(encoders->trouble(), "the last message lacks joint c");
+  must(robot->send(2000, {1, 2, 3}));
+  take();
+  EXPECT_EQ(encoders->trouble(), "the last 2 messages lack joint c");
+  must(other->send(3000, {1, 2}));
+  take();
+  EXPECT_EQ(encoders->trouble(), "the last 3 messages have no position of joint c");
+  must(other->send(4000, {1, 2, 3}));
+  take();
+  EXPECT_EQ(encoders->trouble(), "");
 }
 
 TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageWithoutAPositionOrWithOneThatIsNone) {
@@ -82,7 +103,7 @@ TEST_F(DdsEncodersTest, MakeNoSampleOfAMessageWithoutAPositionOrWithOneThatIsNon
   must(robot->send(5000, {1, 1e300, 3}));
 
   EXPECT_TRUE(take().empty());
-  EXPECT_EQ(encoders->incomplete(), 5);
+  EXPECT_EQ(encoders->tallies().at(0).count, 5);
 }
 
 TEST_F(DdsEncodersTest, StampTheFirstWithItsArrivalAndKeepDifferences) {
@@ -133,7 +154,7 @@ TEST_F(DdsEncodersTest, LoseNothingOfTenThousandWhenTakenInTime) {
     ASSERT_EQ(samples[i].time - samples[0].time, i * 1000);
   }
   EXPECT_EQ(encoders->dropped(), 0);
-  EXPECT_EQ(encoders->incomplete(), 0);
+  EXPECT_EQ(encoders->tallies().at(0).count, 0);
 }
 
 TEST_F(DdsEncodersTest, DropTheOldestAndCountThemWhenNotTakenInTime) {
