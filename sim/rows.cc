@@ -88,16 +88,7 @@ class Planner {
 
 /// The sampled rows as the plan repeats them.
 Observations expand(const Observations& sampled, const Plan& plan) {
-  Observations rows;
-  rows.q = sampled.q(plan.source, Eigen::all);
-  rows.position = sampled.position(plan.source, Eigen::all);
-  rows.orientation = sampled.orientation(plan.source, Eigen::all);
-  rows.distance = sampled.distance(plan.source);
-  rows.normal = sampled.normal(plan.source, Eigen::all);
-  for (const int i : plan.source) {
-    rows.set.push_back(sampled.set[i]);
-    rows.group.push_back(sampled.group[i]);
-  }
+  Observations rows = taken(sampled, plan.source);
   rows.repeat = plan.repeat;
   rows.check = plan.check;
   return rows;

@@ -211,31 +211,17 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   std::vector<int> fit;
   for (int row = 0; row < base.rows.rows(); ++row)
     if (!base.rows.check[row]) fit.push_back(row);
-  DataSet data;
-  data.sets = base.sets;
-  data.target = base.target;
-  Observations& out = data.rows;
-  const auto first = static_cast<Eigen::Index>(fit.size());
-  size_rows(out, first + check.rows.rows(), base.rows.q.cols());
-  out.q << base.rows.q(fit, Eigen::all), check.rows.q;
-  out.normal << base.rows.normal(fit, Eigen::all), check.rows.normal;
-  out.velocity << base.rows.velocity(fit, Eigen::all), check.rows.velocity;
-  out.temperature << base.rows.temperature(fit), check.rows.temperature;
-  out.time << base.rows.time(fit), check.rows.time;
-  out.noise_factor << base.rows.noise_factor(fit), check.rows.noise_factor;
-  for (const int row : fit) {
-    out.set.push_back(base.rows.set[row]);
-    out.group.push_back(base.rows.group[row]);
+  DataSet data = base;
+  Observations judging = check.rows;
+  for (int row = 0; row < judging.rows(); ++row) {
+    const int set = judging.set[row];
+    if (int& group = judging.group[row]; group >= 0)
+      group = group_index(data.sets[set], check.sets[set].groups[group]);
   }
-  for (int row = 0; row < check.rows.rows(); ++row) {
-    const int set = check.rows.set[row], group = check.rows.group[row];
-    out.set.push_back(set);
-    out.group.push_back(group < 0 ? -1
-                                  : group_index(data.sets[set], check.sets[set].groups[group]));
-  }
-  out.repeat.assign(out.set.size(), -1);
-  out.check.assign(fit.size(), 0);
-  out.check.resize(out.set.size(), 1);
+  judging.check.assign(judging.set.size(), 1);
+  data.rows = joined(taken(base.rows, fit), judging);
+  // Steps of two plans: their numbers say nothing of each other.
+  data.rows.repeat.assign(data.rows.set.size(), -1);
   return data;
 }
 

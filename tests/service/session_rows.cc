@@ -104,6 +104,19 @@ TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
   EXPECT_EQ(data.rows.normal.row(4).transpose(), Eigen::Vector3d::UnitZ());
 }
 
+TEST(Joined, KeepsAColumnThatOnlyOneOfThemHas) {
+  const Meaning meaning = meaning_of(two_planes());
+  Session session = session_of(2);
+  for (StepRecord& step : session.plan) step.check = false;
+  session.touches = {touch_of(0), touch_of(1)};
+  DataSet base = rows_of(rx90(), session, meaning);
+  base.rows.wrench = Eigen::MatrixXd::Constant(2, 6, 3.5);
+  const DataSet data = joined(base, rows_of(rx90(), session, meaning, Parts::all_check));
+  ASSERT_EQ(data.rows.wrench.rows(), 4);
+  EXPECT_EQ(data.rows.wrench(1, 5), 3.5);
+  EXPECT_TRUE(std::isnan(data.rows.wrench(2, 0)));
+}
+
 TEST(Joined, MeansTheSameSocketByTheSameName) {
   Meaning meaning = meaning_of(two_planes());
   Session base = session_of(2), check = session_of(2);
