@@ -8,9 +8,9 @@
 #include "app/drift.h"
 #include "app/message_json.h"
 #include "app/service/config.h"
-#include "app/service/models.h"
 #include "app/session_export.h"
 #include "app/words.h"
+#include "io/robot_file.h"
 
 namespace selfcal {
 namespace {
@@ -73,11 +73,11 @@ Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
     const auto result = store.result(each.session);
     if (!result) return tl::unexpected(result.error());
     if (!*result || (*result)->robot_text.empty()) continue;
-    const auto robot = robot_of((*result)->robot_text, "session " + std::to_string(each.session));
+    auto robot = robot_of((*result)->robot_text, "session " + std::to_string(each.session));
     if (!robot) continue;  // of a robot that this program does not know
     if (!newest_first.empty() && newest_first.front().robot->identity() != (*robot)->identity())
       continue;
-    newest_first.push_back({each.session, each.unix_ms, *robot});
+    newest_first.push_back({each.session, each.unix_ms, std::move(*robot)});
   }
   std::ranges::reverse(newest_first);
   return newest_first;

@@ -4,7 +4,6 @@
 
 #include <system_error>
 
-#include "app/service/models.h"
 #include "app/service/session.h"
 #include "app/words.h"
 #include "io/file.h"

@@ -8,7 +8,13 @@
 namespace selfcal {
 
 Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path) {
-  const Result<Node> node = read_yaml(path);
+  const auto text = read_file(path, kMostYamlBytes);
+  if (!text) return tl::unexpected(text.error());
+  return robot_of(*text, path.string());
+}
+
+Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string& name) {
+  const Result<Node> node = parse_yaml(text, name);
   if (!node) return tl::unexpected(node.error());
   Problems problems;
   std::unique_ptr<Robot> robot = make_robot(*node, problems);

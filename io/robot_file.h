@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "io/result.h"
 #include "kinematics/robot.h"
@@ -13,6 +14,9 @@ namespace selfcal {
 
 /// The robot that the file describes, or the first mistake in it with its line.
 Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path);
+
+/// The same of a file's `text`; `name` stands for the file in messages.
+Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string& name);
 
 /// The robot's file with parameter values `xi` (one for each of robot.parameters(), SI).
 std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi);

@@ -16,7 +16,6 @@
 namespace selfcal {
 namespace {
 
-constexpr std::size_t kMostBytes = 4 << 20;
 constexpr int kMostNodes = 1 << 20;
 constexpr int kDeepest = 64;
 
@@ -123,7 +122,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& name) {
 }
 
 Result<Node> read_yaml(const std::filesystem::path& path) {
-  const Result<std::string> text = read_file(path, kMostBytes);
+  const Result<std::string> text = read_file(path, kMostYamlBytes);
   if (!text) return tl::unexpected(text.error());
   return parse_yaml(*text, path.string());
 }

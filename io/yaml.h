@@ -1,6 +1,7 @@
 // YAML text to and from Nodes (yaml-cpp).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,9 +11,11 @@
 
 namespace selfcal {
 
+inline constexpr std::size_t kMostYamlBytes = std::size_t{4} << 20;
+
 /// The one mapping that the file holds, every value with its line. Refuses what would be silently
 /// lost otherwise: a key given twice, a second document; and what no file of ours needs: nesting
-/// deeper than 64, more than 4 MiB.
+/// deeper than 64, more than kMostYamlBytes.
 Result<Node> read_yaml(const std::filesystem::path& path);
 
 /// The same of `text`; `name` stands for the file in messages.

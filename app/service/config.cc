@@ -11,7 +11,6 @@
 namespace selfcal {
 namespace {
 
-constexpr std::size_t kMostRobotBytes = 1 << 20;
 const std::vector<std::string_view> kOwnKeys = {"touches", "surface", "within", "places",
                                                 "way_out"};
 
@@ -54,10 +53,10 @@ class Reader {
   void read_robot(Fields& fields) {
     const std::string name = fields.text("robot");
     if (problems_.any()) return;
-    auto robot = load_robot(folder_ / name);
-    auto text = read_file(folder_ / name, kMostRobotBytes);
-    if (!robot || !text)
-      return problems_.list.push_back((!robot ? robot.error() : text.error()).what);
+    auto text = read_file(folder_ / name, kMostYamlBytes);
+    if (!text) return problems_.list.push_back(text.error().what);
+    auto robot = robot_of(*text, (folder_ / name).string());
+    if (!robot) return problems_.list.push_back(robot.error().what);
     c_.robot = std::move(*robot);
     c_.robot_text = std::move(*text);
     if (c_.robot->joints().size() > static_cast<std::size_t>(kMostJoints))

@@ -2,18 +2,8 @@
 
 #include "io/file.h"
 #include "io/robot_file.h"
-#include "io/yaml.h"
 
 namespace selfcal {
-
-Result<std::shared_ptr<const Robot>> robot_of(const std::string& text, const std::string& name) {
-  const Result<Node> node = parse_yaml(text, name);
-  if (!node) return tl::unexpected(node.error());
-  Problems problems;
-  std::shared_ptr<const Robot> robot = make_robot(*node, problems);
-  if (problems.any()) return bad_input(problems);
-  return robot;
-}
 
 Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) {
   Models models;

@@ -37,7 +37,4 @@ class Models {
   std::string hash_, refused_;
 };
 
-/// The robot that a text describes.
-Result<std::shared_ptr<const Robot>> robot_of(const std::string& text, const std::string& name);
-
 }  // namespace selfcal

@@ -5,7 +5,6 @@
 #include <fstream>
 
 #include "app/drift.h"
-#include "app/service/models.h"
 #include "io/file.h"
 #include "io/robot_file.h"
 #include "io/store/store.h"
