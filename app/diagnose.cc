@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "app/command.h"
 #include "app/diagnosis_json.h"
 #include "app/diagnosis_report.h"
 #include "app/diagnosis_summary.h"
 #include "app/progress_line.h"
+#include "app/subcommand.h"
 #include "io/data_set_file.h"
 #include "io/file.h"
 #include "io/robot_file.h"

@@ -1,6 +1,6 @@
 #include "app/find_robot.h"
 
-#include "app/pretend.h"
+#include "app/signals.h"
 #include "app/words.h"
 #include "io/clock.h"
 #include "io/dds/discovery.h"

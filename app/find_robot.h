@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 #include "io/dds/participant.h"
 #include "io/ports.h"
 

@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <memory>
 
-#include "app/command.h"
 #include "app/drift.h"
 #include "app/message_json.h"
 #include "app/service/config.h"
 #include "app/session_export.h"
+#include "app/subcommand.h"
 #include "app/words.h"
 #include "io/robot_file.h"
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/command.h"
 #include "app/progress_line.h"
+#include "app/subcommand.h"
 #include "constraints/endpoint_sigma.h"
 #include "constraints/excitation.h"
 #include "io/data_set_file.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/command.h"
 #include "app/progress_line.h"
+#include "app/subcommand.h"
 #include "app/summary.h"
 #include "constraints/site.h"
 #include "diagnosis/shapes.h"

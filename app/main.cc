@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 
 namespace selfcal {
 namespace {
@@ -24,7 +24,7 @@ int run(int argc, char** argv) {
   add_robot(app, status);
   add_serve(app, status);
   add_monitor(app, status);
-  add_ask(app, status);
+  add_command(app, status);
   add_history(app, status);
   try {
     app.parse(argc, argv);

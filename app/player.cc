@@ -6,6 +6,7 @@
 
 #include "app/paced_output.h"
 #include "app/pretend.h"
+#include "app/signals.h"
 #include "io/clock.h"
 #include "io/dds/robot_side.h"
 #include "io/file.h"

@@ -1,26 +1,11 @@
 #include "app/pretend.h"
 
-#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "io/robot_file.h"
 #include "io/yaml.h"
 
 namespace selfcal {
-namespace {
-
-volatile std::sig_atomic_t stop_asked = 0;
-void on_signal(int) { stop_asked = 1; }
-
-}  // namespace
-
-bool told_to_stop() { return stop_asked != 0; }
-
-void listen_to_signals() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGPIPE, SIG_IGN);
-}
 
 Result<Scenario> load_scenario(const std::string& path) {
   const Result<Node> node = read_yaml(path);

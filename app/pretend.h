@@ -10,11 +10,6 @@
 
 namespace selfcal {
 
-/// Ends the loop that asks for it: SIGINT or SIGTERM has come.
-bool told_to_stop();
-/// From now on these signals end loops and not the process.
-void listen_to_signals();
-
 /// The scenario of a file.
 Result<Scenario> load_scenario(const std::string& path);
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 #include "io/robot_file.h"
 
 namespace selfcal {

@@ -10,9 +10,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/command.h"
 #include "app/pretend.h"
 #include "app/service/service.h"
+#include "app/signals.h"
+#include "app/subcommand.h"
 #include "io/clock.h"
 #include "io/dds/messenger.h"
 #include "io/dds/motion.h"

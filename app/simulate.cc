@@ -3,8 +3,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/command.h"
 #include "app/pretend.h"
+#include "app/signals.h"
+#include "app/subcommand.h"
 #include "io/data_set_writer.h"
 #include "io/file.h"
 #include "io/robot_file.h"

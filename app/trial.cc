@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 #include "diagnosis/baselines.h"
 
 namespace selfcal {

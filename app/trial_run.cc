@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 #include "app/trial.h"
 #include "diagnosis/baselines.h"
 #include "diagnosis/diagnosis.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "app/command.h"
+#include "app/subcommand.h"
 #include "app/trial.h"
 #include "io/file.h"
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/command.h"
 #include "app/progress_line.h"
+#include "app/subcommand.h"
 #include "app/trial.h"
 #include "io/data_set_file.h"
 #include "io/data_set_writer.h"

@@ -29,7 +29,7 @@ void add_trial(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
-void add_ask(CLI::App& app, int& status);
+void add_command(CLI::App& app, int& status);
 void add_history(CLI::App& app, int& status);
 
 /// Says `failure` on standard error and returns its exit status.

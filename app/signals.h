@@ -1,0 +1,11 @@
+// The signals that end what runs until it is told to stop.
+#pragma once
+
+namespace selfcal {
+
+/// Ends the loop that asks for it: SIGINT or SIGTERM has come.
+bool told_to_stop();
+/// From now on these signals end loops and not the process.
+void listen_to_signals();
+
+}  // namespace selfcal
