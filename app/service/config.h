@@ -111,6 +111,7 @@ struct Config {
   int domain = 0;
   EncoderKindPtr encoders;
   TriggerKindPtr trigger;  ///< stamped by the same clock as the encoders
+  Node transports;         ///< what the file says of both, as far as it changes what readings mean
   std::string temperature_topic;
   std::vector<std::string> joint_names;
   double silence = 0.5;  ///< s

@@ -1,6 +1,7 @@
 #include "app/service/config_transports.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace selfcal {
 namespace {
@@ -12,6 +13,22 @@ void refuse_unknown_kind(Fields& fields, const std::string& kind,
   for (const std::string_view name : known)
     names += (names.empty() ? "" : ", ") + std::string(name);
   fields.fail("kind", "one of " + names);
+}
+
+/// The same with the keys of every mapping in order: to write them in another one says nothing new.
+Node sorted(const Node& node) {
+  if (node.items.empty()) return node;
+  Node out = node.kind == Node::Kind::map ? Node::map() : Node::list();
+  std::vector<std::size_t> order(node.items.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (node.kind == Node::Kind::map)
+    std::ranges::sort(order, {}, [&](std::size_t i) { return node.keys[i]; });
+  for (const std::size_t i : order)
+    if (node.kind == Node::Kind::map)
+      out.set(node.keys[i], sorted(node.items[i]));
+    else
+      out.items.push_back(sorted(node.items[i]));
+  return out;
 }
 
 void read_encoders(const Node& node, const std::filesystem::path& folder, Config& config,
@@ -47,8 +64,12 @@ void read_trigger(const Node& node, Config& config, Problems& problems) {
 
 void read_transports(Fields& fields, const std::filesystem::path& folder, Config& config,
                      Problems& problems) {
-  read_encoders(entry_of(fields, "encoders"), folder, config, problems);
-  read_trigger(entry_of(fields, "trigger"), config, problems);
+  const Node &encoders = entry_of(fields, "encoders"), &trigger = entry_of(fields, "trigger");
+  read_encoders(encoders, folder, config, problems);
+  read_trigger(trigger, config, problems);
+  config.transports = Node::map();
+  config.transports.set("encoders", sorted(without(encoders, {"silence"})));
+  config.transports.set("trigger", sorted(without(trigger, {"debounce"})));
   if (problems.any() || config.encoders->stamped_by() == config.trigger->stamped_by()) return;
   // A message carries its sender's stamps, a frame and an edge get those of our kernel; between
   // the two lies the time that the message was under way, and a touch would be off by it.

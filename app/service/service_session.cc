@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "app/service/service.h"
-#include "io/file.h"
 
 namespace selfcal {
 namespace {
@@ -28,9 +27,8 @@ std::vector<TouchTarget> shared_out(std::vector<TouchTarget> targets, std::size_
 
 }  // namespace
 
-/// Of all that the rows of a session mean: sets, encoders, trigger delay, robot.
 std::string Service::config_hash() const {
-  return sha256_hex(meaning_text(config_, ports_.encoders->scales()) + config_.robot->identity());
+  return selfcal::config_hash(config_, ports_.encoders->scales());
 }
 
 bool Service::can_check() const {

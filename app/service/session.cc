@@ -5,6 +5,7 @@
 
 #include "constraints/equations.h"
 #include "constraints/spread.h"
+#include "io/file.h"
 #include "io/yaml.h"
 
 namespace selfcal {
@@ -74,6 +75,11 @@ std::string meaning_text(const Config& config, const std::vector<EncoderScale>& 
     outward.set(config.sets[target.set].name, Node::of(Eigen::VectorXd(target.outward)));
   node.set("outward", std::move(outward));
   return write_yaml(node);
+}
+
+std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales) {
+  return sha256_hex(meaning_text(config, scales) + write_yaml(config.transports) +
+                    config.robot->identity());
 }
 
 Result<Meaning> read_meaning(const std::string& text) {

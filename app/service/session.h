@@ -36,6 +36,9 @@ Eigen::VectorXd vector_of(const std::vector<double>& readings);
 /// Text of the meaning of the touches that a session is going to make, and back.
 std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales);
 Result<Meaning> read_meaning(const std::string& text);
+/// Of all that changes what the touches mean: sets, robot, where readings and edges come from and
+/// what their counts stand for. Rows of sessions with different ones do not belong together.
+std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales);
 
 /// The plan as the store keeps it.
 std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets);

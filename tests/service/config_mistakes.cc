@@ -122,5 +122,26 @@ TEST(Config, ChangesTheMeaningOfASessionWithWhatItsRowsMeanOnly) {
   EXPECT_NE(meaning_text(*load_cell(), std::vector<EncoderScale>(6, {1e-6, 5})), usual);
 }
 
+TEST(ConfigHash, IsAnotherWhereReadingsMeanSomethingElse) {
+  const auto hash = [](const CellKeys& changes) {
+    return config_hash(*load_cell(changes), std::vector<EncoderScale>(6, {1e-6, 0}));
+  };
+  const std::string usual = hash({});
+  for (const CellKeys& changes :
+       {CellKeys{{"encoders.topic", "joints"}}, CellKeys{{"encoders.joints", "[f, e, d, c, b, a]"}},
+        CellKeys{{"trigger.topic", "probe"}}, CellKeys{{"trigger.delay", "0.001"}}})
+    EXPECT_NE(hash(changes), usual) << changes.begin()->first;
+  EXPECT_EQ(hash({{"encoders.silence", "0.4"}, {"trigger.debounce", "0.001"}}), usual);
+}
+
+TEST(ConfigHash, IsTheSameInWhateverOrderTheKeysStand) {
+  const auto hash = [](const std::string& encoders) {
+    const auto config = load_text(cell_text(small_cell()) + "encoders: " + encoders + "\n");
+    return config_hash(*config, std::vector<EncoderScale>(6, {1e-6, 0}));
+  };
+  EXPECT_EQ(hash("{topic: a, joints: [a, b, c, d, e, f]}"),
+            hash("{joints: [a, b, c, d, e, f], topic: a}"));
+}
+
 }  // namespace
 }  // namespace selfcal
