@@ -69,7 +69,7 @@ Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
   if (!results) return tl::unexpected(results.error());
   std::vector<AcceptedParameters> newest_first;
   for (const ResultRecord& each : *results) {
-    if (each.decision != "applied") continue;
+    if (each.decision != ResultDecision::applied) continue;
     const auto result = store.result(each.session);
     if (!result) return tl::unexpected(result.error());
     if (!*result || (*result)->robot_text.empty()) continue;
@@ -110,13 +110,13 @@ void print_sessions(const std::vector<Past>& past) {
       std::printf("%-14s  %s\n", state_of(each).c_str(), one_line(each.session.reason).c_str());
       continue;
     }
-    const bool full = each.session.kind != "check", failed = r->answer == "failed";
+    const bool full = each.session.kind != "check", failed = r->answer == ResultAnswer::failed;
     const auto figure = [&](bool known, double value) { return known ? mm(value) : "-"; };
-    std::printf("%-14s  %-9s  %8s %8s %8s  %7d %5d %4s\n", one_line(r->answer).c_str(),
-                one_line(r->decision).c_str(), figure(!failed, r->check_before).c_str(),
-                figure(!failed, r->check_after).c_str(),
-                figure(full && !failed, r->endpoint_sigma).c_str(), r->touches, r->rejected,
-                full ? std::to_string(r->identified).c_str() : "-");
+    std::printf(
+        "%-14s  %-9s  %8s %8s %8s  %7d %5d %4s\n", std::string(to_string(r->answer)).c_str(),
+        std::string(to_string(r->decision)).c_str(), figure(!failed, r->check_before).c_str(),
+        figure(!failed, r->check_after).c_str(), figure(full && !failed, r->endpoint_sigma).c_str(),
+        r->touches, r->rejected, full ? std::to_string(r->identified).c_str() : "-");
   }
 }
 
@@ -167,8 +167,8 @@ nlohmann::ordered_json record_of(const Past& past) {
   if (!past.result) return json;
   const ResultRecord& r = *past.result;
   json["result"] = {{"unix_ms", r.unix_ms},
-                    {"answer", r.answer},
-                    {"decision", r.decision},
+                    {"answer", to_string(r.answer)},
+                    {"decision", to_string(r.decision)},
                     {"why", r.why},
                     {"p_value", finite(r.p_value)},
                     {"check_before", finite(r.check_before)},

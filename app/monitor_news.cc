@@ -4,6 +4,7 @@
 
 #include "app/message_json.h"
 #include "app/words.h"
+#include "io/outcome.h"
 
 namespace selfcal {
 
@@ -31,7 +32,7 @@ std::string News::of(const ProgressMessage& progress) const {
 std::string News::of(const ResultMessage& result) const {
   std::string text = printed("result of session %lld (", static_cast<long long>(result.session)) +
                      result.kind + "), " + date_time(result.unix_ms) + ": " + result.answer;
-  if (result.decision != "none") text += ", " + result.decision;
+  if (parse_decision(result.decision) != ResultDecision::none) text += ", " + result.decision;
   if (const std::string numbers = figures(result); !numbers.empty()) text += "; " + numbers;
   text += "; " + counts(result);
   if (!result.why.empty()) text += "; " + result.why;

@@ -7,6 +7,7 @@
 
 #include "app/message_json.h"
 #include "app/words.h"
+#include "io/outcome.h"
 
 namespace selfcal {
 namespace {
@@ -27,8 +28,8 @@ Tone tone_of(Health level) {
 }
 
 Tone tone_of(const ResultMessage& result) {
-  if (result.decision == "candidate") return Tone::warning;
-  const bool good = result.decision == "applied" || result.answer == "explained";
+  const bool good = parse_decision(result.decision) == ResultDecision::applied ||
+                    parse_answer(result.answer) == ResultAnswer::explained;
   return good ? Tone::good : Tone::warning;
 }
 
@@ -113,7 +114,7 @@ class Picture {
     const ResultMessage& r = *watched_.result;
     std::string text = printed("session %lld (", static_cast<long long>(r.session)) + r.kind +
                        "), " + day_time(r.unix_ms, now_ms_) + ": " + r.answer;
-    if (r.decision != "none") text += ", " + r.decision;
+    if (parse_decision(r.decision) != ResultDecision::none) text += ", " + r.decision;
     add("Result", text, kMust, tone_of(r));
     if (const std::string numbers = figures(r); !numbers.empty()) add("", numbers, kFacts);
     add("", counts(r), kWords);
@@ -192,7 +193,7 @@ std::string how_far(const ProgressMessage& progress) {
 }
 
 std::string figures(const ResultMessage& result) {
-  if (result.answer == "failed") return {};
+  if (parse_answer(result.answer) == ResultAnswer::failed) return {};
   const std::string p = std::isfinite(result.p_value) ? printed(", p = %.2g", result.p_value) : "";
   if (result.kind == "check")
     return "check " + mm(result.check_after) + " mm where " + mm(result.check_before) +

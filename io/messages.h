@@ -50,9 +50,8 @@ struct ResultMessage {
   std::string robot, model_hash;
   std::int64_t session = 0;
   std::string kind;      ///< "full" or "check"
-  std::string answer;    ///< "improved", "not-improved", "not-determined"; "explained" or
-                         ///< "not-explained" of a check; "failed"
-  std::string decision;  ///< "applied", "candidate", "rejected", "none"
+  std::string answer;    ///< of ResultAnswer: "not-improved"
+  std::string decision;  ///< of ResultDecision: "applied"
   std::string why;
   double p_value = 0;         ///< of the paired test, or that the active model explains the touches
   double check_before = 0;    ///< m, rms on rows kept aside with the active model

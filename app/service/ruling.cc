@@ -65,7 +65,7 @@ std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& befo
 Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solution& candidate,
                       const Solution& unchanged) {
   Ruling ruling;
-  ruling.answer = std::string(to_string(candidate.verdict.answer));
+  ruling.answer = candidate.verdict.answer;
   std::tie(ruling.check_before, ruling.check_after) =
       rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
   if (candidate.verdict.answer != Answer::improved) {

@@ -10,7 +10,7 @@ namespace selfcal {
 
 struct Ruling {
   bool acceptable = false;
-  std::string answer;  ///< the verdict's: "improved", "not-improved", "not-determined"
+  Answer answer = Answer::not_determined;  ///< the verdict's
   std::string why;
   double check_before = 0;  ///< m, rms of the check rows with the active parameters
   double check_after = 0;   ///< m, with the candidate's

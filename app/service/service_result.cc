@@ -28,6 +28,26 @@ Options held() {
   return options;
 }
 
+ResultAnswer answer_of(Answer verdict) {
+  switch (verdict) {
+    case Answer::improved:
+      return ResultAnswer::improved;
+    case Answer::not_improved:
+      return ResultAnswer::not_improved;
+    case Answer::not_determined:
+      return ResultAnswer::not_determined;
+  }
+  return ResultAnswer::failed;
+}
+
+/// What the service does next.
+Event::Decision next_after(const ResultRecord& result) {
+  if (result.decision == ResultDecision::applying) return Event::Decision::apply;
+  if (result.decision == ResultDecision::candidate) return Event::Decision::ask;
+  return result.answer == ResultAnswer::not_explained ? Event::Decision::full
+                                                      : Event::Decision::none;
+}
+
 }  // namespace
 
 void Service::analyse() {
@@ -105,8 +125,8 @@ ResultRecord Service::new_result() const {
 
 ResultRecord Service::result_of_failure(const std::string& why) const {
   ResultRecord result = new_result();
-  result.answer = "failed";
-  result.decision = "rejected";
+  result.answer = ResultAnswer::failed;
+  result.decision = ResultDecision::rejected;
   result.why = why;
   return result;
 }
@@ -116,8 +136,8 @@ ResultRecord Service::result_of_check() {
   const CheckRuling& ruling = *last_check_;
   ResultRecord result = new_result();
   result.touches -= static_cast<int>(std::ranges::count(data_->rows.check, 0));
-  result.answer = ruling.explained ? "explained" : "not-explained";
-  result.decision = "none";
+  result.answer = ruling.explained ? ResultAnswer::explained : ResultAnswer::not_explained;
+  result.decision = ResultDecision::none;
   result.why = ruling.why;
   result.p_value = ruling.p_value;
   result.check_before = ruling.expected;
@@ -128,10 +148,10 @@ ResultRecord Service::result_of_check() {
 ResultRecord Service::result_of_candidate() const {
   const Ruling ruling = rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
   ResultRecord result = new_result();
-  result.answer = ruling.answer;
-  result.decision = !ruling.acceptable         ? "rejected"
-                    : config_.accept.automatic ? "applying"
-                                               : "candidate";
+  result.answer = answer_of(ruling.answer);
+  result.decision = !ruling.acceptable         ? ResultDecision::rejected
+                    : config_.accept.automatic ? ResultDecision::applying
+                                               : ResultDecision::candidate;
   result.why = ruling.why;
   result.p_value = solution_->verdict.p_value;
   result.check_before = ruling.check_before;
@@ -145,25 +165,24 @@ ResultRecord Service::result_of_candidate() const {
 }
 
 void Service::keep_result(const ResultRecord& result) {
-  const bool candidate = result.decision == "applying" || result.decision == "candidate";
+  const bool candidate =
+      result.decision == ResultDecision::applying || result.decision == ResultDecision::candidate;
+  const bool explained = result.answer == ResultAnswer::explained;
   const SlotRecord slot{result.session, result.unix_ms, models_.hash(), result.robot_text};
   if (!stored(store_.finish(result, candidate ? &slot : nullptr))) return;
-  tell(candidate || result.answer == "explained" ? "info" : "warning",
-       "session " + std::to_string(result.session) + ": " + result.answer + ", " + result.decision +
-           ": " + result.why);
+  tell(candidate || explained ? "info" : "warning",
+       "session " + std::to_string(result.session) + ": " + std::string(to_string(result.answer)) +
+           ", " + std::string(to_string(result.decision)) + ": " + result.why);
   since_.unix_ms = result.unix_ms;
   since_.motion_hours = motion_hours_;
   since_.temperature = senses_.celsius();
-  since_.checks = result.answer == "explained" ? since_.checks + 1 : 0;
+  since_.checks = explained ? since_.checks + 1 : 0;
   remember_use();
   stored(store_.prune(config_.store_bytes));
   Event event;
   event.what = Event::What::decided;
   event.why = result.why;
-  event.decision = result.decision == "applying"      ? Event::Decision::apply
-                   : result.decision == "candidate"   ? Event::Decision::ask
-                   : result.answer == "not-explained" ? Event::Decision::full
-                                                      : Event::Decision::none;
+  event.decision = next_after(result);
   put(std::move(event));
 }
 
@@ -190,7 +209,7 @@ void Service::apply(const std::string& why) {
 
 void Service::finish_interrupted_apply() {
   const auto last = store_.results(1);
-  if (!last || last->empty() || last->front().decision != "applying") return;
+  if (!last || last->empty() || last->front().decision != ResultDecision::applying) return;
   const auto slot = store_.slot(Slot::candidate);
   if (!slot || !*slot || (*slot)->session != last->front().session ||
       (*slot)->model_hash != models_.hash())
@@ -229,8 +248,8 @@ void Service::publish(const ResultRecord& result) {
   message.session = result.session;
   const auto session = store_.session(result.session);
   message.kind = session ? session->kind : "";
-  message.answer = result.answer;
-  message.decision = result.decision;
+  message.answer = to_string(result.answer);
+  message.decision = to_string(result.decision);
   message.why = result.why;
   message.p_value = result.p_value;
   message.check_before = result.check_before;

@@ -14,8 +14,9 @@ ResultRecord figures_of(const sqlite::Statement& row) {
   ResultRecord result;
   result.session = row.integer(0);
   result.unix_ms = row.integer(1);
-  result.answer = row.text(2);
-  result.decision = row.text(3);
+  // A text that is none of ours was written by nobody: it decides nothing.
+  result.answer = parse_answer(row.text(2)).value_or(ResultAnswer::failed);
+  result.decision = parse_decision(row.text(3)).value_or(ResultDecision::none);
   result.why = row.text(4);
   result.p_value = row.real(5);
   result.check_before = row.real(6);
@@ -33,8 +34,9 @@ Result<void> add_result(sqlite3* database, const ResultRecord& result) {
   if (!robot) return tl::unexpected(robot.error());
   const auto added = sqlite::run(
       database, "INSERT INTO result VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
-      {result.session, result.unix_ms, result.answer, result.decision, result.why, result.p_value,
-       result.check_before, result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
+      {result.session, result.unix_ms, std::string(to_string(result.answer)),
+       std::string(to_string(result.decision)), result.why, result.p_value, result.check_before,
+       result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
        std::int64_t{result.rejected}, std::int64_t{result.identified}, *robot});
   if (!added) return tl::unexpected(added.error());
   if (!result.json.empty()) {

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "io/outcome.h"
 #include "io/ports.h"
 #include "io/result.h"
 
@@ -69,7 +70,9 @@ struct SessionRecord {
 
 struct ResultRecord {
   std::int64_t session = 0, unix_ms = 0;
-  std::string answer, decision, why;
+  ResultAnswer answer = ResultAnswer::failed;
+  ResultDecision decision = ResultDecision::none;
+  std::string why;
   double p_value = 0, check_before = 0, check_after = 0, endpoint_sigma = 0;
   int touches = 0, rejected = 0, identified = 0;
   std::string json;        ///< result.json; empty for a check
@@ -122,16 +125,16 @@ class Store {
   Result<std::vector<TouchRecord>> touches(std::int64_t session);  ///< in the order they came
 
   /// Puts the result and ends the session in one transaction. With `candidate`, the robot becomes
-  /// the candidate in the same; the decision of one that it takes the place of becomes "replaced".
+  /// the candidate in the same; the decision of one that it takes the place of becomes `replaced`.
   /// A session has one result: a second is a failure.
   Result<void> finish(const ResultRecord& result, const SlotRecord* candidate);
   Result<std::optional<ResultRecord>> result(std::int64_t session);
   Result<std::vector<ResultRecord>> results(int newest);  ///< without json and robot_text
 
   Result<std::optional<SlotRecord>> slot(Slot slot);
-  /// active becomes previous, candidate becomes active, and the session's decision "applied".
+  /// active becomes previous, candidate becomes active, and the session's decision `applied`.
   Result<void> accept(std::int64_t unix_ms);
-  /// The candidate is dropped; its session's decision becomes "rejected".
+  /// The candidate is dropped; its session's decision becomes `rejected`.
   Result<void> reject(std::int64_t unix_ms);
   /// active and previous change places (an empty previous is the factory's: active becomes empty).
   /// Fails when there is nothing to go back to.

@@ -76,8 +76,8 @@ class History : public ::testing::Test {
     ResultRecord result;
     result.session = begin("full");
     result.unix_ms = kFirst + result.session * kDay;
-    result.answer = "improved";
-    result.decision = "candidate";
+    result.answer = ResultAnswer::improved;
+    result.decision = ResultDecision::candidate;
     result.check_before = 1.92e-3;
     result.check_after = 0.0228e-3;
     result.identified = 21;

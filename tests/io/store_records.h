@@ -79,8 +79,8 @@ inline ResultRecord some_result(std::int64_t session) {
   ResultRecord result;
   result.session = session;
   result.unix_ms = 1'790'000'900'000;
-  result.answer = "better";
-  result.decision = "candidate";
+  result.answer = ResultAnswer::improved;
+  result.decision = ResultDecision::candidate;
   result.why = "errors fell from 1.2 mm to 18 µm";
   result.p_value = 0.1 + 0.2;
   result.check_before = 1.2e-3;

@@ -18,7 +18,7 @@ std::vector<std::int64_t> behind(Store& store) {
   return sessions;
 }
 
-std::string decision(Store& store, std::int64_t session) {
+ResultDecision decision(Store& store, std::int64_t session) {
   return store.result(session).value()->decision;
 }
 
@@ -53,10 +53,10 @@ TEST(StoreSlots, AcceptMovesActiveToPreviousAndSaysApplied) {
   EXPECT_EQ(behind(*store), (Sessions{a, -1, -1}));
   const std::int64_t b = whole_session(*store, 2, true);
   EXPECT_EQ(behind(*store), (Sessions{a, -1, b}));
-  EXPECT_EQ(decision(*store, b), "candidate");
+  EXPECT_EQ(decision(*store, b), ResultDecision::candidate);
   ASSERT_TRUE(store->accept(20).has_value());
   EXPECT_EQ(behind(*store), (Sessions{b, a, -1}));
-  EXPECT_EQ(decision(*store, b), "applied");
+  EXPECT_EQ(decision(*store, b), ResultDecision::applied);
   EXPECT_EQ(store->slot(Slot::active).value()->since_ms, 20);
   EXPECT_FALSE(store->accept(30).has_value());
 }
@@ -67,7 +67,7 @@ TEST(StoreSlots, RejectDropsTheCandidateAndSaysRejected) {
   const std::int64_t a = whole_session(*store, 2, true);
   ASSERT_TRUE(store->reject(10).has_value());
   EXPECT_EQ(behind(*store), (Sessions{-1, -1, -1}));
-  EXPECT_EQ(decision(*store, a), "rejected");
+  EXPECT_EQ(decision(*store, a), ResultDecision::rejected);
 }
 
 TEST(StoreSlots, ANewCandidateReplacesTheOldOneAndSaysSo) {
@@ -76,8 +76,8 @@ TEST(StoreSlots, ANewCandidateReplacesTheOldOneAndSaysSo) {
   const std::int64_t a = whole_session(*store, 2, true);
   const std::int64_t b = whole_session(*store, 2, true);
   EXPECT_EQ(behind(*store), (Sessions{-1, -1, b}));
-  EXPECT_EQ(decision(*store, a), "replaced");
-  EXPECT_EQ(decision(*store, b), "candidate");
+  EXPECT_EQ(decision(*store, a), ResultDecision::replaced);
+  EXPECT_EQ(decision(*store, b), ResultDecision::candidate);
 }
 
 TEST(StoreSlots, RollBackSwapsAndTwiceIsNothing) {
@@ -114,7 +114,7 @@ TEST(StoreSlots, KeepTheFactorysRobotUnderNoSession) {
   ASSERT_TRUE(store->finish(some_result(id), &factory).has_value());
   EXPECT_EQ(behind(*store), (Sessions{-1, -1, 0}));
   ASSERT_TRUE(store->accept(6).has_value());
-  EXPECT_EQ(decision(*store, id), "candidate");
+  EXPECT_EQ(decision(*store, id), ResultDecision::candidate);
 }
 
 }  // namespace

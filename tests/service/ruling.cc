@@ -40,7 +40,7 @@ TEST(Ruling, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   good.find(Part::link, Quantity::length).value += 1e-3;
   const Ruling ruling = good.rule();
   EXPECT_TRUE(ruling.acceptable);
-  EXPECT_EQ(ruling.answer, "improved");
+  EXPECT_EQ(ruling.answer, Answer::improved);
   EXPECT_EQ(ruling.check_before, 2e-4);
   EXPECT_EQ(ruling.check_after, 1e-4);
   EXPECT_THAT(ruling.why, HasSubstr("check residual 0.2 to 0.1 mm"));
@@ -53,7 +53,7 @@ TEST(Ruling, RefusesWhatTheVerdictDoesNotCallImproved) {
     bad.candidate.verdict = {answer, "the data do not tell", 0.5};
     EXPECT_FALSE(bad.rule().acceptable);
     EXPECT_EQ(bad.rule().why, "the data do not tell");
-    EXPECT_EQ(bad.rule().answer, to_string(answer));
+    EXPECT_EQ(bad.rule().answer, answer);
   }
 }
 

@@ -154,8 +154,9 @@ TEST(Manners, ChecksQuicklyAndCalibratesOnlyWhenTheActiveModelFails) {
            cell.results.back().session == 4 && cell.in_state("idle");
   }));
   const auto store = cell.store();
-  EXPECT_EQ(must(store->result(3))->answer, "not-explained");
-  EXPECT_EQ(must(store->result(4))->decision, "applied") << must(store->result(4))->why;
+  EXPECT_EQ(must(store->result(3))->answer, ResultAnswer::not_explained);
+  EXPECT_EQ(must(store->result(4))->decision, ResultDecision::applied)
+      << must(store->result(4))->why;
   EXPECT_NEAR(must(store->result(4))->check_after, 2e-5, 1e-5);
 }
 

@@ -1,0 +1,35 @@
+// What a session came to: the answer of its rows, and what became of the parameters found.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace selfcal {
+
+enum class ResultAnswer : std::uint8_t {
+  improved,
+  not_improved,
+  not_determined,
+  explained,      ///< of a check: the active parameters explain its touches
+  not_explained,  ///< of a check: they do not
+  failed,         ///< it could not be computed
+};
+
+enum class ResultDecision : std::uint8_t {
+  none,       ///< of a check: there is nothing to decide
+  rejected,   ///< by the ruling, or by a person
+  candidate,  ///< waits for a person
+  applying,   ///< by the ruling alone; begun, and after a power cut still to be done
+  applied,
+  replaced,  ///< by a newer candidate, before anybody had decided
+};
+
+/// As the store and the messages have it: "not-improved".
+std::string_view to_string(ResultAnswer answer);
+std::string_view to_string(ResultDecision decision);
+/// Nothing for a text that is none of them.
+std::optional<ResultAnswer> parse_answer(std::string_view text);
+std::optional<ResultDecision> parse_decision(std::string_view text);
+
+}  // namespace selfcal
