@@ -41,22 +41,12 @@ Result<void> write(const Arguments& arguments, const Robot& robot, const Solutio
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }
 
-/// The entries of the effects that `robot` has, but for those that are asked for anew.
-std::vector<Node> kept_effects(const Robot& robot, const std::vector<std::string>& asked) {
-  std::vector<Node> entries;
-  const Eigen::VectorXd all = values(robot);
-  const std::vector<const Effect*> effects = effects_of(robot);
-  Eigen::Index left = 0;
-  for (const Effect* effect : effects)
-    left += static_cast<Eigen::Index>(effect->parameters().size());
-  for (const Effect* effect : effects) {
-    const auto own = static_cast<Eigen::Index>(effect->parameters().size());
-    const std::string name(effect->name());
-    if (!std::ranges::count(asked, name) && !std::ranges::count(asked, name + "@" + effect->at()))
-      entries.push_back(effect->describe(all.segment(all.size() - left, own)));
-    left -= own;
-  }
-  return entries;
+/// Whether the effect of a robot file's `entry` is one of those asked for (EFFECT or EFFECT@PLACE).
+bool is_asked(const Node& entry, const std::vector<std::string>& asked) {
+  const std::string effect = entry.find("effect")->text;
+  const Node* at = entry.find("at");
+  return std::ranges::count(asked, effect) > 0 ||
+         (at && std::ranges::count(asked, effect + "@" + at->text) > 0);
 }
 
 /// The robot of a data set with the effects that are asked for beside its own, or why not.
@@ -67,7 +57,8 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
   Problems problems;
   const auto geometry = geometry_of(robot);
-  std::vector<Node> entries = kept_effects(*robot, arguments.effects);
+  std::vector<Node> entries = effect_entries(*robot);
+  std::erase_if(entries, [&](const Node& each) { return is_asked(each, arguments.effects); });
   entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
   std::shared_ptr<const Robot> corrected =
       correct(geometry, entries, site_of(*geometry, data), problems);

@@ -71,8 +71,7 @@ Apart read_apart(Fields& fields) {
   const Apart apart{fields.length("distance", 0), fields.number("noise")};
   if (!fields.has("distance") || apart.distance < 0)
     fields.fail("distance", "a distance of at least 0 m");
-  if (!(apart.noise > 0 && apart.noise < 1))
-    fields.fail("noise", "a positive 1 sigma below 1 m");
+  if (!(apart.noise > 0 && apart.noise < 1)) fields.fail("noise", "a positive 1 sigma below 1 m");
   return apart;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kinematics/corrected_robot.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -72,6 +73,17 @@ Site site_of(const Robot& robot, const DataSet& data) {
   site.velocities = data.rows.velocity.size() > 0 && !data.rows.velocity.array().isNaN().all();
   site.speeds = site.velocities && data.speeds;
   return site;
+}
+
+std::shared_ptr<const Robot> on_site(std::shared_ptr<const Robot> robot, const DataSet& data) {
+  const std::vector<Node> entries = effect_entries(*robot);
+  if (entries.empty()) return robot;
+  Site site = site_of(*robot, data);
+  for (const Effect* effect : effects_of(*robot))
+    if (!effect->of_machine() && site.find(effect->at()) < 0) site.sets.push_back({effect->at()});
+  Problems problems;
+  std::shared_ptr<const Robot> there = correct(robot, entries, site, problems);
+  return there ? there : robot;
 }
 
 }  // namespace selfcal

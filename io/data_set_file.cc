@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "constraints/site.h"
 #include "io/observations_csv.h"
 #include "io/robot_file.h"
 #include "io/yaml.h"
@@ -87,6 +88,7 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   if (!read) return tl::unexpected(read.error());
   if (const auto checked = check_references(loaded.data, file.string()); !checked)
     return tl::unexpected(checked.error());
+  loaded.robot = on_site(std::move(loaded.robot), loaded.data);
   return loaded;
 }
 

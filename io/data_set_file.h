@@ -13,10 +13,10 @@
 namespace selfcal {
 
 struct LoadedDataSet {
-  std::string name;                  ///< the folder's
-  std::unique_ptr<Robot> robot;      ///< nominal, as its file has it
-  DataSet data;                      ///< fits the robot: one column of q for each joint
-  std::vector<std::string> notices;  ///< what a person should know of an accepted data set
+  std::string name;                    ///< the folder's
+  std::shared_ptr<const Robot> robot;  ///< as its file has it, its effects as they act on the rows
+  DataSet data;                        ///< fits the robot: one column of q for each joint
+  std::vector<std::string> notices;    ///< what a person should know of an accepted data set
   /// What it is made of, as dataset.yaml names them (relative to the folder); itself first.
   std::vector<std::filesystem::path> files;
 };

@@ -218,6 +218,12 @@ std::vector<const Effect*> effects_of(const Robot& robot) {
   return list;
 }
 
+std::vector<Node> effect_entries(const Robot& robot) {
+  const Node whole = robot.describe(values(robot));
+  const Node* list = whole.find("effects");
+  return list ? list->items : std::vector<Node>();
+}
+
 std::shared_ptr<const Robot> geometry_of(std::shared_ptr<const Robot> robot) {
   const auto* corrected = dynamic_cast<const CorrectedRobot*>(robot.get());
   return corrected ? corrected->geometry() : robot;

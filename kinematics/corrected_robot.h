@@ -20,6 +20,9 @@ std::unique_ptr<Robot> correct(std::shared_ptr<const Robot> robot, const std::ve
 /// The effects of a robot, in the order of their parameters; empty for geometry alone.
 std::vector<const Effect*> effects_of(const Robot& robot);
 
+/// The same as entries of a robot file, with the values that the robot has.
+std::vector<Node> effect_entries(const Robot& robot);
+
 /// The geometry alone: the robot itself when it has no effects.
 std::shared_ptr<const Robot> geometry_of(std::shared_ptr<const Robot> robot);
 

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/service/service.h"
+#include "constraints/site.h"
 #include "io/robot_file.h"
 #include "io/solution_json.h"
 #include "io/yaml.h"
@@ -83,7 +84,7 @@ void Service::identify() {
   solution_ = std::make_shared<Solution>();
   computation_.start(
       [out = solution_, robot = models_.active(), data = data_](const Computation::Tell& tell) {
-        *out = selfcal::identify(*robot, *data, {}, tell);
+        *out = selfcal::identify(*on_site(robot, *data), *data, {}, tell);
         return std::string();
       });
   when_computed_ = [this](const std::string& failure) {
@@ -103,8 +104,8 @@ void Service::judge() {
   computation_.start([unchanged = unchanged_, then = check ? solution_ : nullptr,
                       robot = models_.active(), data = data_,
                       base = base_](const Computation::Tell& tell) {
-    *unchanged = selfcal::identify(*robot, *data, held(), tell);
-    if (then) *then = selfcal::identify(*robot, *base, held(), tell);
+    *unchanged = selfcal::identify(*on_site(robot, *data), *data, held(), tell);
+    if (then) *then = selfcal::identify(*on_site(robot, *base), *base, held(), tell);
     return std::string();
   });
   when_computed_ = [this, check](const std::string& failure) {

@@ -33,7 +33,7 @@ AcceptedParameters calibration(std::int64_t session, int index, double change) {
 TEST(Drifts, ComeWithTheOneThatMovedMostFirst) {
   // Parameter 3 jumps at the first calibration and stays; parameter 5 comes and goes after it.
   const std::vector<AcceptedParameters> all = {calibration(1, 3, 2e-3), calibration(2, 5, 1e-3),
-                                        calibration(3, 5, 1.5e-3)};
+                                               calibration(3, 5, 1.5e-3)};
   const std::vector<Drift> found = drifts(all, 10);
 
   ASSERT_EQ(found.size(), 2);

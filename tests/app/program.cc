@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -127,6 +128,40 @@ TEST_F(Program, KeepsTheEffectsOfTheRobotsFileBesideThoseAskedFor) {
       effects, [](const std::string& name) { return name.starts_with("j3.kappa_"); }));
   EXPECT_TRUE(std::ranges::any_of(
       effects, [](const std::string& name) { return name.starts_with("j2.sin"); }));
+}
+
+TEST_F(Program, LetsASurfacesFormOfTheRobotsFileActOnItsRows) {
+  const std::string data = simulated();
+  const auto before = [&] {
+    const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+    std::map<std::string, double> rms;
+    for (const auto& set : nlohmann::json::parse(ran.out)["residual"]["check"]["by_set"])
+      rms[set["name"]] = set["rms_before"];
+    return rms;
+  };
+  const auto flat = before();
+  const std::string file = data + "/rx90.robot.yaml", robot = text_of(file);
+  const std::string form =
+      "effects:\n  - {effect: plane_form_error, a: 1.0, b: 0, c: 0, "
+      "center: [1, 0, 0.5], normal: [0, 0, 1], at: ";
+  std::ofstream(file) << robot << form << flat.begin()->first << "}\n";
+  const auto bent = before();
+  EXPECT_GT(bent.begin()->second, 2 * flat.begin()->second) << flat.begin()->first;
+  std::ofstream(file) << robot << form << "another}\n";
+  EXPECT_EQ(before(), flat) << "of a surface that is not among the sets";
+}
+
+TEST_F(Program, JudgesRowsThatTheNominalRobotMeetsExactly) {
+  std::filesystem::copy(SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml", folder_);
+  std::ofstream(folder_ / "exact.scenario.yaml")
+      << "robot: rx90.robot.yaml\nseed: 1\ncheck: 0.33\nsets: {s: {method: position, rows: 100}}\n";
+  const std::string data = (folder_ / "data").string();
+  ASSERT_EQ(selfcal_run("simulate " + (folder_ / "exact.scenario.yaml").string() + " --out " + data)
+                .status,
+            0);
+  const Ran ran = selfcal_run("identify " + data);
+  EXPECT_EQ(ran.status, 1) << ran.out;
+  EXPECT_NE(ran.out.find("not-improved"), std::string::npos) << ran.out;
 }
 
 TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {

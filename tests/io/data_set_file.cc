@@ -93,6 +93,26 @@ TEST_F(DataSetFile, RefusesMissingKeys) {
   EXPECT_THAT(error(kRow), HasSubstr("data set: key 'sets' is missing"));
 }
 
+TEST_F(DataSetFile, GuessesMillimetresInItsSets) {
+  sets = only("ball: {method: sphere, radius: 127}");
+  EXPECT_THAT(error(kRow), HasSubstr("set ball: key 'radius': expected metres"));
+  sets = only("ball: {method: sphere, center: [7000, 0, 150]}");
+  EXPECT_THAT(error(kRow), HasSubstr("set ball: key 'center': expected metres"));
+  sets = only("table: {method: plane, probe_radius: 3}");
+  EXPECT_THAT(error(kRow), HasSubstr("set table: key 'probe_radius': expected metres"));
+  sets = only(
+      "a: {method: plane}\n  b: {method: plane, parallel_to: {set: a, distance: 200, noise: "
+      "1.0e-6}}");
+  EXPECT_THAT(error(kRow), HasSubstr("key 'distance': expected metres"));
+}
+
+TEST_F(DataSetFile, RefusesTwoDistancesBetweenTheSameGroups) {
+  sets = only(
+      "tip: {method: position-constraint, apart: [{groups: [a, b], distance: 0.05, noise: 1.0e-5}, "
+      "{groups: [b, a], distance: 0.06, noise: 1.0e-5}]}");
+  EXPECT_THAT(error(kRow), HasSubstr("these two groups are apart already"));
+}
+
 TEST_F(DataSetFile, RefusesBrokenSets) {
   sets = "sets: {}\n";
   EXPECT_THAT(error(kRow), HasSubstr("sets: expected one set or more"));

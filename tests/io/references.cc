@@ -1,4 +1,5 @@
 // Sets that share another's unknowns.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,9 +10,12 @@
 namespace selfcal {
 namespace {
 
-TEST(References, AreRefusedWhenTheOtherSetHasNoFitRows) {
+using testing::HasSubstr;
+
+/// What is wrong with a gauge parallel to a table, of these rows.
+std::string error_of(const std::string& rows) {
   const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "references_without_fit_rows";
+      std::filesystem::path(testing::TempDir()) / "references_without_rows";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "a.robot.yaml") << "robot: a\nkind: serial\nframes:\n"
                                             "  - {name: j1, joint: revolute}\n"
@@ -19,12 +23,22 @@ TEST(References, AreRefusedWhenTheOtherSetHasNoFitRows) {
   std::ofstream(folder / "dataset.yaml")
       << "robot: a.robot.yaml\nobservations: o.csv\nsets:\n"
          "  table: {method: plane}\n"
-         "  gauge: {method: plane, parallel_to: {set: table, distance: 0.2, noise: 2.0e-6}}\n";
-  std::ofstream(folder / "o.csv") << "set,q1,part\ntable,0.1,check\ngauge,0.2,fit\n";
+         "  gauge: {method: plane, parallel_to: {set: table, distance: 0.2, noise: 2.0e-6}}\n"
+         "  tracker: {method: position}\n";
+  std::ofstream(folder / "o.csv") << "set,q1,x,y,z,part\n" << rows;
   const auto loaded = load_data_set(folder);
-  ASSERT_FALSE(loaded.has_value());
-  EXPECT_NE(loaded.error().what.find("table, which has no `fit` rows"), std::string::npos)
-      << loaded.error().what;
+  return loaded ? "" : loaded.error().what;
+}
+
+TEST(References, AreRefusedWhenTheOtherSetHasNoFitRows) {
+  EXPECT_THAT(error_of("table,0.1,,,,check\ngauge,0.2,,,,fit\n"),
+              HasSubstr("table, which has no `fit` rows"));
+}
+
+TEST(References, OfASetThatOnlyJudgesNeedSomeRowsOfTheOther) {
+  EXPECT_THAT(error_of("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\n"),
+              HasSubstr("table, which has no `fit` or `check` rows"));
+  EXPECT_EQ(error_of("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\ntable,0.1,,,,check\n"), "");
 }
 
 }  // namespace

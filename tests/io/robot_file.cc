@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "tests/io/scratch.h"
 
 namespace selfcal {
@@ -52,6 +54,30 @@ TEST(RobotFile, HasAHashThatFollowsTheModel) {
   EXPECT_THAT(model_hash(*one), MatchesRegex("sha256:[0-9a-f]+"));
   EXPECT_EQ(model_hash(*one).size(), 7u + 64u);
   EXPECT_NE(model_hash(*one), model_hash(*other));
+}
+
+TEST(RobotFile, IsRefusedWhereItsUnitsAreNot) {
+  const Scratch scratch;
+  const struct {
+    const char *right, *wrong, *told;
+  } cases[] = {
+      {"d: 0.3", "d: 300", "frame 1: key 'd': expected metres, at most 50 (millimetres?)"},
+      {"r: 0.5", "r: 5000", "frame 0: key 'r': expected metres, at most 1000"},
+      {"r: 0.1", "r: 100", "frame 3: key 'r': expected metres, at most 50"},
+      {"alpha: 1.5", "alpha: 90", "frame 2: key 'alpha': expected radians"},
+      {"[-2, 2]", "[-160, 160]", "frame 1: key 'limits': expected radians"},
+      {"[0, 1]", "[0, 1200]", "frame 2: key 'limits': expected metres"},
+      {"{d: 5.0e-4}", "{d: 1}", "expected 1 sigma each, above 0 and below 1 (m or rad)"},
+      {"limits: [0, 1]", "gear: 0", "expected a ratio other than 0"},
+      {"kind: serial", "kind: serial\ngravity: [0, 0, -9810]", "expected m/s^2"},
+  };
+  for (const auto& each : cases) {
+    std::string text = kArm;
+    text.replace(text.find(each.right), std::strlen(each.right), each.wrong);
+    const auto robot = load_robot(scratch.write("arm.robot.yaml", text));
+    ASSERT_FALSE(robot.has_value()) << each.wrong;
+    EXPECT_THAT(robot.error().what, testing::HasSubstr(each.told));
+  }
 }
 
 TEST(RobotFile, IsRefusedWithFileAndLine) {
