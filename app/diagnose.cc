@@ -117,9 +117,9 @@ int diagnose_command(const Arguments& arguments) {
   if (!inputs) return tell(inputs.error());
   const auto findings = find(arguments, *inputs);
   if (!findings) return tell(findings.error());
+  std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
   if (const auto written = write(arguments, *inputs, *findings); !written)
     return tell(written.error());
-  std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
   return findings->diagnosis.converged ? kDone : kAnswerIsNo;
 }
 

@@ -26,7 +26,7 @@ struct Arguments {
 };
 
 struct Answered {
-  std::unique_ptr<Robot> robot;
+  std::shared_ptr<const Robot> robot;
   std::string method;
   int rows = 0, own = 0;
   Identifiability rank;

@@ -36,7 +36,6 @@ std::string unknown_name(const Robot& robot, const Options& options) {
 Result<void> write(const Arguments& arguments, const Robot& robot, const Solution& solution,
                    const std::string& json) {
   const std::filesystem::path out(arguments.out);
-  if (auto made = make_folder(out); !made) return made;
   if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }
@@ -80,6 +79,8 @@ int identify_command(const Arguments& arguments) {
   if (const std::string name = unknown_name(robot, options); !name.empty())
     return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
                        "'; names are like theta2, K3 or j2.theta, * stands for any text");
+  if (!arguments.out.empty())
+    if (const auto made = make_folder(arguments.out); !made) return tell(made.error());
   Solution solution;
   {
     ProgressLine line;
@@ -87,13 +88,13 @@ int identify_command(const Arguments& arguments) {
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
   const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
-  if (!arguments.out.empty())
-    if (const auto written = write(arguments, robot, solution, json); !written)
-      return tell(written.error());
   if (arguments.json)
     std::printf("%s\n", json.c_str());
   else
     std::fputs(summary(loaded->data, solution).c_str(), stdout);
+  if (!arguments.out.empty())
+    if (const auto written = write(arguments, robot, solution, json); !written)
+      return tell(written.error());
   return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
 }
 

@@ -39,7 +39,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return selfcal::run(argc, argv);
+    const int status = selfcal::run(argc, argv);
+    if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+    std::fprintf(stderr, "selfcal: standard output could not be written to its end\n");
+    return selfcal::kDeviceFailed;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "selfcal: a bug: %s\n", error.what());
     return selfcal::kBug;

@@ -68,8 +68,8 @@ void read_transports(Fields& fields, const std::filesystem::path& folder, Config
   read_encoders(encoders, folder, config, problems);
   read_trigger(trigger, config, problems);
   config.transports = Node::map();
-  config.transports.set("encoders", sorted(without(encoders, {"silence"})));
-  config.transports.set("trigger", sorted(without(trigger, {"debounce"})));
+  config.transports.set("encoders", sorted(encoders.without({"silence"})));
+  config.transports.set("trigger", sorted(trigger.without({"debounce"})));
   if (problems.any() || config.encoders->stamped_by() == config.trigger->stamped_by()) return;
   // A message carries its sender's stamps, a frame and an edge get those of our kernel; between
   // the two lies the time that the message was under way, and a touch would be off by it.

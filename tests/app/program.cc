@@ -77,6 +77,15 @@ TEST_F(Program, PrintsJsonAloneOnStandardOutput) {
   EXPECT_EQ(nlohmann::json::parse(ran.out)["robot"], "staubli-rx90");
 }
 
+TEST_F(Program, FailsWhereItCannotWrite) {
+  const std::string data = simulated();
+  EXPECT_EQ(selfcal_run("identify " + data + " --json > /dev/full").status, 4);
+  std::ofstream(folder_ / "file") << "no folder";
+  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "file").string());
+  EXPECT_EQ(ran.status, 4);
+  EXPECT_EQ(ran.out.find("identifying"), std::string::npos) << "told before the work: " << ran.out;
+}
+
 TEST_F(Program, WritesNothingOnBadInputAndNamesTheLine) {
   const std::string data = simulated();
   std::ofstream(data + "/dataset.yaml", std::ios::app) << "tarket: 1\n";
