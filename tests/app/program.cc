@@ -143,8 +143,9 @@ TEST_F(Program, LetsASurfacesFormOfTheRobotsFileActOnItsRows) {
   const std::string data = simulated();
   const auto before = [&] {
     const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+    const auto json = nlohmann::json::parse(ran.out);
     std::map<std::string, double> rms;
-    for (const auto& set : nlohmann::json::parse(ran.out)["residual"]["check"]["by_set"])
+    for (const auto& set : json["residual"]["check"]["by_set"])
       rms[set["name"]] = set["rms_before"];
     return rms;
   };
@@ -157,7 +158,8 @@ TEST_F(Program, LetsASurfacesFormOfTheRobotsFileActOnItsRows) {
   const auto bent = before();
   EXPECT_GT(bent.begin()->second, 2 * flat.begin()->second) << flat.begin()->first;
   std::ofstream(file) << robot << form << "another}\n";
-  EXPECT_EQ(before(), flat) << "of a surface that is not among the sets";
+  for (const auto& [set, rms] : before())
+    EXPECT_NEAR(rms, flat.at(set), 1e-9) << "of a surface that is not among the sets";
 }
 
 TEST_F(Program, JudgesRowsThatTheNominalRobotMeetsExactly) {

@@ -36,6 +36,7 @@ std::vector<RealCase> cases() {
 }
 
 std::string in_words(const CauseResult& verdict) {
+  if (verdict.effect.empty()) return "too few rows";
   std::string words = verdict.effect;
   for (size_t i = 0; i < verdict.where.size(); ++i)
     words += (i == 0 ? " at " : ", ") + verdict.where[i];
