@@ -37,9 +37,11 @@ class Adjustment {
     equations_.start(start);
     adjusted_.before = fit_placed(start);
     start_ = start;
+    hold_scale(quietest() * adjusted_.before.at.R, adjusted_.before.state.xi);
+    adjusted_.before.at.clusters.clear();
     adjusted_.fitted = fit_all();
     doubt();
-    hold_scale();
+    if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
     return std::move(adjusted_);
   }
@@ -119,15 +121,31 @@ class Adjustment {
     start_ = best_start;
   }
 
-  void hold_scale() {
-    const std::optional<int> length = held_scale(equations_, adjusted_.fitted.at.R,
-                                                 adjusted_.fitted.state.xi, adjusted_.prior.free);
-    if (!length) return;
+  /// How much more the rows could weigh than in the placed fit, were their noise the least that it
+  /// can be.
+  double quietest() const {
+    double most = 1;
+    for (size_t s = 0; s < equations_.data().sets.size(); ++s) {
+      if (equations_.plan(static_cast<int>(s)).items.empty()) continue;
+      const Set& set = equations_.data().sets[s];
+      const Scale& used = adjusted_.before.noise.used[s];
+      most = std::max(most, used.length / std::max(set.noise, kLeastNoise));
+      if (set.method->has_angles())
+        most = std::max(most, used.angle / std::max(set.noise_angle, kLeastNoise));
+    }
+    return most;
+  }
+
+  /// Holds a length where R says that the scale is free. Asked before the first fit, too: a robot
+  /// that may shrink takes many iterations to do so, the more the more rows there are.
+  bool hold_scale(const Eigen::MatrixXd& R, const Eigen::VectorXd& xi) {
+    const std::optional<int> length = held_scale(equations_, R, xi, adjusted_.prior.free);
+    if (!length) return false;
     adjusted_.scale = *length;
     start_.xi[*length] = adjusted_.prior.centre[*length];
     hold({parameters()[*length].name,
           "the touches leave the robot's scale free: its longest link length is held"});
-    adjusted_.fitted = fit_all();
+    return true;
   }
 
   /// Squares of the moves over the maker's tolerances, and how many of them the rows determine.

@@ -38,6 +38,17 @@ void motion_columns(const Locations& X, PsiBlock& psi) {
   }
 }
 
+/// The three equations from `a` on of a lane of D, vectors or their derivatives, times `A`.
+void turn(const Eigen::Matrix3d& A, int lane, Eigen::Index a, Eigen::Index equations,
+          MethodOutput::Block& D) {
+  using Derivatives = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index m = D.cols() / equations;
+  Derivatives part(3, m);
+  for (int i = 0; i < 3; ++i) part.row(i) = D.row(lane).segment((a + i) * m, m).matrix();
+  part = (A * part).eval();
+  for (int i = 0; i < 3; ++i) D.row(lane).segment((a + i) * m, m) = part.row(i).array();
+}
+
 }  // namespace
 
 double RowResidual::sigmas(const Scale& scale) const {
@@ -109,6 +120,28 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   in.reference = s.reference < 0 ? nullptr : &state.own[s.reference];
   in.groups = &state.groups[set];
   method.evaluate(in, block.out);
+  block.G_axes.resize(kLanes, 0);
+  if (!method.vectors()) return;
+  robot_.locate(block.now, state.xi, Body::first_link, block.X_axes,
+                jacobian ? &block.psi_axes : nullptr);
+  into_axes(block);
+}
+
+void Equations::into_axes(Block& block) const {
+  MethodOutput& out = block.out;
+  const Eigen::Index equations = out.r.cols();
+  block.G_axes.setZero(kLanes, 6 * equations);
+  for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+    const Eigen::Matrix3d to_axes = block.X_axes.R(lane).transpose();
+    for (Eigen::Index a = 0; a < equations; a += 3) {
+      const Eigen::Vector3d r = out.r.row(lane).segment<3>(a).matrix().transpose();
+      const Eigen::Matrix3d by_turn = to_axes * skew(r);
+      for (int i = 0; i < 3; ++i)
+        block.G_axes.row(lane).segment<3>(6 * (a + i) + 3) = by_turn.row(i).array();
+      for (MethodOutput::Block* D : {&out.r, &out.G_now, &out.D_group})
+        turn(to_axes, lane, a, equations, *D);
+    }
+  }
 }
 
 RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
@@ -149,6 +182,8 @@ void Equations::chain_rule(const Block& block, int set, bool motions, Eigen::Mat
   W.setZero(equations * kLanes, columns() + (motions ? kMotions : 0) + 1);
   add_product(block.out.G_now, block.psi_now, equations, W);
   if (s.method->paired()) add_product(block.out.G_before, block.psi_before, equations, W);
+  const bool axes = block.G_axes.cols() > 0;
+  if (axes) add_product(block.G_axes, block.psi_axes, equations, W);
   const auto own_block = [&](const MethodOutput::Block& D, int of) {
     const int m = own_count_[of];
     for (int a = 0; m > 0 && a < equations; ++a)
@@ -164,6 +199,10 @@ void Equations::chain_rule(const Block& block, int set, bool motions, Eigen::Mat
     if (s.method->paired()) {
       motion_columns(block.X_before, psi);
       add_product(block.out.G_before, psi, equations, M);
+    }
+    if (axes) {
+      motion_columns(block.X_axes, psi);
+      add_product(block.G_axes, psi, equations, M);
     }
     W.middleCols(columns(), kMotions) = M;
   }

@@ -16,6 +16,8 @@
 
 namespace selfcal {
 
+class StreamingQr;
+
 /// What is estimated: the robot's parameters, each set's own values, each set's group values
 /// (one column a group).
 struct State {
@@ -47,6 +49,7 @@ struct Weighting {
   std::vector<Scale> scale;     ///< by set
   std::vector<char> put_aside;  ///< by row of the data set; 1 weighs nothing
   double soft_quantile = 0.99;  ///< rows beyond this chi quantile are weighed down (Huber)
+  bool structural = false;      ///< links and equations between own unknowns have a sigma of 1
 };
 
 enum class Use { fit, check, align };
@@ -137,22 +140,28 @@ class Equations {
   void make_plan(int set, Use use);
   void evaluate(int set, int first, int count, const State& state, Block& block,
                 bool jacobian) const;
+  /// Takes the vectors of a method that has such in the axes of the first moving link.
+  void into_axes(Block& block) const;
   void chain_rule(const Block& block, int set, bool motions, Eigen::MatrixXd& W) const;
   void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
              Linearised& out) const;
-  void gather(int set, const SetPlan::Cluster& cluster, const Block& block,
+  void gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
               const Eigen::MatrixXd& W, Gatherer& gatherer) const;
-  /// Writes the derivatives of a link's whitened residual to its groups, whose columns begin at
+  /// Writes the derivatives of a link's residual over `sigma` to its groups, whose columns begin at
   /// `at_a` and `at_b`, and returns it.
-  double link_row(int set, const GroupLink& link, const State& state, Eigen::Index at_a,
-                  Eigen::Index at_b,
+  double link_row(int set, const GroupLink& link, double sigma, const State& state,
+                  Eigen::Index at_a, Eigen::Index at_b,
                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
-  void gather_links(int set, const SetPlan::Cluster& cluster, const State& state, bool bent,
-                    Gatherer& gatherer, Linearised& out) const;
+  void gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
+                    const Weighting& weighting, bool bent, Gatherer& gatherer,
+                    Linearised& out) const;
   Linearised sweep(const State& state, const Weighting& weighting, bool motions,
                    const Bend* bend) const;
+  void sweep_set(int set, const State& state, const Weighting& weighting, bool motions,
+                 const Bend* bend, StreamingQr& qr, Gatherer& gatherer, Linearised& out) const;
   void bend_right_side(int set, int first, int count, const Bend& bend, Eigen::MatrixXd& W) const;
-  void own_equations(const State& state, Linearised& out, Eigen::MatrixXd& rows) const;
+  void own_equations(const State& state, bool structural, Linearised& out,
+                     Eigen::MatrixXd& rows) const;
 
   const Robot& robot_;
   const DataSet& data_;

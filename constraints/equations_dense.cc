@@ -69,13 +69,13 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
     for (const SetPlan::Cluster& cluster : plans_[s].clusters)
       for (const GroupLink& link : cluster.links) {
         Eigen::RowVectorXd& row = collector.add(-1);
-        row[all] = -link_row(s, link, state, groups_at[s] + freedom * link.a,
+        row[all] = -link_row(s, link, link.noise, state, groups_at[s] + freedom * link.a,
                              groups_at[s] + freedom * link.b, row);
       }
   }
   Linearised unused;
   Eigen::MatrixXd between(0, columns() + 1);
-  own_equations(state, unused, between);
+  own_equations(state, false, unused, between);
   for (const auto& each : between.rowwise()) {
     Eigen::RowVectorXd& row = collector.add(-1);
     row.head(columns()) = each.head(columns());

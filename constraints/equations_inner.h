@@ -10,9 +10,10 @@ inline constexpr int kMotions = 6;  ///< columns of the world's motions
 /// Everything about up to kLanes rows of one set.
 struct Equations::Block {
   ConfigurationBlock now, before;
-  Locations X_now, X_before;
-  PsiBlock psi_now, psi_before;
+  Locations X_now, X_before, X_axes;
+  PsiBlock psi_now, psi_before, psi_axes;
   MethodOutput out;
+  MethodOutput::Block G_axes;  ///< as G, to the axes of vectors; without columns: there are none
   std::vector<int> rows;
   std::vector<Quantity> quantities;
 };

@@ -12,11 +12,18 @@
 
 namespace selfcal {
 
-/// Collects the rows of one cluster, eliminates the group's columns and passes the rest on.
+/// Collects the rows of one cluster after another, eliminates the groups' columns and passes the
+/// rest on.
 class Equations::Gatherer {
  public:
-  Gatherer(int local, int global, StreamingQr& qr)
-      : local_(local), rows_(std::max(4 * local, 192), local + global), qr_(qr) {}
+  Gatherer(int global, StreamingQr& qr) : global_(global), qr_(qr) {}
+
+  /// A new cluster with `local` freedoms.
+  void begin(int local) {
+    local_ = local;
+    filled_ = 0;
+    rows_.resize(std::max(4 * local, 192), local + global_);
+  }
 
   /// A row to be filled by the caller, zero to begin with.
   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> next() {
@@ -25,7 +32,7 @@ class Equations::Gatherer {
     return rows_.row(filled_++);
   }
 
-  /// The cluster's factor; the gatherer must not be used afterwards.
+  /// The cluster's factor.
   ClusterFactor finish() {
     while (filled_ < local_) next();
     eliminate();
@@ -42,12 +49,13 @@ class Equations::Gatherer {
     filled_ = local_;
   }
 
-  Eigen::Index local_, filled_ = 0;
+  Eigen::Index global_, local_ = 0, filled_ = 0;
   Eigen::MatrixXd rows_;
   StreamingQr& qr_;
 };
 
-void Equations::own_equations(const State& state, Linearised& out, Eigen::MatrixXd& rows) const {
+void Equations::own_equations(const State& state, bool structural, Linearised& out,
+                              Eigen::MatrixXd& rows) const {
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
     const int reference = data_.sets[s].reference;
     if (plans_[s].items.empty()) continue;
@@ -56,12 +64,13 @@ void Equations::own_equations(const State& state, Linearised& out, Eigen::Matrix
     for (const OwnEquation& each : equations) {
       rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
       auto row = rows.row(rows.rows() - 1);
+      const double sigma = structural ? 1 : each.sigma;
       row.setZero();
-      row.segment(own_at_[s], own_count_[s]) = each.D_own.transpose() / each.sigma;
+      row.segment(own_at_[s], own_count_[s]) = each.D_own.transpose() / sigma;
       row.segment(own_at_[reference], own_count_[reference]) =
-          each.D_reference.head(own_count_[reference]).transpose() / each.sigma;
-      row[row.size() - 1] = -each.residual / each.sigma;
-      out.cost += std::pow(each.residual / each.sigma, 2);
+          each.D_reference.head(own_count_[reference]).transpose() / sigma;
+      row[row.size() - 1] = -each.residual / sigma;
+      out.cost += std::pow(each.residual / sigma, 2);
       ++out.equations;
     }
   }
@@ -92,38 +101,38 @@ void Equations::weigh(int set, const Weighting& weighting, Block& block, Eigen::
   }
 }
 
-void Equations::gather(int set, const SetPlan::Cluster& cluster, const Block& block,
+void Equations::gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
                        const Eigen::MatrixXd& W, Gatherer& gatherer) const {
   const int freedom = data_.sets[set].method->group_freedom();
-  for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
-    const int at = freedom * cluster.place(data_.rows.group[block.rows[lane]]);
-    for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
-      auto row = gatherer.next();
-      row.segment(at, freedom) = block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
-      row.tail(W.cols()) = W.row(a * kLanes + lane);
-    }
+  const int at = freedom * cluster.place(data_.rows.group[block.rows[lane]]);
+  for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
+    auto row = gatherer.next();
+    row.segment(at, freedom) = block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
+    row.tail(W.cols()) = W.row(a * kLanes + lane);
   }
 }
 
-double Equations::link_row(int set, const GroupLink& link, const State& state, Eigen::Index at_a,
-                           Eigen::Index at_b,
+double Equations::link_row(int set, const GroupLink& link, double sigma, const State& state,
+                           Eigen::Index at_a, Eigen::Index at_b,
                            Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
   const Method& method = *data_.sets[set].method;
   Eigen::VectorXd D_a, D_b;
   const double r = method.link_residual(link, state.groups[set].col(link.a),
                                         state.groups[set].col(link.b), D_a, D_b);
-  row.segment(at_a, D_a.size()) = D_a.transpose() / link.noise;
-  row.segment(at_b, D_b.size()) = D_b.transpose() / link.noise;
-  return r / link.noise;
+  row.segment(at_a, D_a.size()) = D_a.transpose() / sigma;
+  row.segment(at_b, D_b.size()) = D_b.transpose() / sigma;
+  return r / sigma;
 }
 
 void Equations::gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
-                             bool bent, Gatherer& gatherer, Linearised& out) const {
+                             const Weighting& weighting, bool bent, Gatherer& gatherer,
+                             Linearised& out) const {
   const int freedom = data_.sets[set].method->group_freedom();
   for (const GroupLink& link : cluster.links) {
     auto row = gatherer.next();
-    const double r = link_row(set, link, state, freedom * cluster.place(link.a),
-                              freedom * cluster.place(link.b), row);
+    const double r =
+        link_row(set, link, weighting.structural ? 1 : link.noise, state,
+                 freedom * cluster.place(link.a), freedom * cluster.place(link.b), row);
     row[row.size() - 1] = bent ? 0 : -r;
     out.cost += r * r;
     ++out.equations;
@@ -158,35 +167,49 @@ Linearised Equations::sweep(const State& state, const Weighting& weighting, bool
                             const Bend* bend) const {
   const int global = columns() + (motions ? kMotions : 0) + 1;
   StreamingQr qr(global);
+  Gatherer gatherer(global, qr);
   Linearised result;
-  Block block;
-  Eigen::MatrixXd W;
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s)
-    for (const SetPlan::Cluster& cluster : plans_[s].clusters) {
-      const int local =
-          static_cast<int>(cluster.groups.size()) * data_.sets[s].method->group_freedom();
-      Gatherer gatherer(local, global, qr);
-      for (int first = cluster.first; first < cluster.last; first += kLanes) {
-        const int count = std::min(kLanes, cluster.last - first);
-        evaluate(s, first, count, state, block, true);
-        chain_rule(block, s, motions, W);
-        if (bend) bend_right_side(s, first, count, *bend, W);
-        weigh(s, weighting, block, W, result);
-        if (local > 0)
-          gather(s, cluster, block, W, gatherer);
-        else
-          for (size_t a = 0; a < block.quantities.size(); ++a)
-            qr.push(W.middleRows(static_cast<Eigen::Index>(a) * kLanes, count));
-      }
-      gather_links(s, cluster, state, bend != nullptr, gatherer, result);
-      if (local > 0) result.clusters.push_back(gatherer.finish());
-    }
+    sweep_set(s, state, weighting, motions, bend, qr, gatherer, result);
   Eigen::MatrixXd rows(0, global);
-  own_equations(state, result, rows);
+  own_equations(state, weighting.structural, result, rows);
   if (bend) rows.rightCols(1).setZero();  // hardly bent: a plane's step, a length
   qr.push(rows);
   result.R = qr.R();
   return result;
+}
+
+/// Blocks are full however small the clusters are: one goes on where the last one ended.
+void Equations::sweep_set(int set, const State& state, const Weighting& weighting, bool motions,
+                          const Bend* bend, StreamingQr& qr, Gatherer& gatherer,
+                          Linearised& out) const {
+  const SetPlan& plan = plans_[set];
+  const int items = static_cast<int>(plan.items.size());
+  const int freedom = data_.sets[set].method->group_freedom();
+  Block block;
+  Eigen::MatrixXd W;
+  auto cluster = plan.clusters.begin();
+  for (int first = 0; first < items; first += kLanes) {
+    const int count = std::min(kLanes, items - first);
+    evaluate(set, first, count, state, block, true);
+    chain_rule(block, set, motions, W);
+    if (bend) bend_right_side(set, first, count, *bend, W);
+    weigh(set, weighting, block, W, out);
+    if (cluster->groups.empty()) {
+      for (size_t a = 0; a < block.quantities.size(); ++a)
+        qr.push(W.middleRows(static_cast<Eigen::Index>(a) * kLanes, count));
+      continue;
+    }
+    for (int lane = 0; lane < count; ++lane) {
+      if (first + lane == cluster->first)
+        gatherer.begin(static_cast<int>(cluster->groups.size()) * freedom);
+      gather(set, *cluster, lane, block, W, gatherer);
+      if (first + lane + 1 < cluster->last) continue;
+      gather_links(set, *cluster, state, weighting, bend != nullptr, gatherer, out);
+      out.clusters.push_back(gatherer.finish());
+      ++cluster;
+    }
+  }
 }
 
 }  // namespace selfcal

@@ -64,8 +64,11 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
       bounded(K + i, i) = 1 / robot.parameters()[others[i]].tolerance;
   Eigen::VectorXd extended = Eigen::VectorXd::Zero(K + n);
   extended.head(K) = scale;
-  const double seen = beyond(bounded, extended).norm();
-  if (seen * p.tolerance > std::abs(p.nominal)) return std::nullopt;
+  // Of a robot made smaller with all that it touches, the rows' misfit shrinks, too: that much of
+  // the column is misfit and says nothing of the scale, however many rows there are.
+  const double misfit = R.rightCols(1).squaredNorm();
+  const double seen = beyond(bounded, extended).squaredNorm() - misfit;
+  if (seen * std::pow(p.tolerance, 2) > std::pow(p.nominal, 2)) return std::nullopt;
   return last;
 }
 

@@ -76,6 +76,7 @@ struct OwnReport {
   std::string name;
   double value = 0;
   Eigen::VectorXd D_own, D_reference;
+  bool derived = false;  ///< follows from the others reported
 };
 
 /// One constraint method with the options of one set. Immutable. "Values" describe an unknown fully
@@ -100,6 +101,9 @@ class Method {
   virtual bool frame_unknown() const { return false; }
   /// True when the target point is an unknown of the set, in place of the tool frames.
   virtual bool point_unknown() const { return false; }
+  /// True when every three equations are a vector in the world's axes of which only the length
+  /// matters. The equations take it in axes that turn with the world (see README.md).
+  virtual bool vectors() const { return false; }
   /// True when a row holds only at certain configurations (a touch); false for an instrument's
   /// reading, which any configuration has.
   virtual bool constrains() const { return true; }

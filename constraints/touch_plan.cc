@@ -75,10 +75,10 @@ class Candidates {
     const Location X = locate(robot_, xi_, touch.touch);
     if (X.R.col(2).dot(-target.outward) < std::cos(options_.tilt)) return false;
     touch.start = touch.end = touch.touch;
-    if (!move_out(target, data, truth, row, X, options_.clearance, touch.start)) return false;
+    if (!move_out(target, data, truth, row, options_.clearance, touch.start)) return false;
     if (!target.places.empty())
       touch.end = touch.touch;
-    else if (!move_out(target, data, truth, row, X, -options_.search, touch.end))
+    else if (!move_out(target, data, truth, row, -options_.search, touch.end))
       return false;
     return within_limits(robot_, touch.start, options_.limit_margin) &&
            within_limits(robot_, touch.end, options_.limit_margin) &&
@@ -89,14 +89,14 @@ class Candidates {
 
   /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
   bool move_out(const TouchTarget& target, const DataSet& data, const State& truth, int row,
-                const Location& X, double distance, Eigen::VectorXd& q) const {
+                double distance, Eigen::VectorXd& q) const {
     const Method& method = *data.sets[0].method;
     Eigen::VectorXd wanted =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
     if (const auto plane = method.plane(truth.own[0], nullptr))
       wanted[0] = distance * plane->n.dot(target.outward);
     else
-      wanted.head<3>() = distance * (X.R.transpose() * target.outward);
+      wanted.head<3>() = distance * target.outward;
     return move_to_residual(robot_, data, truth, row, wanted, q);
   }
 

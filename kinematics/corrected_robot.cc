@@ -149,6 +149,7 @@ class CorrectedRobot final : public Robot {
       all.by.tip.middleCols(column, own) = part.tip;
       column += own;
     }
+    if (body == Body::first_link) all.by.tip.setZero();  // what bends the tip leaves it alone
     return all;
   }
 

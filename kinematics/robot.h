@@ -65,9 +65,9 @@ struct Locations {
 /// body's origin, then the rotation vector, both in the world frame) of configuration `lane`.
 using PsiBlock = Eigen::MatrixXd;
 
-/// The body whose location is asked for: the tool's frame, or the last moving link (whose location
-/// the tool parameters do not change).
-enum class Body { endpoint, last_link };
+/// The body whose location is asked for: the tool's frame, or the first or last moving link (whose
+/// location the parameters of frames behind it do not change).
+enum class Body { endpoint, last_link, first_link };
 
 struct Joint {
   std::string name;  ///< the frame that it moves

@@ -46,7 +46,8 @@ std::vector<OwnReport> describe(NormalForm plane, Eigen::MatrixXd D_n, Eigen::Ro
     list.push_back({kCoefficients[i],
                     -plane.n[i] / plane.d,
                     (-D_n.row(i) / plane.d + plane.n[i] / (plane.d * plane.d) * D_d).transpose(),
-                    {}});
+                    {},
+                    true});
   return list;
 }
 

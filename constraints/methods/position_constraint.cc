@@ -1,14 +1,12 @@
 // Rows of one group share the endpoint's position, an unknown c (11.48 to 11.50, first three
 // equations, here against the shared point rather than row against row, so that groups may have any
 // size):
-//   r = R^T (P(q) - c),   dr = R^T (dP + [P - c]x delta - dc)
-// in the tool's axes: noise has no direction, and a turn of the world then leaves r exactly alone.
+//   r = P(q) - c,   dr = dP - dc
 // Two groups' points may be a known distance apart: |c_a - c_b| - D with its own noise.
 #include <algorithm>
 
 #include "constraints/methods/maker.h"
 #include "constraints/statistics.h"
-#include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
@@ -20,6 +18,7 @@ class PositionConstraint final : public Method {
   std::string_view name() const override { return "position-constraint"; }
   std::vector<Quantity> equations() const override { return {3, Quantity::length}; }
   std::vector<std::string> columns() const override { return {"group"}; }
+  bool vectors() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return 3; }
   std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
@@ -50,14 +49,10 @@ class PositionConstraint final : public Method {
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d c = in.groups->col(in.data->group[in.rows[lane]]);
-      const Eigen::Vector3d miss = in.now->p(lane) - c;
-      const Eigen::Matrix3d to_tool = in.now->R(lane).transpose();
-      const Eigen::Matrix3d by_turn = to_tool * skew(miss);
-      out.r.row(lane) = (to_tool * miss).transpose();
+      out.r.row(lane) = (in.now->p(lane) - c).transpose();
       for (int a = 0; a < 3; ++a) {
-        set_linear(out.G_now, lane, a, to_tool.row(a));
-        set_angular(out.G_now, lane, a, by_turn.row(a));
-        out.D_group.row(lane).segment<3>(3 * a) = -to_tool.row(a);
+        set_linear(out.G_now, lane, a, Eigen::Vector3d::Unit(a));
+        out.D_group.row(lane).segment<3>(3 * a) = -Eigen::RowVector3d::Unit(a);
       }
     }
   }

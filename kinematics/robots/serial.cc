@@ -76,7 +76,7 @@ class SerialRobot final : public Robot {
 
   void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
               PsiBlock* psi) const override {
-    const int last = body == Body::endpoint ? frame_count() - 1 : moving_.back();
+    const int last = last_frame(body);
     std::vector<Axes> axes(psi ? frame_count() : 0);
     Pose pose = world();
     for (int f = 0, joint = 0; f <= last; ++f) {
@@ -130,6 +130,10 @@ class SerialRobot final : public Robot {
  private:
   int frame_count() const { return static_cast<int>(model_.frames.size()); }
   int joint_count() const { return static_cast<int>(moving_.size()); }
+  int last_frame(Body body) const {
+    if (body == Body::endpoint) return frame_count() - 1;
+    return body == Body::last_link ? moving_.back() : moving_.front();
+  }
   int gear_index(int joint) const { return serial::kFields * frame_count() + joint; }
   Lanes joint_variable(const ConfigurationBlock& block, const Eigen::VectorXd& xi, int k) const {
     Lanes sum = Lanes::Zero(kLanes);

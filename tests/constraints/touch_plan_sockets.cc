@@ -25,13 +25,12 @@ TEST(TouchPlan, VisitsEverySocketAndComesInFromItsWayOut) {
     const Eigen::Vector3d place = places[each.group].p;
     EXPECT_LT((located(each.touch).p - place).norm(), kMet);
     EXPECT_EQ(each.end, each.touch);
-    // As far as the clearance; the way is that of the tool's axes, which turn by the clearance over
-    // the shortest lever from a joint to the endpoint, about 0.3 m.
     const Eigen::Vector3d way = located(each.start).p - place;
     EXPECT_NEAR(way.norm(), cell.options.clearance, kMet);
-    EXPECT_LT(std::acos(way.normalized().z()), cell.options.clearance / 0.3);
+    EXPECT_NEAR(way.z(), cell.options.clearance, kMet);
   }
-  for (int group = 0; group < 3; ++group) EXPECT_EQ(count[group], 4);
+  EXPECT_EQ(plan.touches.size(), 12u);
+  for (int group = 0; group < 3; ++group) EXPECT_GE(count[group], 3);  // those that tell most
 }
 
 TEST(TouchPlan, SitsInANestAsItIsTurned) {

@@ -87,6 +87,7 @@ class KdlRobot final : public Robot {
       chain.addSegment(KDL::Segment(motion, after));
       joint += moves;
       if (body == Body::last_link && moves && joint == joints().size()) break;
+      if (body == Body::first_link && moves) break;
     }
     return chain;
   }

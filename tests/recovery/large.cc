@@ -63,5 +63,38 @@ TEST(ManyRows, TakeLinearTimeAndNoMoreMemoryThanTheirResiduals) {
   EXPECT_LT(memory, 150);
 }
 
+bool is_base_or_turn_of_tool(const Parameter& p) {
+  return p.part == Part::base || (p.frame == "tool" && p.field == "theta");
+}
+
+/// Of touches of one point a group, four rows each.
+Solution from_sockets(const Robot& robot, const Eigen::VectorXd& truth, int rows, Random& random) {
+  const SetPart sockets{"tip", entry({{"method", "position-constraint"}, {"noise", "2e-5"}}), rows,
+                        4};
+  const Session session = make_session(robot, truth, {sockets}, 20e-6, random);
+  EXPECT_EQ(session.unreached, "");
+  return identify(robot, session.data);
+}
+
+TEST(ManyGroups, TakeNoMoreIterationsThanFewAndTellNothingOfTheToolsTurn) {
+  Random random(2);
+  const auto robot = random_robot(random);
+  const Eigen::VectorXd truth = draw_truth(*robot, random);
+  const double before = most_memory_mb();
+  for (const int rows : {300, 3000}) {
+    const Solution solution = from_sockets(*robot, truth, rows, random);
+    EXPECT_TRUE(solution.converged) << rows;
+    EXPECT_LE(solution.iterations, 15)
+        << rows;  // 5 to 10; 95 and more were the noise seen as turns
+    ASSERT_EQ(solution.gauge.size(), 1u) << rows;  // the scale
+    for (const ParameterResult& each : solution.parameters)
+      if (is_base_or_turn_of_tool(each.parameter)) {
+        EXPECT_NE(each.status, Status::identified) << each.parameter.name;
+      }
+  }
+  // Factors of a group are some 2 kB, residuals 200 bytes a row, in a few models.
+  EXPECT_LT(most_memory_mb() - before, 60);
+}
+
 }  // namespace
 }  // namespace selfcal::recovery
