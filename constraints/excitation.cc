@@ -81,12 +81,11 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   const Equations equations(robot, data, Use::fit);
   State state = sampled.truth;
   state.xi = xi;
-  const Weighting weighting{std::vector<Scale>(sets.size()),
-                            std::vector<char>(data.rows.rows(), 0)};
+  Weighting weighting{std::vector<Scale>(sets.size()), std::vector<char>(data.rows.rows(), 0)};
   const Linearised at = equations.linearise(state, weighting);
   RankRule rule;
   rule.rows = at.equations;
-  return {identifiability(equations, at.R, candidate, rule), equations.all_own_freedoms(),
+  return {identifiability(equations, at.R, state, candidate, rule), equations.all_own_freedoms(),
           sampled.unreached};
 }
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace selfcal {
 namespace {
+
+constexpr double kStraight = 1e-9;  ///< cosine that only rounding leaves
 
 /// An orthonormal basis that grows column by column, with R of the columns taken.
 class Basis {
@@ -66,6 +69,29 @@ class Threshold {
 /// Coefficients smaller than this say nothing (structural: rounding; real data: noise).
 double least_coefficient(const RankRule& rule) { return rule.rows == 0 ? 1e-2 : 1e-7; }
 
+/// The carrier that makes up most of the column; coefficients alone have different units.
+std::pair<int, double> largest_share(const Eigen::MatrixXd& R, const std::vector<int>& order,
+                                     const std::vector<int>& taken, const Eigen::VectorXd& c) {
+  Eigen::VectorXd share(c.size());
+  for (Eigen::Index k = 0; k < c.size(); ++k)
+    share[k] = std::abs(c[k]) * R.col(order[taken[k]]).norm();
+  Eigen::Index most = 0;
+  share.maxCoeff(&most);
+  return {taken[most], c[most]};
+}
+
+/// Own values of `set` that a step of its own freedoms moves, each with how far.
+void add_own_values(const Equations& equations, const State& state, int set,
+                    const Eigen::VectorXd& step, std::vector<Carrier>& carriers) {
+  const Set& each = equations.data().sets[set];
+  const Eigen::VectorXd* reference = each.reference < 0 ? nullptr : &state.own[each.reference];
+  for (const OwnReport& report : each.method->report(state.own[set], reference)) {
+    const double moved = report.D_own.dot(step);
+    const bool moves = std::abs(moved) > kStraight * report.D_own.norm() * step.norm();
+    if (!report.derived && moves) carriers.push_back({each.name + "." + report.name, moved});
+  }
+}
+
 }  // namespace
 
 std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
@@ -90,6 +116,7 @@ std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector
       const Eigen::VectorXd c = basis.combination(p);
       for (Eigen::Index k = 0; k < c.size(); ++k)
         if (std::abs(c[k]) > least_coefficient(rule)) rank.carriers.emplace_back(taken[k], c[k]);
+      if (rank.carriers.empty()) rank.carriers.push_back(largest_share(R, order, taken, c));
     }
   }
   return ranks;
@@ -100,15 +127,12 @@ int Identifiability::total() const {
 }
 
 Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
-                                const std::vector<char>& candidate, const RankRule& rule) {
+                                const State& state, const std::vector<char>& candidate,
+                                const RankRule& rule) {
   const Robot& robot = equations.robot();
-  std::vector<int> order, set_of;
-  for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s)
-    for (int k = 0; k < equations.own_freedom(s); ++k) {
-      order.push_back(equations.own_at(s) + k);
-      set_of.push_back(s);
-    }
-  const int leading = static_cast<int>(order.size());
+  const int leading = equations.own_columns();
+  std::vector<int> order(leading);
+  std::iota(order.begin(), order.end(), equations.robot_columns());
   for (const int p : robot.preference())
     if (candidate[p]) order.push_back(p);
   RankRule of_robot = rule;
@@ -126,17 +150,18 @@ Identifiability identifiability(const Equations& equations, const Eigen::MatrixX
   for (size_t i = 0; i < ranks.size(); ++i) {
     const int p = order[leading + i];
     result.status[p] = ranks[i].status;
-    std::vector<double> by_set(equations.data().sets.size(), 0);
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(equations.own_columns());
     for (const auto& [at, coefficient] : ranks[i].carriers) {
       if (at >= leading)
         result.grouped_with[p].push_back({robot.parameters()[order[at]].name, coefficient});
       else
-        by_set[set_of[at]] = std::hypot(by_set[set_of[at]], coefficient);
+        own[at] = coefficient;  // own freedoms lead in the order of their columns
     }
-    // A set's own freedoms have no names of their own: the set carries with the length of its part.
-    for (size_t s = 0; s < by_set.size(); ++s)
-      if (by_set[s] > 0)
-        result.grouped_with[p].push_back({equations.data().sets[s].name, by_set[s]});
+    for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s) {
+      const Eigen::Index first = equations.own_at(s) - equations.robot_columns();
+      const Eigen::VectorXd step = own.segment(first, equations.own_freedom(s));
+      if (!step.isZero(0)) add_own_values(equations, state, s, step, result.grouped_with[p]);
+    }
   }
   return result;
 }

@@ -28,7 +28,7 @@ struct RankRule {
 struct ColumnRank {
   Status status = Status::identified;
   /// Grouped: position in `order` of each carrier and its coefficient (column = sum coefficient
-  /// carrier).
+  /// carrier), of at least one.
   std::vector<std::pair<int, double>> carriers;
 };
 
@@ -37,8 +37,9 @@ struct ColumnRank {
 std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector<int>& order,
                                      int leading, const RankRule& rule);
 
-/// Status and carriers of every parameter of the robot from R of `equations`; `rule.least` is
-/// filled in from the robot. Parameters that `candidate` leaves out are fixed (or held) and have no
+/// Status and carriers of every parameter of the robot from R of `equations` at `state`;
+/// `rule.least` is filled in from the robot. Own unknowns carry by their values' names (S.nx), each
+/// with how far it moves. Parameters that `candidate` leaves out are fixed (or held) and have no
 /// say.
 struct Identifiability {
   std::vector<Status> status;
@@ -46,6 +47,7 @@ struct Identifiability {
   int total() const;
 };
 Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
-                                const std::vector<char>& candidate, const RankRule& rule);
+                                const State& state, const std::vector<char>& candidate,
+                                const RankRule& rule);
 
 }  // namespace selfcal

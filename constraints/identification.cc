@@ -44,6 +44,10 @@ void add_warnings(const DataSet& data, const Adjusted& adjusted, Solution& solut
                                   each.parameter.field + ") moved by " +
                                   format_number(std::round(moved * 10) / 10) + " tolerances");
   }
+  if (!adjusted.before.converged)
+    solution.warnings.push_back(
+        "the figures before are of a nominal robot not placed to the end: " +
+        adjusted.before.stop_reason);
   add_set_warnings(data, adjusted.fitted, solution);
 }
 
@@ -84,7 +88,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   const Weighting weighting{fitted.noise.used, fitted.noise.put_aside};
   const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
   const Eigen::MatrixXd C = covariance(equations, adjusted, R);
-  const Identifiability rank = identifiability(equations, R, adjusted.prior.free, {});
+  const Identifiability rank = identifiability(equations, R, fitted.state, adjusted.prior.free, {});
   solution.parameters =
       parameter_results(robot, fitted.state.xi, C, rank, adjusted.candidate, adjusted.prior.free);
   std::tie(solution.covariance_order, solution.covariance) =

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "constraints/excitation.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/contracts/equations_case.h"
 
@@ -140,6 +141,21 @@ TEST(Equations, HaveTheSameFactorWithAndWithoutMotions) {
   const int global = equations.columns();
   const Eigen::MatrixXd N = gram(with.leftCols(global)), M = gram(without.leftCols(global));
   EXPECT_LT((N - M).norm(), 1e-13 * M.norm());  // rounding
+}
+
+TEST(Equations, NameTheOwnValuesThatCarryAParameterEachWithItsSign) {
+  const auto robot = six_axis_arm();
+  const std::vector<Set> sets = make_sets("wall: {method: plane}\n");
+  const std::vector<char> all(robot->parameters().size(), 1);
+  const Identifiability rank = structural(*robot, sets, all, 80, 1).rank;
+  const int shift = find_parameter(*robot, "d0");  // of the whole robot along the world's x
+  ASSERT_EQ(rank.status[shift], Status::grouped);
+  ASSERT_EQ(rank.grouped_with[shift].size(), 1u);  // n and so its x stay: d moves by n_x
+  EXPECT_EQ(rank.grouped_with[shift][0].name, "wall.d");
+  for (size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(rank.status[i] == Status::grouped, !rank.grouped_with[i].empty());
+    for (const Carrier& each : rank.grouped_with[i]) EXPECT_NE(each.name, "wall");
+  }
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ constexpr Disturbance kRealistic{.tracker = 35e-6,
 struct Planning {
   Kamali kamali;
   DataSet data = kamali.measure({}, kSeed);
+  State state{nominal_values(kamali.robot()), {}, {}};
   Eigen::MatrixXd R;
   DenseEquations dense;
 
   explicit Planning(unsigned long long seed = 1600) : kamali(seed) {
     data.rows.check.assign(data.rows.check.size(), 0);
     const Equations equations(kamali.robot(), data, Use::fit);
-    State state{nominal_values(kamali.robot()), {}, {}};
     equations.start(state);
     const Weighting weighting{{{1, 1}}, std::vector<char>(data.rows.check.size(), 0)};
     R = equations.linearise(state, weighting).R;
@@ -55,7 +55,7 @@ struct Planning {
   Identifiability rank(const std::vector<char>& candidates) const {
     RankRule rule;
     rule.rows = 3.0 * data.rows.rows();
-    return identifiability(Equations(kamali.robot(), data, Use::fit), R, candidates, rule);
+    return identifiability(Equations(kamali.robot(), data, Use::fit), R, state, candidates, rule);
   }
 
   /// The identifiable columns of every row.
