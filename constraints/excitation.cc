@@ -82,6 +82,7 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   State state = sampled.truth;
   state.xi = xi;
   Weighting weighting{std::vector<Scale>(sets.size()), std::vector<char>(data.rows.rows(), 0)};
+  weighting.structural = true;  // among rows of sigma 1, others would bring rounding above tau
   const Linearised at = equations.linearise(state, weighting);
   RankRule rule;
   rule.rows = at.equations;

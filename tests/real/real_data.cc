@@ -89,6 +89,14 @@ TEST(RealAnswers, TwentyThreeNoisyRowsDoNotImproveTheRobot) {
   EXPECT_EQ(solution.verdict.answer, Answer::not_improved) << solution.verdict.why;
 }
 
+TEST(RealAnswers, NoMovementIsAskedForOfMotionsOfTheWorldWhereDistancesAreKnown) {
+  SELFCAL_NEED_SHARED();
+  const LoadedDataSet loaded = load("mukca-panda-1");
+  for (const Note& note : identify(*loaded.robot, loaded.data).unexcited)
+    for (const char* const motion : {"alpha1", "alpha2", "theta2"})
+      EXPECT_NE(note.parameter, motion) << note.text;
+}
+
 TEST(RealAnswers, AFreedGearRatioThatSwallowsComplianceIsWarnedOfByName) {
   SELFCAL_NEED_SHARED();
   const LoadedDataSet loaded = load("motoman-tracker");
