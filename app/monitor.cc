@@ -1,6 +1,7 @@
 // selfcal monitor: what a service publishes, live: a picture on a terminal, lines elsewhere, JSON
 // for programs.
 #include <unistd.h>
+#include <cerrno>
 
 #include <algorithm>
 #include <cstdio>
@@ -58,7 +59,9 @@ class Output {
     for (const auto& [when, text] : lines_)
       std::printf("%s%s\n", json_ ? "" : (clock_time(when) + " ").c_str(), text.c_str());
     lines_.clear();
-    return std::fflush(stdout) == 0;
+    if (std::fflush(stdout) == 0) return true;
+    if (errno == EPIPE) std::clearerr(stdout);  // a reader who has seen enough is no failure
+    return false;
   }
 
  private:
