@@ -1,9 +1,9 @@
 // selfcal monitor: what a service publishes, live: a picture on a terminal, lines elsewhere, JSON
 // for programs.
 #include <unistd.h>
-#include <cerrno>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <memory>
 
