@@ -62,7 +62,7 @@ nlohmann::json CellTest::heard(const std::function<bool(const nlohmann::json&)>&
          getline(&line, &size, pipe) > 0)
     if (auto message = nlohmann::json::parse(line); is_it(message)) found = std::move(message);
   free(line);
-  pclose(pipe);  // the monitor ends when nobody reads
+  EXPECT_EQ(pclose(pipe), 0) << "the monitor ends well when nobody reads any more";
   return found;
 }
 
