@@ -36,7 +36,7 @@ inline std::string placement(const std::string& group) { return group.substr(0, 
 
 /// Every placement left out in turn and judged with its own sockets fitted: the pooled residual
 /// (m).
-inline double left_out(const std::string& name) {
+inline double left_out(const std::string& name, const Options& options = {}) {
   std::map<std::string, int> placements;
   {
     const LoadedDataSet loaded = load(name);
@@ -49,7 +49,7 @@ inline double left_out(const std::string& name) {
     Observations& o = loaded.data.rows;
     for (int i = 0; i < o.rows(); ++i)
       o.check[i] = placement(loaded.data.sets[0].groups[o.group[i]]) == left;
-    const Figures check = identify(*loaded.robot, loaded.data).residual.check;
+    const Figures check = identify(*loaded.robot, loaded.data, options).residual.check;
     square += check.rms_after * check.rms_after * check.rows;
     rows += check.rows;
   }
