@@ -1,21 +1,26 @@
 // Compliance of the link that a joint's frame carries: a beam from the frame's origin O to the next
-// one's E that everything beyond E bends and twists. With M the moment of the load about E, in the
-// frame's axes,
-//   rotation of the end  omega = (bend_x M_x, bend_y M_y, twist M_z)
-//   shift of the end     s = omega x (E - O) / 2
-// as of a cantilever under an end moment (Kamali et al. leave links rigid). rad/(N m).
+// one's E that everything beyond E bends and twists. At a share t of its length, with M(t) the
+// moment of that load about O + t (E - O), in the frame's axes, it turns by
+//   d omega = (bend_x M_x, bend_y M_y, twist M_z) dt
+// as a cantilever under a force and a moment at its end does (Kamali et al. leave links rigid). M
+// is linear in t and what it moves the tip quadratic: two points of Gauss give the whole. rad/(N
+// m).
+#include <numbers>
+
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
 namespace {
 
+constexpr double kGauss = 0.5 * std::numbers::inv_sqrt3;  ///< from the middle
+
 class LinkCompliance final : public Effect {
  public:
   LinkCompliance(const Mechanics& mechanics, int joint) : link_(mechanics.link_of(joint)) {
-    parameters_ = {{"bend_x", "rad/(N m)", 1e-8, 2e-5},
-                   {"bend_y", "rad/(N m)", 1e-8, 2e-5},
-                   {"twist", "rad/(N m)", 1e-8, 2e-5}};
+    parameters_ = {{"bend_x", "rad/(N m)", 1e-8, 2e-5, true},
+                   {"bend_y", "rad/(N m)", 1e-8, 2e-5, true},
+                   {"twist", "rad/(N m)", 1e-8, 2e-5, true}};
   }
 
   std::string needs() const override { return "a load whose moment on the link changes"; }
@@ -24,12 +29,16 @@ class LinkCompliance final : public Effect {
     const int next = std::min(link_ + 1, static_cast<int>(at.poses.size()) - 1);
     const Eigen::Vector3d O = at.poses[link_].translation(), E = at.poses[next].translation();
     const Eigen::Vector3d tip = at.poses.back().translation();
-    const Eigen::Vector3d moment = load_about(*at.mechanics, at.poses, at.wrench, next, E).moment;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d a = at.poses[link_].linear().col(axis);
-      const Eigen::Vector3d omega = a * a.dot(moment);
-      into.tip.col(axis).head<3>() = omega.cross(E - O) / 2 + omega.cross(tip - E);
-      into.tip.col(axis).tail<3>() = omega;
+    const Load load = load_about(*at.mechanics, at.poses, at.wrench, next, E);
+    for (const double t : {0.5 - kGauss, 0.5 + kGauss}) {
+      const Eigen::Vector3d here = O + t * (E - O);
+      const Eigen::Vector3d moment = load.moment + (E - here).cross(load.force);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d a = at.poses[link_].linear().col(axis);
+        const Eigen::Vector3d omega = a * a.dot(moment) / 2;
+        into.tip.col(axis).head<3>() += omega.cross(tip - here);
+        into.tip.col(axis).tail<3>() += omega;
+      }
     }
   }
 

@@ -90,15 +90,16 @@ const char* const kBeam =
     "  - {name: j2, joint: revolute, d: 1, mass: 10, com: [0.5, 0, 0.2]}\n"
     "  - {name: tool, joint: fixed, d: 0.5}\n";
 
-TEST(LinkComplianceByHand, BendsTheLinkAsACantileverUnderTheMomentAtItsEnd) {
-  // Moment about the link's end: (0.5, 0.2, 0) x (0, 0, -98.1) = (-19.62, 49.05, 0) N m. About the
-  // frame's z (the world's y) 1e-6 rad/(N m) turns the end by 49.05 urad. A cantilever under an end
-  // moment M has the slope M L / EI and the deflection M L^2 / 2 EI, half the slope times L: 24.525
-  // um down at the end, and 49.05 urad x 0.5 m = 24.525 um more at the tip.
+TEST(LinkComplianceByHand, BendsTheLinkAsACantileverUnderForceAndMomentAtItsEnd) {
+  // At the link's end: 98.1 N down, and (0.5, 0.2, 0) x (0, 0, -98.1) = (-19.62, 49.05, 0) N m. A
+  // cantilever has the slope M L / EI + F L^2 / 2 EI and the deflection M L^2 / 2 EI + F L^3 / 3
+  // EI. About the frame's z (the world's y), L / EI = 1e-6 rad/(N m): it turns by 49.05 + 49.05
+  // = 98.1 urad and goes 24.525 + 32.7 = 57.225 um down, and 98.1 urad x 0.5 m = 49.05 um more at
+  // the tip.
   const Moved bent =
       moved(kBeam, "[{effect: link_compliance, at: j1, twist: 1.0e-6}]", {numbers({0, 0})});
-  expect_near(bent.p, 0, 0, -49.05e-6);
-  expect_near(bent.turn, 0, 49.05e-6, 0);
+  expect_near(bent.p, 0, 0, -106.275e-6);
+  expect_near(bent.turn, 0, 98.1e-6, 0);
   // About x, along the link: it turns by -19.62 urad and neither its end nor the tip moves.
   const Moved turned =
       moved(kBeam, "[{effect: link_compliance, at: j1, bend_x: 1.0e-6}]", {numbers({0, 0})});
@@ -106,12 +107,13 @@ TEST(LinkComplianceByHand, BendsTheLinkAsACantileverUnderTheMomentAtItsEnd) {
   expect_near(turned.turn, -19.62e-6, 0, 0);
   // About the frame's y (down at q = 0) gravity has no moment, but 120 N along the tool's z (the
   // world's y) have: (0.5, 0, 0) x (0, 120, 0) = 60 N m about the world's z, -60 about y of the
-  // frame; the turn is +60 urad about the world's z, the tip moves by 60 x (0.5 + 0.5) um along y.
+  // frame. The end turns by 60 + 60 = 120 urad about the world's z and goes 30 + 40 = 70 um along
+  // y; the tip goes by 120 urad x 0.5 m = 60 um more.
   Held held{numbers({0, 0})};
   held.wrench = numbers({0, 0, 120, 0, 0, 0});
   const Moved pushed = moved(kBeam, "[{effect: link_compliance, at: j1, bend_y: 1.0e-6}]", held);
-  expect_near(pushed.p, 0, 60e-6, 0);
-  expect_near(pushed.turn, 0, 0, 60e-6);
+  expect_near(pushed.p, 0, 130e-6, 0);
+  expect_near(pushed.turn, 0, 0, 120e-6);
 }
 
 }  // namespace
