@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "kinematics/corrected_robot.h"
@@ -10,7 +11,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kMoments = 24;    ///< at which a step may have happened
-constexpr int kMostWaves = 40;  ///< a turn
+constexpr int kMostWaves = 64;  ///< a turn
 constexpr int kProfile = 30;    ///< waves a turn, of a profile over the whole turn
 constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
 
@@ -22,15 +23,16 @@ Node entry(std::string_view effect, const std::string& at) {
 }
 
 template <class Value>
-Node with(Node node, const char* key, Value value) {
+Node with(Node node, const char* key, const Value& value) {
   node.set(key, Node::of(value));
   return node;
 }
 
-Node with_waves(Node node, const std::vector<double>& waves) {
-  node.set("waves", Node::of(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                        waves.data(), static_cast<Eigen::Index>(waves.size())))));
-  return node;
+/// 1 to `count`.
+std::vector<double> up_to(int count) {
+  std::vector<double> numbers(static_cast<size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), 1.0);
+  return numbers;
 }
 
 bool spreads(const Eigen::VectorXd& column, double least) {
@@ -112,7 +114,7 @@ class Maker {
   void of_waves(const std::string& at) {
     const size_t first = all_.list.size();
     for (int k = 1; k <= kMostWaves; ++k)
-      add({with_waves(entry("transmission_error", at), {1.0 * k})});
+      add({with(entry("transmission_error", at), "waves", std::vector<double>{1.0 * k})});
     all_.list.push_back(together(first, 2));
     all_.profiles.push_back(together(first, kProfile));
   }
@@ -121,13 +123,11 @@ class Maker {
   Candidate together(size_t first, int count) const {
     const Candidate& one = all_.list[first];
     Candidate sum{.effect = one.effect, .at = one.at, .joint = one.joint, .needs = one.needs};
-    std::vector<double> waves;
     for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
-      waves.push_back(static_cast<double>(i + 1));
       const std::vector<int>& own = all_.list[first + i].main;
       sum.main.insert(sum.main.end(), own.begin(), own.end());
     }
-    sum.entries = {with_waves(entry(sum.effect, sum.at), waves)};
+    sum.entries = {with(entry(sum.effect, sum.at), "waves", up_to(count))};
     return sum;
   }
 
@@ -137,6 +137,8 @@ class Maker {
       add({entry("base_drift", "base")});
       for (const double share : {0.15, 0.5})
         add({with(entry("base_drift", "base"), "settle", share * span)});
+      for (const int most : {2, 4})
+        add({with(entry("base_drift", "base"), "half_waves", up_to(most))});
     } else {
       cannot("base_drift", "base", "the rows carry no time");
     }

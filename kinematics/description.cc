@@ -59,6 +59,11 @@ Node Node::of(const Eigen::VectorXd& numbers) {
   return node;
 }
 
+Node Node::of(const std::vector<double>& numbers) {
+  return of(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+      numbers.data(), static_cast<Eigen::Index>(numbers.size()))));
+}
+
 Node Node::list() {
   Node node;
   node.kind = Kind::list;
@@ -209,6 +214,27 @@ std::optional<Eigen::VectorXd> Fields::numbers(std::string_view key, int size) {
     }
     numbers[i] = *number;
   }
+  return numbers;
+}
+
+std::vector<double> Fields::positives(std::string_view key, const std::string& what) {
+  const Node* value = node(key);
+  if (value == nullptr) return {};
+  std::vector<double> numbers;
+  const auto take = [&](const Node& item) {
+    const auto number =
+        item.kind == Node::Kind::text ? parse_number(item.text) : std::optional<double>();
+    if (number && *number > 0)
+      numbers.push_back(*number);
+    else
+      fail(key, "a positive number of " + what + ", or a list of them");
+  };
+  if (value->kind == Node::Kind::list)
+    for (const Node& item : value->items) take(item);
+  else
+    take(*value);
+  if (value->kind == Node::Kind::list && value->items.empty())
+    fail(key, "at least one number of " + what);
   return numbers;
 }
 

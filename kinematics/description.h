@@ -37,6 +37,7 @@ struct Node {
   static Node of(std::string text);
   static Node of(double number);  ///< shortest text that reads back as the same number
   static Node of(const Eigen::VectorXd& numbers);
+  static Node of(const std::vector<double>& numbers);
   static Node list();
   static Node map();
 
@@ -83,6 +84,8 @@ class Fields {
   bool flag(std::string_view key, bool fallback);
   /// A list of exactly `size` finite numbers; nothing when missing.
   std::optional<Eigen::VectorXd> numbers(std::string_view key, int size);
+  /// One positive number or a list of them (`what` they are, in the message); none when missing.
+  std::vector<double> positives(std::string_view key, const std::string& what);
   std::vector<std::string> texts(std::string_view key);
 
   void fail(std::string_view key, const std::string& expected);

@@ -2,8 +2,12 @@
 //   shift = s(t) (x y z),   turn = s(t) (rx ry rz) about the world's origin
 // with s from 0 at `begin` to 1 at `end` of the rows: a straight line, or, with a time constant
 // `settle` (s), (1 - exp(-(t - begin) / settle)) / (1 - exp(-(end - begin) / settle)).
-// x y z: m, rx ry rz: rad, over the whole data set.
+// x y z: m, rx ry rz: rad, over the whole data set. Or it wanders: with K half waves over the rows
+// (`half_waves`: [1, 2, 3]),
+//   shift = sum over K of (1 - cos(K pi u)) / 2 (xK yK zK),   turn likewise by (rxK ryK rzK)
+// u the straight line above; the larger K, the smaller each is expected to be.
 #include <cmath>
+#include <numbers>
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
@@ -14,30 +18,48 @@ namespace {
 class BaseDrift final : public Effect {
  public:
   explicit BaseDrift(const EffectPlan& plan) {
-    for (const char* name : {"x", "y", "z"}) parameters_.push_back({name, "m", 5e-6, 2e-4});
-    for (const char* name : {"rx", "ry", "rz"}) parameters_.push_back({name, "rad", 1e-5, 2e-4});
     begin_ = plan.fields.number("begin", plan.site.begin);
     end_ = plan.fields.number("end", plan.site.end);
     settle_ = plan.fields.number("settle", 0.0);
     if (settle_ < 0) plan.fields.fail("settle", "a time of at least 0 s");
+    half_waves_ = plan.fields.positives("half_waves", "half waves over the rows");
+    if (settle_ > 0 && !half_waves_.empty())
+      plan.fields.fail("settle", "a drift that settles or one that wanders");
+    if (half_waves_.empty()) add_motion("", 1);
+    for (const double k : half_waves_) add_motion(format_number(k), k);
   }
 
   std::string needs() const override { return "rows with times, spread over the drift"; }
 
   void influence(const Circumstances& at, Influence& into) const override {
-    const double s = share(at.time);
-    const Eigen::Vector3d tip = at.poses.back().translation();
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d unit = s * Eigen::Vector3d::Unit(axis);
-      into.tip.col(axis).head<3>() = unit;
-      into.tip.col(3 + axis).head<3>() = unit.cross(tip);
-      into.tip.col(3 + axis).tail<3>() = unit;
+    if (std::isnan(at.time) || end_ <= begin_) return;
+    if (half_waves_.empty()) return move(at, share(at.time), 0, into);
+    for (size_t i = 0; i < half_waves_.size(); ++i) {
+      const double angle = half_waves_[i] * std::numbers::pi * (at.time - begin_) / (end_ - begin_);
+      move(at, (1 - std::cos(angle)) / 2, 6 * static_cast<Eigen::Index>(i), into);
     }
   }
 
  private:
+  void add_motion(const std::string& suffix, double smaller) {
+    for (const char* name : {"x", "y", "z"})
+      parameters_.push_back({name + suffix, "m", 5e-6 / smaller, 2e-4 / smaller});
+    for (const char* name : {"rx", "ry", "rz"})
+      parameters_.push_back({name + suffix, "rad", 1e-5 / smaller, 2e-4 / smaller});
+  }
+
+  /// The columns from `first` on: `s` of a shift along and a turn about each axis.
+  static void move(const Circumstances& at, double s, Eigen::Index first, Influence& into) {
+    const Eigen::Vector3d tip = at.poses.back().translation();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d unit = s * Eigen::Vector3d::Unit(axis);
+      into.tip.col(first + axis).head<3>() = unit;
+      into.tip.col(first + 3 + axis).head<3>() = unit.cross(tip);
+      into.tip.col(first + 3 + axis).tail<3>() = unit;
+    }
+  }
+
   double share(double time) const {
-    if (std::isnan(time) || end_ <= begin_) return 0;
     if (settle_ == 0) return (time - begin_) / (end_ - begin_);
     return std::expm1(-(time - begin_) / settle_) / std::expm1(-(end_ - begin_) / settle_);
   }
@@ -46,9 +68,11 @@ class BaseDrift final : public Effect {
     node.set("begin", Node::of(begin_));
     node.set("end", Node::of(end_));
     if (settle_ > 0) node.set("settle", Node::of(settle_));
+    if (!half_waves_.empty()) node.set("half_waves", Node::of(half_waves_));
   }
 
   double begin_ = 0, end_ = 0, settle_ = 0;
+  std::vector<double> half_waves_;
 };
 
 }  // namespace

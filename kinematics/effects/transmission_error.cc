@@ -16,18 +16,8 @@ class TransmissionError final : public Effect {
   TransmissionError(const EffectPlan& plan, int joint) : joint_(joint) {
     const bool turns = plan.robot.joints()[joint].quantity == Quantity::angle;
     scale_ = turns ? 1 : 2 * std::numbers::pi;
-    const Node* node = plan.fields.node("waves");
-    if (!node)
-      waves_ = {1};
-    else if (node->kind == Node::Kind::text)
-      waves_ = {plan.fields.positive("waves", 1)};
-    else
-      for (const Node& item : node->items)
-        if (const auto k = parse_number(item.text); k && *k > 0)
-          waves_.push_back(*k);
-        else
-          plan.fields.fail("waves", "a positive number of waves a turn, or a list of them");
-    if (waves_.empty()) plan.fields.fail("waves", "at least one number of waves a turn");
+    waves_ = plan.fields.positives("waves", "waves a turn");
+    if (waves_.empty()) waves_ = {1};
     for (const double k : waves_)
       for (const char* function : {"sin", "cos"})
         parameters_.push_back({function + format_number(k), turns ? "rad" : "m", 2.4e-5, 4.4e-4});
@@ -44,10 +34,7 @@ class TransmissionError final : public Effect {
   }
 
  private:
-  void describe_shape(Node& node) const override {
-    node.set("waves", Node::of(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                          waves_.data(), static_cast<Eigen::Index>(waves_.size())))));
-  }
+  void describe_shape(Node& node) const override { node.set("waves", Node::of(waves_)); }
 
   int joint_;
   double scale_ = 1;

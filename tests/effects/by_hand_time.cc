@@ -112,5 +112,21 @@ TEST(BaseDriftByHand, SettlesWithItsTimeConstant) {
   expect_near(moved(kTurntable, settling, held, an_hour()).p, 0, 100e-6, 0, 1e-15);
 }
 
+TEST(BaseDriftByHand, WandersBySoManyHalfWaves) {
+  // A third of the way: (1 - cos 60 deg) / 2 = 0.25 of the first, (1 - cos 120 deg) / 2 = 0.75 of
+  // the second; at the end 1 and 0.
+  Held held;
+  const std::string wandering =
+      "[{effect: base_drift, half_waves: [1, 2], x1: 1.0e-4, x2: -4.0e-5, rz2: 2.0e-4}]";
+  held.time = 2200;
+  const Moved third = moved(kTurntable, wandering, held, an_hour());
+  expect_near(third.p, 25e-6 - 30e-6, 150e-6, 0, 1e-15);
+  expect_near(third.turn, 0, 0, 150e-6, 1e-11);
+  held.time = 4600;
+  expect_near(moved(kTurntable, wandering, held, an_hour()).p, 100e-6, 0, 0, 1e-15);
+  held.time = kUnknown;
+  expect_near(moved(kTurntable, wandering, held, an_hour()).p, 0, 0, 0, 1e-15);
+}
+
 }  // namespace
 }  // namespace selfcal

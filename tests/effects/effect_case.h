@@ -32,6 +32,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"ThermalExpansionThatLags", "effect: thermal_expansion, lag: 600, reference: 21"},
       {"BaseDrift", "effect: base_drift, at: base"},
       {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
+      {"BaseDriftThatWanders", "effect: base_drift, half_waves: [1, 2.5]"},
       {"ZeroShift", "effect: zero_shift, at: JOINT, moment: 1000"},
       {"ProbePretravel", "effect: probe_pretravel, at: probe"},
       {"TriggerLatency", "effect: trigger_latency"},
