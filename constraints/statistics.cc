@@ -7,11 +7,15 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
 namespace selfcal {
 namespace {
+
+/// Of what is asked for by the million: not in long double.
+using Fast = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 struct Ranks {
   double positive = 0;  ///< sum of the ranks of positive differences
@@ -71,12 +75,8 @@ double chi_square_exceeds(double value, double freedom) {
 }
 
 double log_chi_square_below(double value, double freedom) {
-  namespace policies = boost::math::policies;
-  // Asked for by the million: not in long double.
-  using Fast =
-      boost::math::chi_squared_distribution<double,
-                                            policies::policy<policies::promote_double<false>>>;
-  const double below = boost::math::cdf(Fast(freedom), value);
+  const double below =
+      boost::math::cdf(boost::math::chi_squared_distribution<double, Fast>(freedom), value);
   if (below > std::numeric_limits<double>::min()) return std::log(below);
   // The incomplete gamma function's series, which far below its mean converges fast.
   const double a = freedom / 2, x = value / 2;
@@ -88,6 +88,10 @@ double log_chi_square_below(double value, double freedom) {
 double f_exceeds(double value, double upper_freedom, double lower_freedom) {
   return boost::math::cdf(boost::math::complement(
       boost::math::fisher_f_distribution<double>(upper_freedom, lower_freedom), value));
+}
+
+double student_below(double value, double freedom) {
+  return boost::math::cdf(boost::math::students_t_distribution<double, Fast>(freedom), value);
 }
 
 double signed_rank_p(const std::vector<double>& differences) {

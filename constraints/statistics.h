@@ -15,6 +15,9 @@ double log_chi_square_below(double value, double freedom);
 /// Probability that an F variable exceeds `value`.
 double f_exceeds(double value, double upper_freedom, double lower_freedom);
 
+/// Probability that a Student t variable of `freedom` (any positive number) stays below `value`.
+double student_below(double value, double freedom);
+
 /// One-sided Wilcoxon signed-rank test that the differences are positive rather than symmetric
 /// about zero; exact up to 50 differences without ties, normal approximation with tie correction
 /// beyond. Zeros are dropped; 1 when nothing is left.

@@ -60,6 +60,8 @@ Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Cand
     for (const int k : candidate.main) {
       block.columns.push_back(k);
       unit.push_back(scale * middle(parameters[static_cast<size_t>(k)]));
+      if (parameters[static_cast<size_t>(k)].positive)
+        block.positive.push_back(static_cast<int>(unit.size()) - 1);
     }
     double slack = 0;
     for (const int k : candidate.slack) slack += rows.C.col(k).squaredNorm();

@@ -95,9 +95,9 @@ class Simulator {
     truth = view_.candidates().list[c].effect;
     const Block& block = bench_.block(c);
     const double r = kVisible[random_() % kVisible.size()] * std::sqrt(noise.noise);
-    y += rows_.C(Eigen::all, block.columns) *
-         (r * block.unit.cwiseProduct(normal(block.unit.size())));
-    return y;
+    Eigen::VectorXd size = normal(block.unit.size());
+    for (const int i : block.positive) size[i] = std::abs(size[i]);
+    return y + rows_.C(Eigen::all, block.columns) * (r * block.unit.cwiseProduct(size));
   }
 
   /// A family, then a place and a shape of it, each as likely as the others; -1 when calibration

@@ -1,5 +1,6 @@
 #include "diagnosis/workbench.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/statistics.h"
@@ -68,16 +69,15 @@ Eigen::MatrixXd Workbench::gram(const std::vector<int>& a, const std::vector<int
 
 namespace {
 
+constexpr double kRightSign = 0.95;  ///< prior, of the sign that physics allows
 constexpr int kMost = 64;
 
-/// At most kMost columns: one or two blocks, so small that plain loops on the stack beat any
-/// library.
+/// One block of at most kMost columns: so small that plain loops on the stack beat any library.
 struct Small {
   int n = 0;
   double L[kMost][kMost];
   double z[kMost];
   double scale[kMost];
-  int column[kMost];
 };
 
 }  // namespace
@@ -108,34 +108,53 @@ double Workbench::variance(double left) const {
 }
 
 double Workbench::log_evidence(std::span<const Term> terms) const {
-  Small s;
-  for (const Term& term : terms)
-    for (size_t k = 0; k < term.block->columns.size() && s.n < kMost; ++k) {
-      s.column[s.n] = term.block->columns[k];
-      s.scale[s.n++] = term.size * term.block->unit[static_cast<Eigen::Index>(k)];
-    }
-  // G of the columns: kept for one block of the groups, worked out for any others.
-  const bool kept = terms.size() == 1 && terms.front().block->group >= 0;
-  Eigen::MatrixXd worked_out;
-  if (!kept && s.n > 0) {
-    const std::vector<int> columns(s.column, s.column + s.n);
-    worked_out = gram(columns, columns);
+  if (terms.empty()) return constant_ + of_noise(yy_);
+  const Block& only = *terms.front().block;
+  if (terms.size() > 1 || only.group < 0 || only.columns.size() > kMost) {
+    const std::vector<int> columns = unfold(terms).first;
+    return log_evidence(terms, gram(columns, columns));
   }
-  const double* G = kept ? block(terms.front().block->group) : worked_out.data();
+  Small s;
+  s.n = static_cast<int>(only.columns.size());
+  const double* G = block(only.group);
   double half_log_det = 0, explained = 0;
   for (int i = 0; i < s.n; ++i) {
+    s.scale[i] = terms.front().size * only.unit[i];
     for (int j = 0; j <= i; ++j) {
       double sum = s.scale[i] * s.scale[j] * G[i * s.n + j] + (i == j ? 1 : 0);
       for (int k = 0; k < j; ++k) sum -= s.L[i][k] * s.L[j][k];
       s.L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / s.L[j][j];
     }
-    double z = s.scale[i] * g_[s.column[i]];
+    double z = s.scale[i] * g_[only.columns[static_cast<size_t>(i)]];
     for (int k = 0; k < i; ++k) z -= s.L[i][k] * s.z[k];
     s.z[i] = z / s.L[i][i];
     explained += s.z[i] * s.z[i];
     half_log_det += std::log(s.L[i][i]);
   }
-  return constant_ - half_log_det + of_noise(yy_ - explained);
+  const double log = constant_ - half_log_det + of_noise(yy_ - explained);
+  if (only.positive.empty()) return log;
+  using Rows = Eigen::Matrix<double, kMost, kMost, Eigen::RowMajor>;
+  return log + of_signs(terms, Eigen::Map<const Rows>(&s.L[0][0]).topLeftCorner(s.n, s.n),
+                        Eigen::Map<const Eigen::VectorXd>(s.z, s.n));
+}
+
+double Workbench::of_signs(std::span<const Term> terms, const Eigen::MatrixXd& L,
+                           const Eigen::VectorXd& z) const {
+  const double sigma = std::sqrt(variance(yy_ - z.squaredNorm()));
+  double sum = 0;
+  Eigen::Index first = 0;
+  for (const Term& term : terms) {
+    for (const int i : term.block->positive) {
+      Eigen::VectorXd one = Eigen::VectorXd::Zero(z.size());
+      one[first + i] = 1;
+      const Eigen::VectorXd half = solve_lower(L, one);
+      const double in_sigmas = half.dot(z) / (half.norm() * sigma);
+      const double probability = student_below(in_sigmas, nu_);
+      sum += std::log(2 * (kRightSign * probability + (1 - kRightSign) * (1 - probability)));
+    }
+    first += static_cast<Eigen::Index>(term.block->columns.size());
+  }
+  return sum;
 }
 
 double Workbench::log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const {
@@ -143,8 +162,9 @@ double Workbench::log_evidence(std::span<const Term> terms, const Eigen::MatrixX
   const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
                             Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
-  const double explained = solve_lower(L, D.cwiseProduct(g_(columns))).squaredNorm();
-  return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - explained);
+  const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
+  return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - z.squaredNorm()) +
+         of_signs(terms, L, z);
 }
 
 Workbench Workbench::given(std::span<const Term> terms) const {
@@ -164,7 +184,7 @@ Workbench Workbench::given(std::span<const Term> terms) const {
       for (const int j : group) rest.kept_[at++] -= seen.col(i).dot(seen.col(j));
   rest.g_ -= seen.transpose() * z;
   rest.yy_ -= z.squaredNorm();
-  rest.constant_ -= L.diagonal().array().log().sum();
+  rest.constant_ += of_signs(terms, L, z) - L.diagonal().array().log().sum();
   return rest;
 }
 

@@ -5,11 +5,15 @@
 // that no known effect explains, of covariance s^2 kappa^2 K. For a set S of candidates with prior
 // v ~ N(0, s^2 V) the integral over a, v and s (prior 1/s) is
 //   log p(y | S) = const(K) - 1/2 log|I + V G| - nu/2 log Q,   Q = y'My - g'(V^-1 + G)^-1 g
-// and where s is s0 at least, + log P(chi-square of nu freedoms < Q / s0^2),
-// with M the projection beyond the whitened geometry, G = C'MC, g = C'My. g is made once for each K
-// and y, and of G, which is far larger than the rows, only the blocks of what is weighed alone; a
-// set of several adds the products between them. nu counts what the rows alone determine; the noise
-// of each K is taken to be right already (Bench::agree).
+// with M the projection beyond the whitened geometry, G = C'MC, g = C'My; and where s is s0 at
+// least, + log P(chi-square of nu freedoms < Q / s0^2). g is made once for each K and y, and of G,
+// which is far larger than the rows, only the blocks of what is weighed alone; a set of several
+// adds the products between them. nu counts what the rows alone determine; the noise of each K is
+// taken to be right already (Bench::agree).
+//
+// Where physics knows the sign of a parameter, its prior has 0.95 of its mass there: the evidence
+// gains log(2 (0.95 P + 0.05 (1 - P))), P the probability of that sign that the rows leave it (each
+// such parameter by itself; those of `given` terms as they stood without the others).
 #pragma once
 
 #include <Eigen/Dense>
@@ -33,8 +37,9 @@ struct Structure {
 /// A group of columns of C with one prior: v = size * unit * N(0, 1).
 struct Block {
   std::vector<int> columns;
-  Eigen::VectorXd unit;  ///< prior sigma of each at a size of one
-  int group = -1;        ///< its place in the workbench's groups; -1: it is in none
+  Eigen::VectorXd unit;            ///< prior sigma of each at a size of one
+  int group = -1;                  ///< its place in the workbench's groups; -1: it is in none
+  std::vector<int> positive = {};  ///< places of those that physics allows no other sign
 };
 
 /// Columns of C that are weighed together: a workbench keeps their products.
@@ -99,6 +104,10 @@ class Workbench {
   double of_noise(double left) const;
   /// s^2 where `left` squares are not explained.
   double variance(double left) const;
+  /// What the signs of the terms' parameters add to the log evidence. L: lower Cholesky factor of
+  /// I + D G D, z = L^-1 D g.
+  double of_signs(std::span<const Term> terms, const Eigen::MatrixXd& L,
+                  const Eigen::VectorXd& z) const;
 
   std::shared_ptr<const Fixed> fixed_;
   std::vector<double> kept_;  ///< the groups' blocks of G, one after the other

@@ -65,6 +65,7 @@ struct EffectParameter {
   std::string name;  ///< within its place: "c"
   std::string unit;
   double usual_least = 0, usual_most = 0;  ///< of its magnitude
+  bool positive = false;                   ///< physics allows no other sign
   double value = 0;
 };
 

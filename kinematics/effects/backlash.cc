@@ -16,7 +16,7 @@ class Backlash final : public Effect {
  public:
   Backlash(const EffectPlan& plan, int joint) : joint_(joint) {
     const bool turns = plan.robot.joints()[joint].quantity == Quantity::angle;
-    parameters_ = {{"play", turns ? "rad" : "m", 5e-5, 1.5e-3}};
+    parameters_ = {{"play", turns ? "rad" : "m", 5e-5, 1.5e-3, true}};
     const std::string by = plan.fields.text("by", "motion");
     by_load_ = by == "load";
     if (!by_load_ && by != "motion") plan.fields.fail("by", "motion or load");

@@ -19,7 +19,7 @@ class JointCompliance final : public Effect {
     silent_ = !mechanics.masses_known();
     lumps_ = plan.fields.flag("lumps", silent_ && !plan.site.loads);
     if (!lumps_) {
-      parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4}};
+      parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4, true}};
       return;
     }
     for (int k = mechanics.link_of(joint); k < static_cast<int>(mechanics.links.size()); ++k) {

@@ -14,7 +14,8 @@ namespace {
 class ProbePretravel final : public Effect {
  public:
   ProbePretravel() {
-    for (const char* name : {"p0", "p1", "p3"}) parameters_.push_back({name, "m", 1e-6, 1e-4});
+    parameters_ = {
+        {"p0", "m", 1e-6, 1e-4, true}, {"p1", "m", 1e-6, 1e-4, true}, {"p3", "m", 1e-6, 1e-4}};
   }
 
   bool of_machine() const override { return false; }

@@ -27,7 +27,7 @@ std::vector<double> lagged(const std::vector<double>& t, const std::vector<doubl
 class ThermalExpansion final : public Effect {
  public:
   explicit ThermalExpansion(const EffectPlan& plan) {
-    parameters_ = {{"alpha", "1/K", 5e-6, 3e-5}};
+    parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
     lag_ = plan.fields.number("lag", 0.0);
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.site.times;

@@ -11,7 +11,7 @@ namespace {
 
 class TriggerLatency final : public Effect {
  public:
-  TriggerLatency() { parameters_ = {{"delay", "s", 2e-4, 8e-3}}; }
+  TriggerLatency() { parameters_ = {{"delay", "s", 2e-4, 8e-3, true}}; }
 
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches with velocities dq, at different speeds"; }

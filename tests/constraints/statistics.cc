@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace selfcal {
 namespace {
@@ -48,6 +49,12 @@ TEST(Statistics, KnowTheLogarithmOfAProbabilityTooSmallForANumber) {
   const double x = 1, k = 1800;
   EXPECT_NEAR(log_chi_square_below(x, k),
               k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1) + x / (k + 2), 1e-6);
+}
+
+TEST(StudentBelow, IsThePublishedLevelAtThePublishedQuantile) {
+  EXPECT_NEAR(student_below(2.2281, 10), 0.975, 1e-5);
+  EXPECT_NEAR(student_below(-2.6349, 91), 0.005, 1e-4);
+  EXPECT_NEAR(student_below(3, 1), 0.5 + std::atan(3) / std::numbers::pi, 1e-12);
 }
 
 TEST(FExceeds, IsThePublishedLevelAtThePublishedQuantile) {

@@ -100,6 +100,44 @@ TEST(Workbench, TakesNoNoiseForLessThanItsDataSheetSays) {
   }
 }
 
+/// log of the integral over s and v = s u of one column's likelihood times its prior, which has
+/// 0.95 of its mass where v is positive, over the same with a prior that is even: by sums.
+double worth_of_sign(double yy, double g, double G, double nu, double prior) {
+  double signed_sum = 0, even_sum = 0;
+  constexpr double kStep = 0.01;
+  for (double log_s = -5; log_s < 5; log_s += kStep)
+    for (double in_priors = -8 + kStep / 2; in_priors < 8; in_priors += kStep) {
+      const double u = in_priors * prior, s = std::exp(log_s);
+      const double each = std::exp(-nu * log_s - (yy / (s * s) - 2 * g * u / s + G * u * u) / 2 -
+                                   in_priors * in_priors / 2);
+      even_sum += each;
+      signed_sum += 2 * (u > 0 ? 0.95 : 0.05) * each;
+    }
+  return std::log(signed_sum / even_sum);
+}
+
+TEST(Workbench, BelievesTheSignThatPhysicsAllows) {
+  Case one;
+  const Block even = one.second;
+  one.second.positive = {0};
+  for (const double truth : {0.8, 0.0, -0.8}) {
+    std::mt19937_64 random(11);
+    one.rows.y = truth * one.rows.C.col(3) + 0.7 * random_matrix(14, 1, random).col(0);
+    const Workbench bench = one.bench();
+    const std::vector<Workbench::Term> with{{&one.second, 1}}, without{{&even, 1}};
+    const double worth = bench.log_evidence(with) - bench.log_evidence(without);
+    EXPECT_NEAR(worth,
+                worth_of_sign(bench.total(), bench.right()[3], bench.gram({3}, {3})(0, 0),
+                              bench.freedom(), even.unit[0]),
+                1e-3);
+    EXPECT_LE(worth, std::log(1.9));
+    EXPECT_GE(worth, std::log(0.1));
+    EXPECT_NEAR(bench.given(with).log_evidence({}), bench.log_evidence(with), kRounding);
+    EXPECT_NEAR(bench.log_evidence(with, bench.gram({3}, {3})), bench.log_evidence(with),
+                kRounding);
+  }
+}
+
 TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
   Case one;
   std::mt19937_64 random(5);
