@@ -65,7 +65,7 @@ class Diagnostician {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       const DenseEquations rows = view_.kept();
       bench_ = std::make_unique<Bench>(
-          view_.whitened(), structures(data_.rows, rows, view_.tips(), view_.by_joint(rows)),
+          view_.whitened(), structures(data_.rows, rows, view_.ends(), view_.by_joint(rows)),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
       if (bench_->workbench(0).freedom() < kFewestFreedoms ||

@@ -75,7 +75,7 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
 
 Bench Pair::bench(const DenseEquations& rows, const SearchRule& rule) const {
   return Bench(whitened(rows),
-               structures(both_.rows, rows, tips(*geometry_, both_.rows),
+               structures(both_.rows, rows, ends(*geometry_, both_.rows),
                           rows.W(Eigen::all, reading_columns(*geometry_))),
                changes_.candidates, changes_.parameters, rule);
 }

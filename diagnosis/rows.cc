@@ -109,10 +109,18 @@ std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& res
   return put_aside;
 }
 
+std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows) {
+  std::vector<Eigen::Isometry3d> list;
+  for (int row = 0; row < rows.rows(); ++row)
+    list.push_back(robot.link_poses(rows.q.row(row).transpose()).back());
+  return list;
+}
+
 Eigen::MatrixXd tips(const Robot& robot, const Observations& rows) {
   Eigen::MatrixXd tips(rows.rows(), 3);
-  for (int row = 0; row < rows.rows(); ++row)
-    tips.row(row) = robot.link_poses(rows.q.row(row).transpose()).back().translation().transpose();
+  Eigen::Index row = 0;
+  for (const Eigen::Isometry3d& end : ends(robot, rows))
+    tips.row(row++) = end.translation().transpose();
   return tips;
 }
 

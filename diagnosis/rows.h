@@ -31,7 +31,9 @@ DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
                            double unknowns, std::size_t rows, double most);
 
-/// Where the endpoint is with the robot file's own values (rows x 3, m).
+/// The endpoint's pose with the robot file's own values, by row.
+std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows);
+/// Where it is (rows x 3, m).
 Eigen::MatrixXd tips(const Robot& robot, const Observations& rows);
 
 }  // namespace selfcal

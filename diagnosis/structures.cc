@@ -1,6 +1,7 @@
 // Covariance of two equations: that of their configurations, a Gaussian bell of the distance, times
-// the cosine between the directions that they measure in. Where a joint is off by a function of the
-// readings, it is
+// the cosine between the directions that they measure in (in time: as the tool sees them; what all
+// share in the world's axes is a drift of the base, which is known). Where a joint is off by a
+// function of the readings, it is
 //   J(1) J(2) mean_ab (1 + bell_a) (1 + bell_b) / 4
 // with J what the joint moves the equation (of mean square 1 over all equations) and bell_a that of
 // the difference of reading a: functions of one reading and of two, all of them smooth.
@@ -29,9 +30,9 @@ constexpr double kTime = 0.1;                            ///< of the whole
 
 class Kernel {
  public:
-  Kernel(const Observations& data, const DenseEquations& rows, Eigen::MatrixXd tips,
-         Eigen::MatrixXd by_joint)
-      : data_(data), rows_(rows), tips_(std::move(tips)), by_joint_(std::move(by_joint)) {
+  Kernel(const Observations& data, const DenseEquations& rows,
+         const std::vector<Eigen::Isometry3d>& ends, Eigen::MatrixXd by_joint)
+      : data_(data), rows_(rows), ends_(ends), by_joint_(std::move(by_joint)) {
     std::vector<double> times;  // a row need not have one
     std::ranges::copy_if(data.time, std::back_inserter(times),
                          [](double t) { return std::isfinite(t); });
@@ -82,7 +83,9 @@ class Kernel {
       for (Eigen::Index j = 0; j <= i; ++j) {
         const int a = rows_.row[i], b = rows_.row[j];
         if (a < 0 || b < 0) continue;
-        const double alike = direction_.row(i).dot(direction_.row(j));
+        const double alike = closeness == Closeness::time
+                                 ? seen_by_tool(i).dot(seen_by_tool(j))
+                                 : direction_.row(i).dot(direction_.row(j));
         K(i, j) = K(j, i) = alike == 0 ? 0 : alike * close(closeness, a, b);
       }
     return K;
@@ -92,6 +95,12 @@ class Kernel {
   bool repeats(int a, int b) const {
     return a == b || (!data_.repeat.empty() && data_.repeat[a] >= 0 &&
                       data_.repeat[a] == data_.repeat[b] && data_.set[a] == data_.set[b]);
+  }
+
+  /// The direction that an equation measures in, in the tool's axes.
+  Eigen::Vector3d seen_by_tool(Eigen::Index equation) const {
+    return ends_[static_cast<size_t>(rows_.row[equation])].linear().transpose() *
+           direction_.row(equation).transpose();
   }
 
   static double bell(double squared) { return std::exp(-squared / 2); }
@@ -117,7 +126,8 @@ class Kernel {
       case Closeness::joints:
         return bell((data_.q.row(a) - data_.q.row(b)).squaredNorm() / (kJoints * kJoints));
       case Closeness::place:
-        return bell((tips_.row(a) - tips_.row(b)).squaredNorm() / (kPlace * kPlace));
+        return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
+                    (kPlace * kPlace));
       case Closeness::turned:
         return 0;  // of one joint: of_joint()
       case Closeness::time:
@@ -129,7 +139,8 @@ class Kernel {
 
   const Observations& data_;
   const DenseEquations& rows_;
-  const Eigen::MatrixXd tips_, by_joint_;
+  const std::vector<Eigen::Isometry3d>& ends_;
+  const Eigen::MatrixXd by_joint_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
 };
@@ -171,8 +182,9 @@ std::vector<Structure> noise_alone(const Observations& data, const DenseEquation
 }
 
 std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
-                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& by_joint) {
-  const Kernel kernel(data, rows, tips, by_joint);
+                                  const std::vector<Eigen::Isometry3d>& ends,
+                                  const Eigen::MatrixXd& by_joint) {
+  const Kernel kernel(data, rows, ends, by_joint);
   const Eigen::MatrixXd noise = kernel.rounded();
   const Eigen::MatrixXd same = kernel.of(Closeness::same);
   std::vector<Structure> list;

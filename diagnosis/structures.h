@@ -15,19 +15,20 @@ enum class Closeness {
   same = 1,    ///< only immediate repeats: anything that a configuration brings along
   joints = 2,  ///< similar joint readings
   place = 3,   ///< near each other in the cell
-  time = 4,    ///< soon after each other
+  time = 4,    ///< soon after each other, as the tool sees it: of the base it would be a drift
   turned = 5,  ///< one joint is off by a smooth function of one or two readings
 };
 std::string_view to_string(Closeness closeness);
 
 /// Noise alone first (and noise that immediate repeats share a part of), then every closeness at
 /// several sizes over the noise. `rows` are the
-/// equations that the workbench sees, `tips` (rows of the data set x 3) where the endpoint is.
+/// equations that the workbench sees, `ends` the endpoint's pose by row of the data set.
 /// `by_joint` (equations x joints) is what an error of each joint's reading moves an equation. That
 /// of half the reading's last digit is shared by rows of one reading, however often they are
 /// repeated.
 std::vector<Structure> structures(const Observations& data, const DenseEquations& rows,
-                                  const Eigen::MatrixXd& tips, const Eigen::MatrixXd& by_joint);
+                                  const std::vector<Eigen::Isometry3d>& ends,
+                                  const Eigen::MatrixXd& by_joint);
 
 /// Only the first of these.
 std::vector<Structure> noise_alone(const Observations& data, const DenseEquations& rows,

@@ -97,6 +97,8 @@ Whitened View::of(const DenseEquations& rows) const {
 
 Whitened View::whitened() const { return of(kept()); }
 
+std::vector<Eigen::Isometry3d> View::ends() const { return selfcal::ends(*geometry_, data_.rows); }
+
 Eigen::MatrixXd View::tips() const { return selfcal::tips(*geometry_, data_.rows); }
 
 std::vector<int> reading_columns(const Robot& robot) {

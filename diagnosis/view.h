@@ -36,6 +36,7 @@ class View {
   /// The rows not put aside, with the noise `scale` times what the geometry's fit says.
   Whitened whitened() const;
   DenseEquations kept() const;
+  std::vector<Eigen::Isometry3d> ends() const;
   Eigen::MatrixXd tips() const;
   /// What an error of each joint's reading moves each equation of kept() (equations x joints, 1/rad
   /// or 1/m); whitened.

@@ -32,12 +32,11 @@ struct Touches {
     rows.row = {0, 1, 2};
     rows.shift = Eigen::MatrixXd::Zero(3, 3);
     rows.shift.col(2).setConstant(1e5);
-    tips = Eigen::MatrixXd::Zero(3, 3);
-    tips(0, 0) = 1;
+    ends[0].translation().x() = 1;
   }
   Observations data;
   DenseEquations rows;
-  Eigen::MatrixXd tips;
+  std::vector<Eigen::Isometry3d> ends = std::vector(3, Eigen::Isometry3d::Identity());
 };
 
 TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
@@ -52,7 +51,7 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
 
 TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const Touches t;
-  const auto list = structures(t.data, t.rows, t.tips, Eigen::MatrixXd::Zero(3, 1));
+  const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
   for (const Structure& each : list) {
@@ -65,6 +64,24 @@ TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   EXPECT_NEAR(unknown, 1, 1e-12);
 }
 
+TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
+  // Three directions of the tool that a turn of it about the world's y carries into each other.
+  Touches t;
+  t.data.repeat.clear();
+  t.data.time.resize(3);
+  t.data.time << 0, 0, 1000;
+  t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
+  const auto of_time = [&] {
+    const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
+    const auto found = std::ranges::find(list, static_cast<int>(Closeness::time), &Structure::kind);
+    return Eigen::MatrixXd(found->root * found->root.transpose());
+  };
+  EXPECT_NEAR(of_time()(0, 1), 0, 1e-12) << "one world's direction, two of the tool";
+  t.rows.shift.row(1) = Eigen::RowVector3d(1e5, 0, 0);
+  EXPECT_GT(of_time()(0, 1), 0.1) << "both along the tool's z";
+  EXPECT_NEAR(of_time()(0, 2), 0, 1e-12) << "long after";
+}
+
 TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   Observations data;
   data.q.resize(2, 2);
@@ -75,7 +92,7 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   rows.shift = Eigen::MatrixXd::Identity(2, 3);
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
-  const auto list = structures(data, rows, Eigen::MatrixXd::Zero(2, 3), by_joint);
+  const auto list = structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), by_joint);
   const auto found = std::ranges::find(list, static_cast<int>(Closeness::turned), &Structure::kind);
   ASSERT_NE(found, list.end());
   const Eigen::MatrixXd S = found->root * found->root.transpose();
