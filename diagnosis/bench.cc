@@ -164,16 +164,36 @@ double Bench::evidence(int candidate) const {
                           : 0;
 }
 
-double Bench::best_single() const {
+double Bench::best_found() const {
   int home = 0;
   for (int s = 1; s < structures(); ++s)
     if (structure(s).kind == 0 &&
         workbenches_[s].log_evidence({}) > workbenches_[home].log_evidence({}))
       home = s;
-  double best = -INFINITY;
-  for (int c = 0; c < static_cast<int>(blocks_.size()); ++c)
-    if (seen_[c]) best = std::max(best, weigh(workbenches_[home], c).log_sum);
-  return best - workbenches_[home].log_evidence({});
+  const Hypothesis none{{}, home, workbenches_[home].log_evidence({}) + log_prior({}, home), {}};
+  const Hypothesis one = with_best(none, workbenches_[home]);
+  if (one.candidates.empty()) return -INFINITY;
+  const Hypothesis two = with_best(one, workbenches_[home].given(terms(one)));
+  return std::max(one.log_weight, two.log_weight) - none.log_weight;
+}
+
+/// `h` and the candidate that makes it most probable, `rest` being what `h` leaves; `h` alone where
+/// there is none.
+Hypothesis Bench::with_best(const Hypothesis& h, const Workbench& rest) const {
+  Hypothesis best = h;
+  for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
+    if (!seen_[c] || std::ranges::count(h.candidates, c) > 0) continue;
+    const Single single = weigh(rest, c);
+    std::vector<int> candidates = h.candidates;
+    candidates.push_back(c);
+    const double log_weight = single.log_sum + held(h) + log_prior(candidates, h.structure);
+    if (best.candidates.size() > h.candidates.size() && log_weight <= best.log_weight) continue;
+    best = h;
+    best.candidates = std::move(candidates);
+    best.sizes.push_back(single.size);
+    best.log_weight = log_weight;
+  }
+  return best;
 }
 
 std::vector<Workbench::Term> Bench::terms(const Hypothesis& hypothesis) const {

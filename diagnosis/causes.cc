@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "diagnosis/null.h"
+
 namespace selfcal {
 namespace {
 
@@ -11,7 +13,8 @@ constexpr double kListed = 0.005;     ///< least probability that is told
 constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
 constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
 constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
-constexpr double kAlsoThere = 0.5;     ///< of the cause's own: further places
+constexpr double kSurelyUnknown = 0.7;
+constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
 /// What the linear parameters do not say of an entry.
 std::string shape_in_words(const Node& entry) {
@@ -25,7 +28,7 @@ std::string shape_in_words(const Node& entry) {
     std::snprintf(text, sizeof text, words, *value);
     return text;
   }
-  return {};
+  return entry.find("half_waves") ? "wandering" : "";
 }
 
 class Teller {
@@ -141,9 +144,9 @@ class Teller {
   const Posterior& posterior_;
 };
 
-/// Together with what looks the same on these rows it is one answer.
-CauseResult with_look_alikes(const View& view, const Bench& bench, const Posterior& posterior,
-                             CauseResult cause) {
+/// Probability of the cause or of what looks the same on these rows.
+double with_look_alikes(const View& view, const Bench& bench, const Posterior& posterior,
+                        const CauseResult& cause) {
   const auto answers = [&](const std::string& effect, const std::string& at) {
     return effect == cause.effect ||
            std::find(cause.confounded_with.begin(), cause.confounded_with.end(),
@@ -157,8 +160,7 @@ CauseResult with_look_alikes(const View& view, const Bench& bench, const Posteri
       any = any || answers(view.candidates().list[c].effect, view.candidates().list[c].at);
     if (any) sum += std::exp(h.log_weight);
   }
-  cause.probability = std::min(sum, 1.0);
-  return cause;
+  return std::min(sum, 1.0);
 }
 
 /// What all causes more probable than not explain of the squares, and what is left beyond the
@@ -211,8 +213,13 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     words +=
         (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + verdict.confounded_with[i];
   if (!verdict.confounded_with.empty()) words += ")";
-  std::snprintf(text, sizeof text, ", causes the gap (probability %.2f, p %.2g)",
-                verdict.probability, diagnosis.p_value);
+  std::snprintf(text, sizeof text, ", causes the gap (probability %.2f", verdict.probability);
+  words += text;
+  if (!verdict.confounded_with.empty()) {
+    std::snprintf(text, sizeof text, ", with these %.2f", verdict.together);
+    words += text;
+  }
+  std::snprintf(text, sizeof text, ", p %.2g)", diagnosis.p_value);
   words += text;
   return words;
 }
@@ -238,12 +245,24 @@ CauseResult named_cause(const View& view, const Bench& bench, const Posterior& p
   for (const CauseResult& each : causes)
     if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
   if (!best) return unknown;
-  const CauseResult known = with_look_alikes(view, bench, posterior, *best);
-  if (posterior.unknown < 0.5) return posterior.unknown > best->probability ? unknown : known;
+  CauseResult known = *best;
+  known.together = with_look_alikes(view, bench, posterior, known);
+  if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
   // Structure that is surer than the cause: what else it is, nobody knows.
-  if (best->probability < std::min(kSure, posterior.unknown)) return unknown;
+  if (known.together < std::min(kSure, posterior.unknown)) return unknown;
   const Shares part = shares(bench, posterior);
   return part.left > part.explained ? unknown : known;
+}
+
+CauseResult decided(CauseResult named, const Posterior& posterior, double p,
+                    const DiagnosisOptions& options) {
+  if (named.effect == kUnknown) return named;
+  // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
+  const bool noise_does_as_well = p > options.name_below_p;
+  if (named.effect != kNone && !noise_does_as_well) return named;
+  if (posterior.unknown > kSurelyUnknown)
+    return {.effect = kUnknown, .probability = posterior.unknown};
+  return {.effect = kNone, .probability = std::max(posterior.none, least_probability_of_none(p))};
 }
 
 }  // namespace selfcal

@@ -15,6 +15,11 @@ std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
 CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
                         const std::vector<CauseResult>& causes, const DiagnosisOptions& options);
 
+/// `named` where the rows bear it: noise does as well with probability `p`, and then there is
+/// `none` or, without a known cause, structure.
+CauseResult decided(CauseResult named, const Posterior& posterior, double p,
+                    const DiagnosisOptions& options);
+
 /// The verdict in a sentence or two.
 std::string verdict_in_words(const Diagnosis& diagnosis);
 

@@ -24,8 +24,7 @@ constexpr int kPasses = 4;
 constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
 constexpr size_t kMostEffects = 60;
 constexpr double kMostGrown = 2100;  ///< equations
-constexpr double kSurelyUnknown = 0.7;
-constexpr double kTried = 0.05;  ///< least probable cause that is tried alone
+constexpr double kTried = 0.05;      ///< least probable cause that is tried alone
 constexpr int kMostTried = 4;
 
 class Diagnostician {
@@ -43,11 +42,14 @@ class Diagnostician {
     result_.noise = view_.noise() * shared_noise();
     result_.candidates = cause_results(view_, *bench_, posterior_);
     tell("asking noise the same question", 0.75);
-    result_.p_value = resampled_p(view_, *bench_, data_.rows, options_.resamples, options_.seed);
-    decide();
+    const NullDistribution null(view_, *bench_, data_.rows, options_.resamples, options_.seed);
+    result_.p_value = null.p_of(bench_->best_found());
+    result_.verdict = decided(named_cause(view_, *bench_, posterior_, result_.candidates, options_),
+                              posterior_, result_.p_value, options_);
     tell("practising on simulated sessions", 0.8);
-    result_.practice = practise(view_, *bench_, options_);
-    result_.verdict.probability = calibrated(result_.verdict.probability, result_.practice);
+    result_.practice = practise(view_, *bench_, null, options_);
+    for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
+      *each = calibrated(*each, result_.practice);
     result_.where = whereabouts(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable(view_, *bench_, options_, result_);
@@ -84,20 +86,6 @@ class Diagnostician {
       // The bench and the view must end up with the same rows.
       if (pass + 1 == kPasses || !view_.refine(view_.residuals(columns, sigma), variance)) break;
     }
-  }
-
-  void decide() {
-    result_.verdict = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
-    if (result_.verdict.effect == kUnknown) return;
-    // Structure of no known cause is no matter of signs: repeats of a configuration tell of it.
-    const bool noise_does_as_well = result_.p_value > options_.name_below_p;
-    if (result_.verdict.effect != kNone && !noise_does_as_well) return;
-    if (posterior_.unknown > kSurelyUnknown)
-      result_.verdict = {.effect = kUnknown, .probability = posterior_.unknown};
-    else
-      result_.verdict = {
-          .effect = kNone,
-          .probability = std::max(posterior_.none, least_probability_of_none(result_.p_value))};
   }
 
   /// Noise of a new configuration over that of an immediate repeat.

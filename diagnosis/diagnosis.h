@@ -19,7 +19,7 @@ struct DiagnosisOptions {
   SearchRule search;
   /// A cause is named when `none` is less probable than the first of these, and noise looks as much
   /// like a cause less often than the second.
-  double name_below_none = 0.05, name_below_p = 0.0125;
+  double name_below_none = 0.1, name_below_p = 0.025;
   int resamples = 199;  ///< of the null distribution
   int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
   double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
@@ -41,6 +41,7 @@ struct CauseResult {
   std::string effect;
   std::vector<std::string> where = {};
   double probability = 0;
+  double together = 0;   ///< of the verdict: with what cannot be told from it
   double survival = 0;   ///< share of it that calibration cannot absorb
   double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
   double visible = 0;    ///< rms of its visible part over the noise

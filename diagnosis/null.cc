@@ -1,5 +1,6 @@
 #include "diagnosis/null.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -7,15 +8,13 @@
 
 namespace selfcal {
 
-double resampled_p(const View& view, Bench& bench, const Observations& data, int resamples,
-                   unsigned long long seed) {
+NullDistribution::NullDistribution(const View& view, Bench& bench, const Observations& data,
+                                   int resamples, unsigned long long seed) {
   const Whitened rows = view.whitened();
   const DenseEquations kept = view.kept();
   const Eigen::VectorXd residual = view.geometry_residuals(rows);
-  const double observed = bench.best_single();
   std::mt19937_64 random(seed);
   const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows.pull.size());
-  int as_good = 0;
   for (int i = 0; i < resamples; ++i) {
     std::map<std::pair<int, int>, double> sign;  // by repeat group, or by row
     Eigen::VectorXd flipped = residual;
@@ -28,10 +27,14 @@ double resampled_p(const View& view, Bench& bench, const Observations& data, int
       flipped[e] *= found->second;
     }
     bench.look_at(flipped, no_pull, true);
-    if (bench.best_single() >= observed) ++as_good;
+    found_.push_back(bench.best_found());
   }
   bench.look_at(rows.y, rows.pull);
-  return (1.0 + as_good) / (1.0 + resamples);
+}
+
+double NullDistribution::p_of(double found) const {
+  const auto as_good = std::ranges::count_if(found_, [&](double each) { return each >= found; });
+  return (1.0 + static_cast<double>(as_good)) / (1.0 + static_cast<double>(found_.size()));
 }
 
 double least_probability_of_none(double p) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "diagnosis/causes.h"
+
 namespace selfcal {
 namespace {
 
@@ -25,9 +27,11 @@ struct Stated {
 
 class Simulator {
  public:
-  Simulator(const View& view, Bench& bench, const DiagnosisOptions& options)
+  Simulator(const View& view, Bench& bench, const NullDistribution& null,
+            const DiagnosisOptions& options)
       : view_(view),
         bench_(bench),
+        null_(null),
         options_(options),
         rows_(view.whitened()),
         random_(options.seed) {}
@@ -40,15 +44,14 @@ class Simulator {
     for (int i = 0; i < options_.practice; ++i) {
       std::string truth;
       bench_.look_at(session(truth), no_pull);
-      const Posterior posterior = bench_.search();
-      const auto [answer, probability] = answered(posterior);
-      stated.push_back({probability, answer == truth});
+      const CauseResult answer = answered(bench_.search());
+      stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
         ++none;
-        practice.false_alarms += answer != kNone;
+        practice.false_alarms += answer.effect != kNone;
       } else {
         ++causes;
-        practice.right += answer == truth;
+        practice.right += answer.effect == truth;
       }
     }
     practice.sessions = options_.practice;
@@ -60,12 +63,14 @@ class Simulator {
   }
 
  private:
-  std::pair<std::string, double> answered(const Posterior& posterior) const {
-    if (posterior.none >= options_.name_below_none) return {kNone, posterior.none};
-    std::pair<std::string, double> best{kUnknown, posterior.unknown};
-    for (const auto& [family, p] : posterior.family)
-      if (p > best.second) best = {family, p};
-    return best;
+  CauseResult answered(const Posterior& posterior) const {
+    CauseResult best{.effect = kUnknown, .probability = posterior.unknown};
+    if (posterior.none >= options_.name_below_none)
+      best = {.effect = kNone, .probability = posterior.none};
+    else
+      for (const auto& [family, p] : posterior.family)
+        if (p > best.probability) best = {.effect = family, .probability = p};
+    return decided(std::move(best), posterior, null_.p_of(bench_.best_found()), options_);
   }
 
   Eigen::VectorXd normal(Eigen::Index size) {
@@ -136,6 +141,7 @@ class Simulator {
 
   const View& view_;
   Bench& bench_;
+  const NullDistribution& null_;
   const DiagnosisOptions& options_;
   const Whitened rows_;
   std::mt19937_64 random_;
@@ -143,8 +149,9 @@ class Simulator {
 
 }  // namespace
 
-Practice practise(const View& view, Bench& bench, const DiagnosisOptions& options) {
-  return Simulator(view, bench, options).run();
+Practice practise(const View& view, Bench& bench, const NullDistribution& null,
+                  const DiagnosisOptions& options) {
+  return Simulator(view, bench, null, options).run();
 }
 
 double calibrated(double probability, const Practice& practice) {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/null.h"
 #include "diagnosis/view.h"
 
 namespace selfcal {
 
-/// `bench` sees the true rows again afterwards.
-Practice practise(const View& view, Bench& bench, const DiagnosisOptions& options);
+/// `null` says how much noise alone would find on these rows. `bench` sees the true rows again
+/// afterwards.
+Practice practise(const View& view, Bench& bench, const NullDistribution& null,
+                  const DiagnosisOptions& options);
 
 /// A probability as often true as it says, by what practice taught.
 double calibrated(double probability, const Practice& practice);

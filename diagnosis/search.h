@@ -58,12 +58,13 @@ class Bench {
   Bench(const Whitened& rows, std::vector<Structure> structures, const Candidates& all,
         const std::vector<EffectParameter>& parameters, const SearchRule& rule);
 
-  /// Exchanges y in every workbench, or in those of noise alone: enough for best_single().
+  /// Exchanges y in every workbench, or in those of noise alone: enough for best_found().
   void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone = false);
   Posterior search() const;
-  /// Largest log evidence of one candidate over that of none, in the noise that explains the rows
-  /// best without any: the statistic of the null distribution.
-  double best_single() const;
+  /// Largest log evidence times prior of one candidate, or of that one and the best beside it, over
+  /// that of none, in the noise that explains the rows best without any: the statistic of the null
+  /// distribution.
+  double best_found() const;
 
   const Workbench& workbench(int structure) const { return workbenches_[structure]; }
   const Block& block(int candidate) const { return blocks_[candidate]; }
@@ -100,6 +101,7 @@ class Bench {
   Single weigh(const Workbench& workbench, int candidate) const;
   double plausibility(int candidate, double size) const;
   double held(const Hypothesis& h) const;
+  Hypothesis with_best(const Hypothesis& h, const Workbench& rest) const;
   Hypothesis pruned(Hypothesis h) const;
   Hypothesis without_parts(Hypothesis h) const;
   /// One of them holds all that the other has.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnosis/causes.h"
+
 namespace selfcal {
 namespace {
 
@@ -12,6 +14,28 @@ TEST(LeastProbabilityOfNone, IsThatOfThePublishedTable) {
   EXPECT_NEAR(least_probability_of_none(0.01), 0.111, 5e-4);
   EXPECT_NEAR(least_probability_of_none(0.001), 0.0184, 5e-5);
   EXPECT_EQ(least_probability_of_none(0.5), 0.5);
+}
+
+TEST(NullDistribution, CountsWhatIsAsGoodAndTheRowsThemselves) {
+  const NullDistribution null({0.5, 3, 1, 2});
+  EXPECT_EQ(null.p_of(4), 1.0 / 5);
+  EXPECT_EQ(null.p_of(3), 2.0 / 5);
+  EXPECT_EQ(null.p_of(0), 1);
+}
+
+TEST(Decided, NamesNothingThatNoiseFindsAsOften) {
+  DiagnosisOptions options;
+  Posterior posterior;
+  posterior.none = 0.01;
+  const CauseResult named{.effect = "backlash", .probability = 0.9};
+  EXPECT_EQ(decided(named, posterior, options.name_below_p, options).effect, "backlash");
+  const CauseResult noise = decided(named, posterior, 0.05, options);
+  EXPECT_EQ(noise.effect, kNone);
+  EXPECT_EQ(noise.probability, least_probability_of_none(0.05));
+  posterior.unknown = 0.8;
+  EXPECT_EQ(decided(named, posterior, 0.05, options).effect, kUnknown);
+  EXPECT_EQ(decided({.effect = kUnknown, .probability = 0.6}, posterior, 1, options).probability,
+            0.6);
 }
 
 }  // namespace
