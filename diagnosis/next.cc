@@ -103,7 +103,7 @@ std::vector<NextStep> next_steps(const View& view, const DataSet& data,
   const CauseResult* other = look_alike(diagnosis);
   if (!other || diagnosis.verdict.correction.entries.empty()) return {};
   const Paper paper(view, diagnosis.verdict.correction.entries, other->correction.entries);
-  double own = diagnosis.verdict.probability;  // without that of its look-alikes
+  double own = 0;  // as the candidates have it
   for (const CauseResult& each : diagnosis.candidates)
     if (each.effect == diagnosis.verdict.effect) own = each.probability;
   const double p = std::clamp(own / (own + other->probability), 0.01, 0.99);

@@ -13,7 +13,9 @@ namespace selfcal {
 namespace {
 
 constexpr double kWithNone = 0.25, kWithUnknown = 0.15;  ///< shares of the sessions
-constexpr std::array kVisible{0.5, 1.0, 2.0};            ///< over the noise
+constexpr int kExtendedSingles =
+    4;  ///< a simulated session has one cause: few pairs are as probable
+constexpr std::array kVisible{0.5, 1.0, 2.0};  ///< over the noise
 
 double clamped_logit(double p) {
   p = std::clamp(p, 1e-6, 1 - 1e-6);
@@ -44,7 +46,7 @@ class Simulator {
     for (int i = 0; i < options_.practice; ++i) {
       std::string truth;
       bench_.look_at(session(truth), no_pull);
-      const CauseResult answer = answered(bench_.search());
+      const CauseResult answer = answered(bench_.search(kExtendedSingles, 0));
       stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
         ++none;

@@ -16,10 +16,10 @@ class Search {
         candidates_(static_cast<int>(bench.blocks_.size())),
         kept_(bench.workbenches_.size(), 0) {}
 
-  Posterior run() {
+  Posterior run(int singles, int pairs) {
     visit_singles();
-    extend(best_of(1, bench_.rule_.extended_singles));
-    extend(best_of(2, bench_.rule_.extended_pairs));
+    extend(best_of(1, singles));
+    extend(best_of(2, pairs));
     return posterior();
   }
 
@@ -76,8 +76,8 @@ class Search {
       std::vector<Cause> causes;
       for (const int c : h.candidates) causes.emplace_back(candidate(c).effect, candidate(c).at);
       if (++taken[{causes, h.structure}] > 2) continue;
+      if (static_cast<int>(diverse.size()) >= most) break;
       diverse.push_back(h);
-      if (static_cast<int>(diverse.size()) == most) break;
     }
     return diverse;
   }
@@ -137,7 +137,7 @@ class Search {
   std::map<std::pair<std::vector<int>, int>, Hypothesis> visited_;
 };
 
-Posterior Bench::search() const { return Search(*this).run(); }
+Posterior Bench::search(int singles, int pairs) const { return Search(*this).run(singles, pairs); }
 
 /// Without one candidate after the other, as long as that makes it more probable.
 Hypothesis Bench::pruned(Hypothesis h) const {

@@ -60,7 +60,9 @@ class Bench {
 
   /// Exchanges y in every workbench, or in those of noise alone: enough for best_found().
   void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone = false);
-  Posterior search() const;
+  Posterior search() const { return search(rule_.extended_singles, rule_.extended_pairs); }
+  /// So many singles extended to pairs, so many pairs to triples.
+  Posterior search(int singles, int pairs) const;
   /// Largest log evidence times prior of one candidate, or of that one and the best beside it, over
   /// that of none, in the noise that explains the rows best without any: the statistic of the null
   /// distribution.
