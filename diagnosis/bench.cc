@@ -37,10 +37,20 @@ Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Cand
     groups->back().insert(groups->back().end(), candidate.slack.begin(), candidate.slack.end());
   }
   groups_ = std::move(groups);
-  for (Structure& structure : structures)
-    workbenches_.emplace_back(rows_, std::move(structure), groups_);
+  workbenches_.reserve(structures.size());
+  for (Structure& structure : structures) {
+    Columns columns(*rows_, structure.root);
+    workbenches_.emplace_back(rows_, std::move(structure), groups_, columns);
+    if (blocks_.empty()) make_blocks(parameters);
+    if (!rule_.noise_is_known) agree(workbenches_.back(), std::move(columns));
+  }
+}
+
+/// Each candidate's columns in units that are visible alike beyond the geometry and noise alone.
+void Bench::make_blocks(const std::vector<EffectParameter>& parameters) {
+  const Whitened& rows = *rows_;
   const auto n = static_cast<double>(rows.C.rows());
-  for (const Candidate& candidate : all.list) {
+  for (const Candidate& candidate : all_.list) {
     Block block;
     std::vector<double> unit;
     double visible = 0, whole = 0, largest = 0;
@@ -74,28 +84,29 @@ Bench::Bench(const Whitened& rows, std::vector<Structure> structures, const Cand
     block.group = static_cast<int>(blocks_.size());
     blocks_.push_back(std::move(block));
   }
-  for (int s = 0; s < this->structures() && !rule_.noise_is_known; ++s) agree(s);
 }
 
 /// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
 /// from what its best explanation leaves.
-void Bench::agree(int s) {
+void Bench::agree(Workbench& workbench, Columns columns) {
   for (int i = 0; i < kAgreements; ++i) {
-    double best = workbenches_[s].log_evidence({});
-    double variance = workbenches_[s].estimate({}).variance;
+    double best = workbench.log_evidence({});
+    double variance = workbench.estimate({}).variance;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
       if (!seen_[c]) continue;
-      const Single single = weigh(workbenches_[s], c);
+      const Single single = weigh(workbench, c);
       if (single.log_sum - kWorthwhile < best) continue;
       best = single.log_sum - kWorthwhile;
       const Workbench::Term term{&blocks_[c], single.size};
-      variance = workbenches_[s].estimate({&term, 1}).variance;
+      variance = workbench.estimate({&term, 1}).variance;
     }
     if (std::abs(std::log(variance)) < 0.1) return;
-    Structure agreed = structure(s);
+    Structure agreed = workbench.structure();
     agreed.root *= std::sqrt(variance);
     agreed.noise *= variance;
-    workbenches_[s] = Workbench(rows_, std::move(agreed), groups_);
+    columns.A /= std::sqrt(variance);
+    columns.C /= std::sqrt(variance);
+    workbench = Workbench(rows_, std::move(agreed), groups_, columns);
   }
 }
 

@@ -108,7 +108,9 @@ class Bench {
   Hypothesis without_parts(Hypothesis h) const;
   /// One of them holds all that the other has.
   bool overlap(int a, int b) const;
-  void agree(int structure);
+  void make_blocks(const std::vector<EffectParameter>& parameters);
+  /// `columns` are those of the workbench's structure.
+  void agree(Workbench& workbench, Columns columns);
 
   const Candidates& all_;
   const SearchRule rule_;

@@ -8,19 +8,25 @@
 
 namespace selfcal {
 
+Columns::Columns(const Whitened& rows, const Eigen::MatrixXd& root)
+    : A(solve_lower(root, rows.A)), C(solve_lower(root, rows.C)) {}
+
 Workbench::Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
-                     std::shared_ptr<const Groups> groups) {
+                     std::shared_ptr<const Groups> groups)
+    : Workbench(rows, structure, std::move(groups), Columns(*rows, structure.root)) {}
+
+Workbench::Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
+                     std::shared_ptr<const Groups> groups, const Columns& columns) {
   Fixed fixed{std::move(rows), std::move(groups), std::move(structure), {}, {}, {}};
   const Eigen::MatrixXd& root = fixed.structure.root;
   const Eigen::Index equations = fixed.rows->A.rows();
-  const OrthogonalColumns qr =
-      orthogonal_columns(over_priors(solve_lower(root, fixed.rows->A), fixed.rows->weight));
+  const OrthogonalColumns qr = orthogonal_columns(over_priors(columns.A, fixed.rows->weight));
   fixed.Q = qr.Q;
   constant_ = -qr.log_volume;
   for (Eigen::Index i = 0; i < root.rows(); ++i) constant_ -= std::log(root(i, i));
   // Freedom of the rows alone: each prior determines the share of its parameter that they do not.
   nu_ = static_cast<double>(equations) - fixed.Q.topRows(equations).squaredNorm();
-  const Eigen::MatrixXd C = solve_lower(root, fixed.rows->C);
+  const Eigen::MatrixXd& C = columns.C;
   fixed.QC = fixed.Q.topRows(equations).transpose() * C;
   for (const std::vector<int>& group : *fixed.groups) {
     fixed.at.push_back(kept_.size());

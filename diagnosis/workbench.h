@@ -45,10 +45,19 @@ struct Block {
 /// Columns of C that are weighed together: a workbench keeps their products.
 using Groups = std::vector<std::vector<int>>;
 
+/// The rows' columns as a structure's noise leaves them: L^-1 A, L^-1 C with L its root.
+struct Columns {
+  Columns(const Whitened& rows, const Eigen::MatrixXd& root);
+  Eigen::MatrixXd A, C;
+};
+
 class Workbench {
  public:
   Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
             std::shared_ptr<const Groups> groups);
+  /// With the columns of that structure already at hand.
+  Workbench(std::shared_ptr<const Whitened> rows, Structure structure,
+            std::shared_ptr<const Groups> groups, const Columns& columns);
   const Structure& structure() const { return fixed_->structure; }
 
   /// Exchanges y (for a null distribution); `y` and `pull` as in Whitened.
