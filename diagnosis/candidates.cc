@@ -11,6 +11,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kMoments = 24;    ///< at which a step may have happened
+constexpr int kFewTimes = 40;   ///< up to which it may have happened between any two
 constexpr int kMostWaves = 64;  ///< a turn
 constexpr int kProfile = 30;    ///< waves a turn, of a profile over the whole turn
 constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
@@ -175,7 +176,8 @@ class Maker {
     return static_cast<int>(std::count(data_.rows.set.begin(), data_.rows.set.end(), set));
   }
 
-  /// Between the rows of a set (-1: of all), as many rows from one to the next.
+  /// Between the rows of a set (-1: of all), as many rows from one to the next; of few rows between
+  /// any two.
   std::vector<double> moments(int set) const {
     std::set<double> times;
     for (int row = 0; row < data_.rows.rows() && data_.rows.time.size() > 0; ++row)
@@ -184,8 +186,9 @@ class Maker {
     const std::vector<double> t(times.begin(), times.end());
     std::vector<double> list;
     const auto n = static_cast<double>(t.size());
-    for (int i = 1; i <= kMoments && n >= 8; ++i) {
-      const auto at = static_cast<size_t>(std::lround(n * i / (kMoments + 1)));
+    const int most = n <= kFewTimes ? static_cast<int>(t.size()) - 1 : kMoments;
+    for (int i = 1; i <= most && n >= 8; ++i) {
+      const auto at = static_cast<size_t>(std::lround(n * i / (most + 1)));
       if (at == 0 || at >= t.size()) continue;
       const double moment = (t[at - 1] + t[at]) / 2;
       if (list.empty() || moment > list.back()) list.push_back(moment);

@@ -13,6 +13,9 @@ constexpr double kListed = 0.005;     ///< least probability that is told
 constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
 constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
 constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
+/// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of them.
+constexpr double kMostLeft = 0.2;
+constexpr size_t kMostExplaining = 12;  ///< shapes and places of the probable families
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
@@ -144,27 +147,21 @@ class Teller {
   const Posterior& posterior_;
 };
 
-/// Probability of the cause or of what looks the same on these rows.
-double with_look_alikes(const View& view, const Bench& bench, const Posterior& posterior,
-                        const CauseResult& cause) {
-  const auto answers = [&](const std::string& effect, const std::string& at) {
-    return effect == cause.effect ||
-           std::find(cause.confounded_with.begin(), cause.confounded_with.end(),
-                     label(effect, at)) != cause.confounded_with.end();
+/// Probability of the cause or of known ones that look the same on these rows.
+double with_look_alikes(const View& view, const Posterior& posterior, const CauseResult& cause) {
+  const auto answers = [&](int c) {
+    const Candidate& candidate = view.candidates().list[c];
+    return candidate.effect == cause.effect ||
+           std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
   };
   double sum = 0;
-  for (const Hypothesis& h : posterior.hypotheses) {
-    bool any =
-        h.candidates.empty() && bench.structure(h.structure).kind > 0 && answers(kUnknown, "");
-    for (const int c : h.candidates)
-      any = any || answers(view.candidates().list[c].effect, view.candidates().list[c].at);
-    if (any) sum += std::exp(h.log_weight);
-  }
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (std::ranges::any_of(h.candidates, answers)) sum += std::exp(h.log_weight);
   return std::min(sum, 1.0);
 }
 
-/// What all causes more probable than not explain of the squares, and what is left beyond the
-/// noise; both as the geometry alone sees them.
+/// What all causes more probable than not, and more of their families, explain of the squares, and
+/// what is left beyond the noise; both as the geometry alone sees them.
 struct Shares {
   double explained = 0, left = 0;
 };
@@ -176,7 +173,10 @@ Shares shares(const Bench& bench, const Posterior& posterior) {
       break;
     }
   const Workbench& plain = bench.workbench(0);
-  const double after = plain.given(bench.terms(*best)).total() * bench.noise_variance(0);
+  Hypothesis whole = *best;
+  whole.structure = 0;
+  whole = bench.grow(std::move(whole), kMostExplaining, 0);
+  const double after = plain.given(bench.terms(whole)).total() * bench.noise_variance(0);
   const double before = plain.total() * bench.noise_variance(0);
   const double noise = bench.workbench(best->structure).estimate(bench.terms(*best)).variance *
                        bench.noise_variance(best->structure) * plain.freedom();
@@ -246,12 +246,12 @@ CauseResult named_cause(const View& view, const Bench& bench, const Posterior& p
     if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
   if (!best) return unknown;
   CauseResult known = *best;
-  known.together = with_look_alikes(view, bench, posterior, known);
+  known.together = with_look_alikes(view, posterior, known);
   if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
   // Structure that is surer than the cause: what else it is, nobody knows.
   if (known.together < std::min(kSure, posterior.unknown)) return unknown;
   const Shares part = shares(bench, posterior);
-  return part.left > part.explained ? unknown : known;
+  return part.left > kMostLeft * (part.left + part.explained) ? unknown : known;
 }
 
 CauseResult decided(CauseResult named, const Posterior& posterior, double p,

@@ -11,7 +11,7 @@ std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
                                        const Posterior& posterior);
 
 /// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
-/// than not the largest; `unknown` where more is left than all of these explain.
+/// than not the largest; `unknown` where much is left after all of these.
 CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
                         const std::vector<CauseResult>& causes, const DiagnosisOptions& options);
 

@@ -41,7 +41,7 @@ struct CauseResult {
   std::string effect;
   std::vector<std::string> where = {};
   double probability = 0;
-  double together = 0;   ///< of the verdict: with what cannot be told from it
+  double together = 0;   ///< of the verdict: with the known causes that cannot be told from it
   double survival = 0;   ///< share of it that calibration cannot absorb
   double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
   double visible = 0;    ///< rms of its visible part over the noise

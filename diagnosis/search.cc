@@ -185,7 +185,7 @@ Hypothesis Bench::without_parts(Hypothesis h) const {
   return h;
 }
 
-Hypothesis Bench::grow(Hypothesis h, size_t most) const {
+Hypothesis Bench::grow(Hypothesis h, size_t most, size_t most_families) const {
   h.log_weight = workbenches_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
                  log_prior(h.candidates, h.structure);
   while (h.candidates.size() < most) {
@@ -199,7 +199,8 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
             return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
           }))
         continue;
-      if (families.size() >= 3 && !families.contains(all_.list[static_cast<size_t>(c)].effect))
+      if (families.size() >= most_families &&
+          !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = h;
       const Single single = weigh(rest, c);
