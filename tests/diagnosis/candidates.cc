@@ -1,0 +1,75 @@
+#include "diagnosis/candidates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/kinematics/parsed_robot.h"
+
+namespace selfcal {
+namespace {
+
+/// An arm of one joint, without masses; rows of one surface, a second apart.
+struct Session {
+  explicit Session(int rows) {
+    data.rows.q = Eigen::MatrixXd::Zero(rows, 1);
+    data.rows.set.assign(static_cast<size_t>(rows), 0);
+    data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows - 1);
+    site.begin = 0;
+    site.end = rows - 1;
+  }
+  Candidates candidates() const { return selfcal::candidates(*robot, data, site); }
+  std::shared_ptr<const Robot> robot{
+      robot_of("robot: arm\nkind: serial\nframes:\n"
+               "  - {name: j1, joint: revolute}\n  - {name: tool, joint: fixed, d: 1}\n")};
+  DataSet data;
+  Site site;
+};
+
+TEST(Candidates, HaveAMomentBetweenAnyTwoOfFewRowsAndSpreadOverMany) {
+  const auto moments = [](int rows) {
+    std::vector<double> list;
+    for (const Candidate& each : Session(rows).candidates().list)
+      if (each.effect == "zero_shift")
+        list.push_back(*parse_number(each.entries.front().find("moment")->text));
+    return list;
+  };
+  EXPECT_EQ(moments(9), (std::vector<double>{0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5}));
+  EXPECT_TRUE(moments(7).empty());
+  const std::vector<double> many = moments(400);
+  ASSERT_EQ(many.size(), 24);
+  EXPECT_NEAR(many.front(), 16, 1);
+  EXPECT_NEAR(many.back(), 384, 1);
+}
+
+TEST(Candidates, ShareTheProbabilityOfTheirFamilyAmongPlacesThenShapes) {
+  const Candidates all = Session(50).candidates();
+  std::map<std::string, double> sum;
+  for (const Candidate& each : all.list) sum[each.effect] += std::exp(each.log_prior);
+  EXPECT_GE(sum.size(), 4);
+  for (const auto& [effect, probability] : sum) EXPECT_NEAR(probability, 1, 1e-12) << effect;
+}
+
+TEST(Candidates, LetTheBaseDriftSettleAndWander) {
+  int straight = 0, settling = 0, wandering = 0;
+  for (const Candidate& each : Session(50).candidates().list) {
+    if (each.effect != "base_drift") continue;
+    const Node& entry = each.entries.front();
+    const Node* waves = entry.find("half_waves");
+    (waves ? wandering : entry.find("settle") ? settling : straight) += 1;
+    EXPECT_EQ(each.main.size(), waves ? 6 * waves->items.size() : 6);
+  }
+  EXPECT_EQ(straight, 1);
+  EXPECT_EQ(settling, 2);
+  EXPECT_EQ(wandering, 2);
+}
+
+TEST(Candidates, SayWhatTheRowsCannotTest) {
+  const auto list = Session(50).candidates().untestable;
+  EXPECT_TRUE(std::ranges::any_of(
+      list, [](const Untestable& each) { return each.effect == "thermal_expansion"; }));
+}
+
+}  // namespace
+}  // namespace selfcal
