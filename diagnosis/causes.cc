@@ -15,7 +15,7 @@ constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure 
 constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
 /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of them.
 constexpr double kMostLeft = 0.2;
-constexpr size_t kMostExplaining = 12;  ///< shapes and places of the probable families
+constexpr size_t kMostExplaining = 20;
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
@@ -175,7 +175,7 @@ Shares shares(const Bench& bench, const Posterior& posterior) {
   const Workbench& plain = bench.workbench(0);
   Hypothesis whole = *best;
   whole.structure = 0;
-  whole = bench.grow(std::move(whole), kMostExplaining, 0);
+  whole = bench.grow(std::move(whole), kMostExplaining);
   const double after = plain.given(bench.terms(whole)).total() * bench.noise_variance(0);
   const double before = plain.total() * bench.noise_variance(0);
   const double noise = bench.workbench(best->structure).estimate(bench.terms(*best)).variance *
