@@ -25,7 +25,8 @@ constexpr double kMore[] = {1.4, 2.8, 5.6};              ///< that is structure
 constexpr double kSizes[] = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< of smooth structure, over the noise
 constexpr double kOfJoint[] = {0.7, 1.4, 2.8, 5.6};      ///< of errors of one joint
 constexpr double kJoints = 1.0;                          ///< rad
-constexpr double kPlace = 0.15;                          ///< m
+constexpr double kTurned = 2.0;                          ///< rad, of errors of one joint
+constexpr double kPlace = 0.4;                           ///< m
 constexpr double kTime = 0.1;                            ///< of the whole
 
 class Kernel {
@@ -110,7 +111,7 @@ class Kernel {
     double sum = 0, squares = 0;
     const Eigen::Index joints = data_.q.cols();
     for (Eigen::Index j = 0; j < joints; ++j) {
-      const double each = (1 + bell(std::pow((data_.q(a, j) - data_.q(b, j)) / kJoints, 2))) / 2;
+      const double each = (1 + bell(std::pow((data_.q(a, j) - data_.q(b, j)) / kTurned, 2))) / 2;
       sum += each;
       squares += each * each;
     }

@@ -25,12 +25,20 @@ TrialCause hysteresis(const TrialWorld& world, Random& random) {
           }};
 }
 
+/// Of both angles together only: what is left of the product by one of them alone would be a
+/// coupling or a transmission error, which have names.
 TrialCause cross_coupling(const TrialWorld& world, Random& random) {
   const int n = world.joints();
   const int j = pick(random, n), a = std::min(1, n - 1), b = std::min(2, n - 1);
   const double phase = uniform(random, 0.1, 0.6);
+  double mean_a = 0, mean_b = 0;
+  for (const Instant& row : world.rows) {
+    mean_a += std::sin(row.q[a]) / static_cast<double>(world.rows.size());
+    mean_b += std::sin(row.q[b] + phase) / static_cast<double>(world.rows.size());
+  }
   return {.physics = "the product of two angles", .act = [=](const Instant& at, Deviation& out) {
-            out.joints[j] += 1e-4 * std::sin(at.q[a]) * std::sin(at.q[b] + phase);
+            out.joints[j] +=
+                1e-4 * (std::sin(at.q[a]) - mean_a) * (std::sin(at.q[b] + phase) - mean_b);
           }};
 }
 
