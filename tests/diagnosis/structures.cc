@@ -97,8 +97,8 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   ASSERT_NE(found, list.end());
   const Eigen::MatrixXd S = found->root * found->root.transpose();
   // The first joint's column of mean square 1 is (3, 4) sqrt 2 / 5; its reading differs by a
-  // radian, the other's does not.
-  const double both = 12 * 2.0 / 25, alike = (1 + std::exp(-0.5)) / 2;
+  // radian, half of what errors are smooth over, the other's does not.
+  const double both = 12 * 2.0 / 25, alike = (1 + std::exp(-0.5 / 4)) / 2;
   EXPECT_NEAR(S(0, 1), found->kappa * found->kappa * both * alike, 1e-12);
 }
 
