@@ -15,7 +15,7 @@ constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure 
 constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
 /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of them.
 constexpr double kMostLeft = 0.2;
-constexpr size_t kMostExplaining = 20;
+constexpr size_t kMostExplaining = 20;  ///< candidates
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
@@ -160,7 +160,7 @@ double with_look_alikes(const View& view, const Posterior& posterior, const Caus
   return std::min(sum, 1.0);
 }
 
-/// What all causes more probable than not, and more of their families, explain of the squares, and
+/// What the most probable causes and all that makes them more probable explain of the squares, and
 /// what is left beyond the noise; both as the geometry alone sees them.
 struct Shares {
   double explained = 0, left = 0;
@@ -183,6 +183,14 @@ Shares shares(const Bench& bench, const Posterior& posterior) {
   return {before - after, after - noise};
 }
 
+/// "backlash at j1 and j2".
+std::string with_places(const CauseResult& cause) {
+  std::string words = cause.effect;
+  for (size_t i = 0; i < cause.where.size(); ++i)
+    words += (i == 0 ? " at " : " and ") + cause.where[i];
+  return words;
+}
+
 }  // namespace
 
 std::string verdict_in_words(const Diagnosis& diagnosis) {
@@ -202,12 +210,15 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                     verdict.probability, diagnosis.p_value);
     return text;
   }
-  if (verdict.effect == kUnknown)
-    return "there is structure that no known effect explains: look at the machine, or repeat some "
-           "configurations to be sure of the noise";
-  std::string words = verdict.effect;
-  for (size_t i = 0; i < verdict.where.size(); ++i)
-    words += (i == 0 ? " at " : " and ") + verdict.where[i];
+  if (verdict.effect == kUnknown) {
+    std::string beside;
+    for (const CauseResult& each : diagnosis.candidates)
+      if (names_effect(each.effect) && each.probability > 0.5)
+        beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
+    return "there is structure that no known effect explains" + beside +
+           ": look at the machine, or repeat some configurations to be sure of the noise";
+  }
+  std::string words = with_places(verdict);
   if (!verdict.shape.empty()) words += " (" + verdict.shape + ")";
   for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
     words +=

@@ -185,7 +185,7 @@ Hypothesis Bench::without_parts(Hypothesis h) const {
   return h;
 }
 
-Hypothesis Bench::grow(Hypothesis h, size_t most, size_t most_families) const {
+Hypothesis Bench::grow(Hypothesis h, size_t most) const {
   h.log_weight = workbenches_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
                  log_prior(h.candidates, h.structure);
   while (h.candidates.size() < most) {
@@ -199,7 +199,7 @@ Hypothesis Bench::grow(Hypothesis h, size_t most, size_t most_families) const {
             return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
           }))
         continue;
-      if (families.size() >= most_families &&
+      if (families.size() >= 3 &&
           !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = h;

@@ -88,8 +88,8 @@ class Bench {
   /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
   double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
-  /// at most so many families, or of its own.
-  Hypothesis grow(Hypothesis h, size_t most, size_t families = 3) const;
+  /// at most three families.
+  Hypothesis grow(Hypothesis h, size_t most) const;
 
   static const std::vector<double>& sizes();
 

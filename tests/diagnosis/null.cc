@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "diagnosis/causes.h"
-
 namespace selfcal {
 namespace {
 
@@ -21,21 +19,6 @@ TEST(NullDistribution, CountsWhatIsAsGoodAndTheRowsThemselves) {
   EXPECT_EQ(null.p_of(4), 1.0 / 5);
   EXPECT_EQ(null.p_of(3), 2.0 / 5);
   EXPECT_EQ(null.p_of(0), 1);
-}
-
-TEST(Decided, NamesNothingThatNoiseFindsAsOften) {
-  DiagnosisOptions options;
-  Posterior posterior;
-  posterior.none = 0.01;
-  const CauseResult named{.effect = "backlash", .probability = 0.9};
-  EXPECT_EQ(decided(named, posterior, options.name_below_p, options).effect, "backlash");
-  const CauseResult noise = decided(named, posterior, 0.05, options);
-  EXPECT_EQ(noise.effect, kNone);
-  EXPECT_EQ(noise.probability, least_probability_of_none(0.05));
-  posterior.unknown = 0.8;
-  EXPECT_EQ(decided(named, posterior, 0.05, options).effect, kUnknown);
-  EXPECT_EQ(decided({.effect = kUnknown, .probability = 0.6}, posterior, 1, options).probability,
-            0.6);
 }
 
 }  // namespace
