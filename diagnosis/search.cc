@@ -199,8 +199,7 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
             return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
           }))
         continue;
-      if (families.size() >= 3 &&
-          !families.contains(all_.list[static_cast<size_t>(c)].effect))
+      if (families.size() >= 3 && !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = h;
       const Single single = weigh(rest, c);
