@@ -244,11 +244,15 @@ std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
   return Teller(view, bench, posterior).causes();
 }
 
+CauseResult without_cause(const Posterior& posterior) {
+  if (posterior.unknown > 0.5) return {.effect = kUnknown, .probability = posterior.unknown};
+  return {.effect = kNone, .probability = posterior.none};
+}
+
 CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,
                         const std::vector<CauseResult>& causes, const DiagnosisOptions& options) {
   const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
-  if (posterior.none >= options.name_below_none)
-    return {.effect = kNone, .probability = posterior.none};
+  if (posterior.none >= options.name_below_none) return without_cause(posterior);
   const auto rank = [](const CauseResult& each) {
     return each.probability > 0.5 ? 1 + each.visible : each.probability;
   };

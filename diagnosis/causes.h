@@ -10,6 +10,9 @@ namespace selfcal {
 std::vector<CauseResult> cause_results(const View& view, const Bench& bench,
                                        const Posterior& posterior);
 
+/// What is said where no cause is named: `none`, or `unknown` where that is more probable than not.
+CauseResult without_cause(const Posterior& posterior);
+
 /// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
 /// than not the largest; `unknown` where much is left after all of these.
 CauseResult named_cause(const View& view, const Bench& bench, const Posterior& posterior,

@@ -68,7 +68,7 @@ class Simulator {
   CauseResult answered(const Posterior& posterior) const {
     CauseResult best{.effect = kUnknown, .probability = posterior.unknown};
     if (posterior.none >= options_.name_below_none)
-      best = {.effect = kNone, .probability = posterior.none};
+      best = without_cause(posterior);
     else
       for (const auto& [family, p] : posterior.family)
         if (p > best.probability) best = {.effect = family, .probability = p};

@@ -22,6 +22,16 @@ TEST(Decided, NamesNothingThatNoiseFindsAsOften) {
             0.6);
 }
 
+TEST(WithoutCause, IsUnknownWhereThatIsMoreProbableThanNot) {
+  Posterior posterior;
+  posterior.none = 0.35;
+  posterior.unknown = 0.45;
+  EXPECT_EQ(without_cause(posterior).effect, kNone);
+  posterior.unknown = 0.55;
+  EXPECT_EQ(without_cause(posterior).effect, kUnknown);
+  EXPECT_EQ(without_cause(posterior).probability, 0.55);
+}
+
 Diagnosis with(CauseResult verdict) {
   Diagnosis diagnosis;
   diagnosis.p_value = 0.005;
