@@ -188,21 +188,25 @@ double Bench::best_found() const {
   return std::max(one.log_weight, two.log_weight) - none.log_weight;
 }
 
+/// `h` and one candidate more, `rest` being what `h` leaves.
+Hypothesis Bench::with(Hypothesis h, int candidate, const Workbench& rest) const {
+  const Single single = weigh(rest, candidate);
+  const double before = held(h);
+  h.candidates.push_back(candidate);
+  h.sizes.push_back(single.size);
+  h.log_weight = single.log_sum + before + log_prior(h.candidates, h.structure);
+  return h;
+}
+
 /// `h` and the candidate that makes it most probable, `rest` being what `h` leaves; `h` alone where
 /// there is none.
 Hypothesis Bench::with_best(const Hypothesis& h, const Workbench& rest) const {
   Hypothesis best = h;
   for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
     if (!seen_[c] || std::ranges::count(h.candidates, c) > 0) continue;
-    const Single single = weigh(rest, c);
-    std::vector<int> candidates = h.candidates;
-    candidates.push_back(c);
-    const double log_weight = single.log_sum + held(h) + log_prior(candidates, h.structure);
-    if (best.candidates.size() > h.candidates.size() && log_weight <= best.log_weight) continue;
-    best = h;
-    best.candidates = std::move(candidates);
-    best.sizes.push_back(single.size);
-    best.log_weight = log_weight;
+    Hypothesis more = with(h, c, rest);
+    if (best.candidates.size() == h.candidates.size() || more.log_weight > best.log_weight)
+      best = std::move(more);
   }
   return best;
 }

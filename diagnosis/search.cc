@@ -201,12 +201,8 @@ Hypothesis Bench::grow(Hypothesis h, size_t most) const {
         continue;
       if (families.size() >= 3 && !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
-      Hypothesis more = h;
-      const Single single = weigh(rest, c);
-      more.candidates.push_back(c);
-      more.sizes.push_back(single.size);
-      more.log_weight = single.log_sum + held(h) + log_prior(more.candidates, more.structure);
-      if (more.log_weight > best.log_weight + 1) best = more;
+      Hypothesis more = with(h, c, rest);
+      if (more.log_weight > best.log_weight + 1) best = std::move(more);
     }
     if (best.candidates.size() == h.candidates.size()) break;
     h = pruned(without_parts(std::move(best)));

@@ -103,6 +103,7 @@ class Bench {
   Single weigh(const Workbench& workbench, int candidate) const;
   double plausibility(int candidate, double size) const;
   double held(const Hypothesis& h) const;
+  Hypothesis with(Hypothesis h, int candidate, const Workbench& rest) const;
   Hypothesis with_best(const Hypothesis& h, const Workbench& rest) const;
   Hypothesis pruned(Hypothesis h) const;
   Hypothesis without_parts(Hypothesis h) const;
