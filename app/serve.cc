@@ -17,9 +17,11 @@
 #include "io/clock.h"
 #include "io/dds/messenger.h"
 #include "io/dds/motion.h"
+#include "io/dds/names.h"
 #include "io/dds/participant.h"
 #include "io/dds/thermometer.h"
 #include "io/file.h"
+#include "io/urgency.h"
 #include "sim/ports.h"
 
 namespace selfcal {
@@ -65,12 +67,12 @@ struct RobotPorts {
   std::unique_ptr<DdsThermometer> thermometer;
 
   static Result<RobotPorts> open(const DdsParticipant& participant, const Config& config,
-                                 Wakeup& wakeup) {
+                                 Wakeup& wakeup, Wakeup& trigger_wakeup) {
     RobotPorts ports;
-    const PortContext context{participant, wakeup};
-    auto encoders = config.encoders->open(context);
+    const auto mapping = std::make_shared<TimeMapping>();
+    auto encoders = config.encoders->open({participant, wakeup, mapping});
     if (!encoders) return tl::unexpected(encoders.error());
-    auto trigger = config.trigger->open(context);
+    auto trigger = config.trigger->open({participant, trigger_wakeup, mapping});
     if (!trigger) return tl::unexpected(trigger.error());
     auto motion = DdsMotion::open(participant, config.id, wakeup);
     if (!motion) return tl::unexpected(motion.error());
@@ -131,25 +133,38 @@ Result<void> serve(const Arguments& arguments, Config config) {
   if (!models) return tl::unexpected(models.error());
   if (auto written = models->write_active(config.state); !written) return written;
 
-  Wakeup wakeup;
-  SystemClock clock(wakeup);
+  const auto reach = dds_reach();
+  if (!reach) return tl::unexpected(reach.error());
+  if (auto held = config.commands.hold(*reach); !held) return held;
+  spdlog::info("robot {} in DDS domain {}, topics rt/selfcal/{}/...; {}", config.id, config.domain,
+               ros_name(config.id), config.commands.text());
+  receive_urgently();
+  if (!may_become_urgent())
+    spdlog::info(
+        "no real-time priority here: on a busy computer a touch may be noticed late (LimitRTPRIO)");
+
+  Wakeup wakeup, trigger_wakeup;
+  SystemClock clock(wakeup), trigger_clock(trigger_wakeup);
   auto participant =
       DdsParticipant::open(static_cast<std::uint32_t>(config.domain), "selfcal " + config.id);
   if (!participant) return tl::unexpected(participant.error());
   auto messenger = DdsMessenger::open(*participant, config.id, wakeup);
   if (!messenger) return tl::unexpected(messenger.error());
 
+  auto beside = Store::open(config.state);
+  if (!beside) return tl::unexpected(beside.error());
+  Journal journal(std::move(beside->store));
   const auto serve_with = [&](const Ports& ports) {
-    Service service(config, ports, **messenger, *opened->store, std::move(*models),
+    Service service(config, ports, **messenger, *opened->store, journal, std::move(*models),
                     opened->set_aside);
     run(service, arguments.sessions);
     return Result<void>{};
   };
   if (!arguments.simulate) {
-    auto robot = RobotPorts::open(*participant, config, wakeup);
+    auto robot = RobotPorts::open(*participant, config, wakeup, trigger_wakeup);
     if (!robot) return tl::unexpected(robot.error());
     return serve_with({&clock, robot->encoders.get(), robot->trigger.get(), robot->motion.get(),
-                       robot->thermometer.get()});
+                       robot->thermometer.get(), &trigger_clock, &wakeup});
   }
   auto machine = load_machine(config.simulation, config);
   if (!machine) return tl::unexpected(machine.error());

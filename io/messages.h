@@ -97,8 +97,10 @@ class Messenger {
   virtual void publish(const std::vector<HealthMessage>& health,
                        const std::string& hardware_id) = 0;
   virtual void reply(const CommandReplyMessage& reply) = 0;
-  /// Appends the commands since the last call, oldest first; at most 16, others are refused.
+  /// Appends the commands since the last call, oldest first. Of more than a few a second the others
+  /// are refused at once and counted.
   virtual void take(std::vector<CommandMessage>& out) = 0;
+  virtual std::uint64_t refused() const = 0;
   /// Messages that could not be sent in time since the start.
   virtual std::uint64_t unsent() const = 0;
 };

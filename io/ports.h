@@ -27,6 +27,8 @@ constexpr Nanoseconds nanoseconds(double seconds) {
 }
 constexpr double seconds(Nanoseconds t) { return static_cast<double>(t) * 1e-9; }
 
+class Wakeup;
+
 inline constexpr int kMostJoints = 16;
 
 /// Raw counts of all joints at one moment; complete or not there at all.
@@ -60,8 +62,11 @@ class EncoderSource {
   virtual std::vector<Tally> tallies() const {
     return {};
   }  ///< of what went wrong, since the start
-  /// Senders heard at the moment, where the transport can tell: more than one are two robots.
+  /// Senders heard at the moment, where the transport can tell: more than one are two robots, or
+  /// somebody who pretends to be one.
   virtual int senders() const { return 1; }
+  /// Messages of senders other than the first, none of which was believed, since the start.
+  virtual std::uint64_t strange() const { return 0; }
   /// What is wrong at the moment, in a sentence for a person; empty when nothing is.
   virtual std::string trouble() const { return {}; }
   static constexpr std::size_t kMostSamples = 1024;
@@ -82,6 +87,9 @@ class TouchTrigger {
   /// Appends the edges since the last call, oldest first, not debounced, at most `kMostEdges`.
   virtual Result<void> take(std::vector<Edge>& out) = 0;
   virtual std::uint64_t dropped() const = 0;
+  /// As those of EncoderSource.
+  virtual int senders() const { return 1; }
+  virtual std::uint64_t strange() const { return 0; }
   /// What is wrong at the moment, in a sentence for a person; empty when nothing is.
   virtual std::string trouble() const { return {}; }
   static constexpr std::size_t kMostEdges = 256;
@@ -113,6 +121,7 @@ struct MotionReply {
 };
 std::string_view to_string(MotionReply::Outcome outcome);
 
+/// `request` and `stop` may be called by a thread other than the one that takes.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -120,6 +129,9 @@ class Motion {
   /// Stops whatever moves, now. Never refused, and may be said again.
   virtual Result<void> stop(const std::string& why) = 0;
   virtual Result<void> take(std::vector<MotionReply>& out) = 0;
+  /// Of replies; as those of EncoderSource.
+  virtual int senders() const { return 1; }
+  virtual std::uint64_t strange() const { return 0; }
 };
 
 class Thermometer {
@@ -137,13 +149,17 @@ class Clock {
   virtual void wait(Nanoseconds longest) = 0;
 };
 
-/// The ports of one machine. `thermometer` may be null; the others are not.
+/// The ports of one machine. What may be null says so.
 struct Ports {
   Clock* clock = nullptr;
   EncoderSource* encoders = nullptr;
   TouchTrigger* trigger = nullptr;
   Motion* motion = nullptr;
-  Thermometer* thermometer = nullptr;
+  Thermometer* thermometer = nullptr;  ///< may be null
+  /// With one, the trigger is watched by a thread of its own, whose wait this clock ends as soon as
+  /// the trigger has news. A machine whose time passes in the service's turns has none.
+  Clock* trigger_clock = nullptr;
+  Wakeup* wakeup = nullptr;  ///< ends `clock`'s wait early; may be null
 };
 
 }  // namespace selfcal

@@ -1,5 +1,8 @@
 #include "app/service/config.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "app/service/config_transports.h"
@@ -13,6 +16,12 @@ namespace {
 
 const std::vector<std::string_view> kOwnKeys = {"touches", "surface", "within", "places",
                                                 "way_out"};
+
+constexpr std::array<std::pair<std::string_view, CommandRules::Over>, 4> kOvers = {
+    {{"none", CommandRules::Over::none},
+     {"loopback", CommandRules::Over::loopback},
+     {"secured", CommandRules::Over::secured},
+     {"network", CommandRules::Over::network}}};
 
 /// Reads the parts of a configuration, each into its place.
 class Reader {
@@ -32,6 +41,7 @@ class Reader {
     part(fields, "touch", [&](Fields& f) { read_touch(f); });
     part(fields, "limits", [&](Fields& f) { read_limits(f); });
     part(fields, "accept", [&](Fields& f) { read_accept(f); });
+    part(fields, "commands", [&](Fields& f) { read_commands(f); });
     part(fields, "schedule", [&](Fields& f) { read_schedule(f); });
     c_.resume = fields.flag("resume", c_.resume);
     c_.store_bytes = static_cast<std::int64_t>(fields.number("store_mb", 100, 1, 1e6) * 1e6);
@@ -72,7 +82,35 @@ class Reader {
                : folder       ? std::filesystem::path(folder)
                               : folder_ / "state";
     c_.target = fields.number("target", c_.target, 1e-6, 1);
-    c_.domain = fields.integer("domain", c_.domain, 0, static_cast<int>(kMostDdsDomain));
+    c_.domain = fields.integer("domain", domain_of_environment(fields), 0,
+                               static_cast<int>(kMostDdsDomain));
+  }
+
+  /// Where `monitor`, `command` and ROS 2 are, too.
+  static int domain_of_environment(Fields& fields) {
+    const char* text = std::getenv("ROS_DOMAIN_ID");
+    if (!text || !*text || fields.has("domain")) return 0;
+    const auto number = parse_number(text);
+    if (number && *number >= 0 && *number <= kMostDdsDomain && *number == std::floor(*number))
+      return static_cast<int>(*number);
+    fields.fail("domain", "0 to " + std::to_string(kMostDdsDomain) +
+                              ", as ROS_DOMAIN_ID must be (" + std::string(text) + ")");
+    return 0;
+  }
+
+  void read_commands(Fields& f) {
+    using Over = CommandRules::Over;
+    const std::string over = f.text("over", "none");
+    const auto known = std::ranges::find(kOvers, over, &std::pair<std::string_view, Over>::first);
+    if (known == kOvers.end()) return f.fail("over", "none, loopback, secured or network");
+    c_.commands.over = known->second;
+    for (const std::string& name : f.texts("allow")) {
+      const std::optional<Verb> verb = verb_of(name);
+      if (!verb) return f.fail("allow", "of start, check, abort, accept, reject, rollback");
+      c_.commands.allow.push_back(*verb);
+    }
+    if (c_.commands.over != Over::none && c_.commands.allow.empty())
+      f.fail("allow", "the commands that are taken, by name: [start, abort, ...]");
   }
 
   void read_motion(Fields& f) {

@@ -7,7 +7,7 @@
 //   serial           id                         hardware_id in the diagnostics
 //   state            $STATE_DIRECTORY or state  folder of what must not be lost
 //   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted (1 sigma)
-//   domain           0          0 to 232        of DDS
+//   domain           0          0 to 232        of DDS; $ROS_DOMAIN_ID where it is set
 //   encoders         {}                         where joint readings come from:
 //     kind           dds                        one of io/encoders.def; its own keys are listed in
 //                                               io/encoders/dds.cc, those of socketcan in
@@ -54,6 +54,12 @@
 //     largest_change {}                         most from the active parameters: length 0.005,
 //                                               angle 0.005, base_length 0.05, base_angle 0.05,
 //                                               tool_length 0.05, tool_angle 0.05 (m, rad)
+//   commands         {}                         who may command the service over DDS, and what:
+//     over           none                       what keeps strangers out: loopback, secured (by DDS
+//                                               Security), network (nothing does), or none: no
+//                                               command is taken
+//     allow          none                       [start, check, abort, accept, reject, rollback]:
+//                                               those that are taken, by name
 //   schedule         {}                         when it begins by itself; nothing by default:
 //     every_hours    none       0.0001 to 1e5   after the last session or check
 //     at             none       "HH:MM"         once a day, local time
@@ -73,6 +79,7 @@
 #include <optional>
 #include <string>
 
+#include "app/service/command_rules.h"
 #include "app/service/schedule.h"
 #include "app/service/transition.h"
 #include "constraints/place_fields.h"
@@ -124,6 +131,7 @@ struct Config {
   std::vector<Obstacle> obstacles;
   Node description;  ///< of the data set that a session's touches make
   Acceptance accept;
+  CommandRules commands;
   Schedule schedule;
   bool resume = true;
   std::int64_t store_bytes = 100'000'000;

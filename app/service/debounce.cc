@@ -1,5 +1,7 @@
 #include "app/service/debounce.h"
 
+#include <algorithm>
+
 namespace selfcal {
 
 void Debouncer::begin(bool closed) {
@@ -32,6 +34,12 @@ void Debouncer::end_burst(Nanoseconds now) {
 
 void Debouncer::reconcile(bool closed, Nanoseconds now) {
   if (!burst_ && closed != level_) add({now, closed, false}, now);
+}
+
+std::optional<Nanoseconds> Debouncer::settles_in(Nanoseconds now) const {
+  if (!burst_) return std::nullopt;
+  const Nanoseconds closed = level_ ? heard_ + quiet_ : burst_heard_ + 5 * quiet_;
+  return std::max<Nanoseconds>(0, std::min(heard_ + quiet_, closed) - now);
 }
 
 std::optional<Edge> Debouncer::settled(Nanoseconds now) {

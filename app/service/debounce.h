@@ -26,6 +26,8 @@ class Debouncer {
   void reconcile(bool closed, Nanoseconds now);
   /// The level that has held since, if it is a new one.
   std::optional<Edge> settled(Nanoseconds now);
+  /// When to ask again; nothing while no burst is under way.
+  std::optional<Nanoseconds> settles_in(Nanoseconds now) const;
   std::uint64_t glitches() const { return glitches_; }
   /// Far more bursts within the last second than touches can make.
   bool chatters(Nanoseconds now) const {

@@ -40,27 +40,13 @@ void Senses::listen_to_encoders(Nanoseconds now, std::deque<Event>& events) {
 }
 
 void Senses::listen_to_trigger(Nanoseconds now, std::deque<Event>& events) {
-  new_edges_.clear();
-  // Before the edges are taken: one that comes between the two must not look like a lost one.
-  const std::optional<bool> closed = ports_.trigger->closed();
-  if (const auto taken = ports_.trigger->take(new_edges_); !taken)
-    events.push_back(event_of(Event::What::broken, now, taken.error().what));
-  if (!level_) {
-    known_ = level_ = closed;
-    if (!level_) return;
-    debouncer_.begin(*level_);
-    events.push_back(event_of(*level_ ? Event::What::closed : Event::What::opened, now));
-    return;
+  trigger_ = reflex_.take(now);
+  if (!trigger_.broken.empty())
+    events.push_back(event_of(Event::What::broken, now, trigger_.broken));
+  for (const Edge& edge : trigger_.settled) {
+    if (edge.closed && !closing_) closing_ = edge;
+    events.push_back(event_of(edge.closed ? Event::What::closed : Event::What::opened, now));
   }
-  for (const Edge& edge : new_edges_) debouncer_.add(edge, now);
-  // An edge that was lost on the way shows in the level; a trigger that is gone shows in nothing.
-  known_ = closed;
-  if (known_ && new_edges_.empty()) debouncer_.reconcile(*known_, now);
-  const std::optional<Edge> edge = debouncer_.settled(now);
-  if (!edge) return;
-  level_ = edge->closed;
-  if (edge->closed && !closing_) closing_ = edge;
-  events.push_back(event_of(edge->closed ? Event::What::closed : Event::What::opened, now));
 }
 
 void Senses::listen_to_motion(Nanoseconds now, std::deque<Event>& events) {
@@ -70,6 +56,7 @@ void Senses::listen_to_motion(Nanoseconds now, std::deque<Event>& events) {
   for (const MotionReply& reply : new_replies_) {
     if (reply.id != expected_ || expected_ == 0) continue;
     if (reply.outcome == MotionReply::Outcome::accepted) continue;
+    if (reply.outcome == MotionReply::Outcome::stopped && reflex_.has_stopped(reply.id)) continue;
     expected_ = 0;
     const bool done = reply.outcome == MotionReply::Outcome::done;
     events.push_back(event_of(done ? Event::What::moved : Event::What::refused, now, reply.why));

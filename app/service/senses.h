@@ -6,16 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "app/service/debounce.h"
 #include "app/service/reading.h"
+#include "app/service/reflex.h"
 #include "app/service/transition.h"
 
 namespace selfcal {
 
 class Senses {
  public:
-  Senses(const Ports& ports, Nanoseconds debounce, double rest, Nanoseconds silence)
-      : ports_(ports), debouncer_(debounce), rest_(rest), silence_(silence) {}
+  /// `reflex` watches the trigger of the ports and outlives this.
+  Senses(const Ports& ports, Reflex& reflex, double rest, Nanoseconds silence)
+      : ports_(ports), reflex_(reflex), rest_(rest), silence_(silence) {}
 
   /// Takes what has come in and appends what the service must know of it.
   void listen(Nanoseconds now, std::deque<Event>& events);
@@ -30,20 +31,18 @@ class Senses {
   std::optional<bool> at_rest() const;
   bool moving() const { return at_rest() == false; }
   /// The debounced level; nothing while the trigger is not known or gone.
-  std::optional<bool> closed() const { return known_ ? level_ : std::nullopt; }
+  std::optional<bool> closed() const { return trigger_.known ? trigger_.level : std::nullopt; }
+  const TriggerNews& trigger() const { return trigger_; }
   /// The first closing since forget_closing(): a probe may bounce while the robot brakes.
   const std::optional<Edge>& closing() const { return closing_; }
   void forget_closing() { closing_.reset(); }
-  bool trigger_chatters(Nanoseconds now) const { return debouncer_.chatters(now); }
   std::optional<double> celsius() const {
     return ports_.thermometer ? ports_.thermometer->celsius() : std::nullopt;
   }
   /// Joint readings now; nothing before the first sample.
   std::optional<Eigen::VectorXd> q() const;
 
-  std::uint64_t glitches() const { return debouncer_.glitches(); }
   std::uint64_t samples_dropped() const { return ports_.encoders->dropped(); }
-  std::uint64_t edges_dropped() const { return ports_.trigger->dropped(); }
   double rate() const { return rate_; }  ///< samples per second, over the last ones
 
  private:
@@ -53,16 +52,14 @@ class Senses {
 
   Ports ports_;
   SampleHistory samples_;
-  Debouncer debouncer_;
+  Reflex& reflex_;
+  TriggerNews trigger_;
   double rest_;
   Nanoseconds silence_, heard_ = 0, counted_from_ = 0, period_ = 0;
-  std::optional<bool> level_;  ///< debounced
-  std::optional<bool> known_;  ///< as the port has it
   std::optional<Edge> closing_;
   std::uint64_t expected_ = 0, counted_ = 0;
   double rate_ = 0;
   std::vector<EncoderSample> new_samples_;
-  std::vector<Edge> new_edges_;
   std::vector<MotionReply> new_replies_;
 };
 

@@ -10,15 +10,16 @@ constexpr std::size_t kMostEvents = 1024;
 }  // namespace
 
 Service::Service(Config config, const Ports& ports, Messenger& messenger, Store& store,
-                 Models models, std::string damaged)
+                 Journal& journal, Models models, std::string damaged)
     : config_(std::move(config)),
       ports_(ports),
       messenger_(messenger),
       store_(store),
+      journal_(journal),
       models_(std::move(models)),
       damaged_(std::move(damaged)),
-      senses_(ports, nanoseconds(config_.touch.debounce), config_.touch.rest,
-              nanoseconds(config_.silence)) {
+      reflex_(ports, nanoseconds(config_.touch.debounce)),
+      senses_(ports, reflex_, config_.touch.rest, nanoseconds(config_.silence)) {
   now_ = test_began_ = last_turn_ = began_ = ports_.clock->now();
   // Requests of an earlier life must not be taken for ours.
   motion_id_ = static_cast<std::uint64_t>(ports_.clock->unix_ms()) * 1000;
@@ -75,7 +76,7 @@ void Service::turn() {
   put(Event::What::tick);
   handle_events();
   report();
-  supervisor_.alive(now_);
+  if (reflex_.alive(now_)) supervisor_.alive(now_);
   last_turn_ = now_;
   ports_.clock->wait(longest_wait());
 }
@@ -87,6 +88,7 @@ void Service::listen() {
   std::vector<CommandMessage> commands;
   messenger_.take(commands);
   for (const CommandMessage& command : commands) handle_command(command);
+  tell_refused();
 }
 
 void Service::handle_events() {

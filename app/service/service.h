@@ -9,6 +9,7 @@
 
 #include "app/service/computation.h"
 #include "app/service/config.h"
+#include "app/service/journal.h"
 #include "app/service/models.h"
 #include "app/service/ruling.h"
 #include "app/service/senses.h"
@@ -21,8 +22,8 @@ namespace selfcal {
 class Service {
  public:
   /// `damaged` is what the store had to set aside, or empty. All references outlive the service.
-  Service(Config config, const Ports& ports, Messenger& messenger, Store& store, Models models,
-          std::string damaged);
+  Service(Config config, const Ports& ports, Messenger& messenger, Store& store, Journal& journal,
+          Models models, std::string damaged);
 
   /// One turn: listen, step, act, tell, wait.
   void turn();
@@ -47,6 +48,7 @@ class Service {
   void begin_test();
   void check_self();
   std::string missing() const;
+  std::string two_senders() const;
   std::string beyond_limits() const;
   void check_rest();
   void check_stop();
@@ -55,6 +57,8 @@ class Service {
   // service_commands.cc: what a person asks
   void handle_command(const CommandMessage& command);
   void answer(const Action& action);
+  void refuse(const CommandMessage& command, const std::string& why);
+  void tell_refused();
 
   // service_actions.cc: what the transition says
   void act(const Action& action);
@@ -123,9 +127,11 @@ class Service {
   Ports ports_;
   Messenger& messenger_;
   Store& store_;
+  Journal& journal_;
   Models models_;
   std::string damaged_;
   Supervisor supervisor_;
+  Reflex reflex_;
   Senses senses_;
   Situation situation_;
   std::deque<Event> events_;
@@ -151,7 +157,14 @@ class Service {
   std::shared_ptr<Solution> solution_, unchanged_;
   std::optional<CheckRuling> last_check_;
 
+  /// Commands that were refused, which are told once a second and not one by one.
+  struct Refused {
+    std::uint64_t total = 0, told = 0, unheard = 0;
+    Nanoseconds told_at = 0;
+    std::string last;
+  };
   std::optional<CommandMessage> command_;
+  Refused refused_;
   Since since_;
   double motion_hours_ = 0;
   Nanoseconds last_turn_ = 0, last_report_ = 0, last_health_ = 0, last_remembered_ = 0,

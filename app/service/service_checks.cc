@@ -9,7 +9,6 @@ constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later onl
 constexpr Nanoseconds kStopAgain = kSecond / 10;      // until the robot stands
 constexpr double kBeyond = 0.02;  // rad or m past its limits that a joint may stand
 constexpr const char* kChatters = "the trigger chatters: a loose wire, or no bias?";
-constexpr const char* kTwoSenders = "two senders of encoder readings: are they of two robots?";
 
 /// `what`, and why if that is known.
 std::string because(const std::string& what, const std::string& why) {
@@ -25,9 +24,21 @@ void Service::check_senses() {
   if (!senses_.encoders_alive(now_))
     broken(because("no encoder reading for " + format_number(config_.silence) + " s",
                    ports_.encoders->trouble()));
-  if (!senses_.closed()) broken(because("the trigger is gone", ports_.trigger->trouble()));
-  if (senses_.trigger_chatters(now_)) broken(kChatters);
-  if (ports_.encoders->senders() > 1) broken(kTwoSenders);
+  if (!senses_.closed()) broken(because("the trigger is gone", senses_.trigger().trouble));
+  if (senses_.trigger().chatters) broken(kChatters);
+  if (!reflex_.alive(now_)) broken("the trigger is not watched: its thread hangs");
+  if (const std::string strangers = two_senders(); !strangers.empty()) broken(strangers);
+}
+
+/// The topic that somebody beside the robot writes; empty when there is none.
+std::string Service::two_senders() const {
+  const char* of = ports_.encoders->senders() > 1  ? "encoder readings"
+                   : senses_.trigger().senders > 1 ? "the trigger"
+                   : ports_.motion->senders() > 1  ? "motion replies"
+                                                   : nullptr;
+  if (!of) return {};
+  return std::string("two senders of ") + of +
+         ": are they of two robots, or does somebody pretend to be this one?";
 }
 
 /// What is still missing for the self-test to pass; empty when nothing is.
@@ -35,16 +46,16 @@ std::string Service::missing() const {
   const auto joints = static_cast<int>(config_.robot->joints().size());
   if (!senses_.encoders_alive(now_) || !senses_.at_rest())
     return because("no encoder readings come in", ports_.encoders->trouble());
-  if (ports_.encoders->senders() > 1) return kTwoSenders;
+  if (const std::string strangers = two_senders(); !strangers.empty()) return strangers;
   if (situation_.unfinished && !*senses_.at_rest()) return "the robot moves";
   if (senses_.samples().last().joints != joints)
     return "the encoders give " + std::to_string(senses_.samples().last().joints) +
            " joints, the robot has " + std::to_string(joints);
   if (const std::string beyond = beyond_limits(); !beyond.empty()) return beyond;
-  const std::string trouble = ports_.trigger->trouble();
+  const std::string& trouble = senses_.trigger().trouble;
   if (!senses_.closed()) return because("the trigger's level is not known", trouble);
   if (!trouble.empty()) return trouble;
-  if (senses_.trigger_chatters(now_)) return kChatters;
+  if (senses_.trigger().chatters) return kChatters;
   if (*senses_.closed() && !situation_.unfinished)
     return "the trigger is closed while the robot stands: in contact, stuck, or inverted (`active` "
            "of a GPIO line)";

@@ -6,29 +6,22 @@ namespace {
 
 constexpr std::size_t kMostName = 64;  // of who sends a command
 
-std::optional<Verb> verb_of(const std::string& text) {
-  for (const Verb verb :
-       {Verb::start, Verb::check, Verb::abort, Verb::accept, Verb::reject, Verb::rollback})
-    if (text == to_string(verb)) return verb;
-  return std::nullopt;
-}
-
 }  // namespace
 
 void Service::handle_command(const CommandMessage& command) {
   const std::optional<Verb> verb = verb_of(command.verb);
   if (!verb)
-    return messenger_.reply({command.id, command.verb, false,
-                             "no command is called '" + command.verb +
-                                 "'; known: start, check, abort, accept, reject, rollback"});
+    return refuse(command, "no command is called '" + command.verb.substr(0, kMostName) +
+                               "'; known: start, check, abort, accept, reject, rollback");
+  if (const std::string forbidden = config_.commands.forbids(*verb); !forbidden.empty())
+    return refuse(command, forbidden);
   if (*verb == Verb::check && !can_check())
-    return messenger_.reply({command.id, command.verb, false,
-                             "a quick check compares with an accepted session of this robot and "
-                             "configuration, and there is none: start a full one"});
+    return refuse(command,
+                  "a quick check compares with an accepted session of this robot and "
+                  "configuration, and there is none: start a full one");
   // What came in before the command is handled first, so that it meets the situation as it is.
   handle_events();
   command_ = command;
-  tell("info", "command " + command.verb + " from " + command.from.substr(0, kMostName));
   Event event;
   event.what = Event::What::asked;
   event.verb = *verb;
@@ -39,9 +32,31 @@ void Service::handle_command(const CommandMessage& command) {
 
 void Service::answer(const Action& action) {
   if (!command_) return;
-  const bool granted = action.what == Action::Do::grant;
-  messenger_.reply({command_->id, command_->verb, granted, action.why});
-  if (!granted) tell("warning", command_->verb + " refused: " + action.why);
+  if (action.what != Action::Do::grant) return refuse(*command_, action.why);
+  messenger_.reply({command_->id, command_->verb, true, action.why});
+  tell("info", "command " + command_->verb + " from " + command_->from.substr(0, kMostName));
+}
+
+void Service::refuse(const CommandMessage& command, const std::string& why) {
+  messenger_.reply({command.id, command.verb, false, why});
+  ++refused_.total;
+  refused_.last =
+      command.verb.substr(0, kMostName) + " from " + command.from.substr(0, kMostName) + ": " + why;
+}
+
+/// Once a second at most: who asks again and again must not fill the log, nor keep the loop.
+void Service::tell_refused() {
+  const std::uint64_t unheard = messenger_.refused();
+  if (unheard > refused_.unheard) refused_.last = "too many in a second";
+  refused_.total += unheard - refused_.unheard;
+  refused_.unheard = unheard;
+  if (refused_.total == refused_.told || now_ - refused_.told_at < kSecond) return;
+  const std::uint64_t count = refused_.total - refused_.told;
+  tell("warning",
+       (count == 1 ? "refused " : std::to_string(count) + " commands refused, the last: ") +
+           refused_.last);
+  refused_.told = refused_.total;
+  refused_.told_at = now_;
 }
 
 }  // namespace selfcal

@@ -38,15 +38,18 @@ std::vector<HealthMessage> Service::health() const {
 }
 
 HealthMessage Service::health_of_service() const {
-  const Health level = situation_.state == ServiceState::fault ? Health::error
-                       : situation_.unfinished                 ? Health::warn
-                                                               : Health::ok;
+  const std::string strangers = two_senders();
+  const bool fault = situation_.state == ServiceState::fault;
+  const Health level = fault || !strangers.empty() ? Health::error
+                       : situation_.unfinished     ? Health::warn
+                                                   : Health::ok;
   return {"selfcal: service",
           level,
-          std::string(to_string(situation_.state)) + ": " + situation_.why,
+          with_trouble(std::string(to_string(situation_.state)) + ": " + situation_.why, strangers),
           {{"hardware", std::string(hardware_may(situation_.state, situation_.phase))},
            {"session", std::to_string(situation_.session)},
-           {"unsent", std::to_string(messenger_.unsent())}}};
+           {"unsent", std::to_string(messenger_.unsent())},
+           {"refused_commands", std::to_string(refused_.total)}}};
 }
 
 HealthMessage Service::health_of_encoders() const {
@@ -68,7 +71,8 @@ HealthMessage Service::health_of_encoders() const {
 HealthMessage Service::health_of_trigger() const {
   const auto closed = senses_.closed();
   const bool contact = situation_.state == ServiceState::collecting || situation_.unfinished;
-  const std::string trouble = ports_.trigger->trouble();
+  const TriggerNews& trigger = senses_.trigger();
+  const std::string& trouble = trigger.trouble;
   const Health level = !closed                                     ? Health::error
                        : (*closed && !contact) || !trouble.empty() ? Health::warn
                                                                    : Health::ok;
@@ -76,8 +80,11 @@ HealthMessage Service::health_of_trigger() const {
   return {"selfcal: trigger",
           level,
           with_trouble(state, trouble),
-          {{"glitches", std::to_string(senses_.glitches())},
-           {"dropped", std::to_string(senses_.edges_dropped())}}};
+          {{"glitches", std::to_string(trigger.glitches)},
+           {"dropped", std::to_string(trigger.dropped)},
+           {"slowest_stop_ms", text(1e3 * seconds(reflex_.slowest()))},
+           {"strange_messages", std::to_string(trigger.strange + ports_.encoders->strange() +
+                                               ports_.motion->strange())}}};
 }
 
 HealthMessage Service::health_of_store() const {

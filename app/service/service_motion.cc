@@ -55,7 +55,8 @@ void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
   stopped_ = 0;
   senses_.expect(request.id);
   senses_.forget_closing();
-  if (const auto sent = ports_.motion->request(request); !sent)
+  // Out of a contact the way is free; everywhere else a contact ends the move.
+  if (const auto sent = reflex_.request(request, kind != MoveKind::retract); !sent)
     put(Event::What::broken, false, sent.error().what);
 }
 
@@ -63,7 +64,7 @@ void Service::stop(const std::string& why) {
   senses_.expect(0);
   if (!outstanding_) return;  // what moves is not ours to stop
   stopped_ = now_;
-  if (const auto sent = ports_.motion->stop(why); !sent) tell("error", sent.error().what);
+  if (const auto sent = reflex_.stop(why); !sent) tell("error", sent.error().what);
 }
 
 }  // namespace selfcal

@@ -26,9 +26,7 @@ void Service::tell(const std::string& level, const std::string& text) {
   if (text == last_told_ && now_ - last_told_at_ < kTellAgain) return;
   last_told_ = text;
   last_told_at_ = now_;
-  // An event that cannot be stored must not become an event itself.
-  if (const auto kept = store_.add(EventRecord{0, ports_.clock->unix_ms(), level, text}); !kept)
-    spdlog::error("{}", kept.error().what);
+  journal_.add(EventRecord{0, ports_.clock->unix_ms(), level, text});
 }
 
 StatusMessage Service::status() const {

@@ -126,6 +126,8 @@ void Service::announce_plan() {
   event.via_home = true;
   if (!senses_.encoders_alive(now_) || senses_.at_rest() != true)
     return put(Event::What::planned, false, "the robot does not stand still, or is silent");
+  if (const std::string strangers = two_senders(); !strangers.empty())
+    return put(Event::What::planned, false, strangers);
   const auto here = senses_.q();
   if (here) reached_.assign(here->begin(), here->end());
   if (here && event.step < event.steps) {

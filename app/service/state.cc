@@ -68,6 +68,13 @@ std::string_view to_string(Verb verb) {
   return "";
 }
 
+std::optional<Verb> verb_of(std::string_view text) {
+  for (const Verb verb :
+       {Verb::start, Verb::check, Verb::abort, Verb::accept, Verb::reject, Verb::rollback})
+    if (text == to_string(verb)) return verb;
+  return std::nullopt;
+}
+
 std::string_view hardware_may(ServiceState state, Phase phase) {
   switch (state) {
     case ServiceState::self_test:

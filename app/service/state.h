@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace selfcal {
@@ -31,6 +32,9 @@ std::string_view to_string(ServiceState state);
 std::string_view to_string(Phase phase);  ///< empty for none
 std::string_view to_string(SessionKind kind);
 std::string_view to_string(Verb verb);
+
+/// Nothing for a text that is none of them.
+std::optional<Verb> verb_of(std::string_view text);
 
 /// What the hardware may do, in words; the service asks for nothing else in this state.
 std::string_view hardware_may(ServiceState state, Phase phase);

@@ -41,18 +41,21 @@ DdsEncoders::DdsEncoders(std::vector<std::string> joints, std::shared_ptr<TimeMa
 
 Result<void> DdsEncoders::take(std::vector<EncoderSample>& out) {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  auto taken = reader_.take(kMostSamples, [&](const dds::JointState& state) {
-    EncoderSample sample;
-    const auto lack = read(state, sample);
-    if (!lack) {
-      out.push_back(sample);
-      in_a_row_ = 0;
-      return;
-    }
-    lack_ = *lack;
-    ++incomplete_;
-    ++in_a_row_;
-  });
+  writer_.look(reader_);
+  auto taken =
+      reader_.take(kMostSamples, [&](const dds::JointState& state, dds_instance_handle_t writer) {
+        if (!writer_.believes(writer, reader_)) return;
+        EncoderSample sample;
+        const auto lack = read(state, sample);
+        if (!lack) {
+          out.push_back(sample);
+          in_a_row_ = 0;
+          return;
+        }
+        lack_ = *lack;
+        ++incomplete_;
+        ++in_a_row_;
+      });
   if (!taken) return taken;
   if (out.begin() + first == out.end()) return {};
   if (mapping_->observe(out.back().time, reader_.newest_arrival())) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/dds/endpoint.h"
+#include "io/dds/sole_writer.h"
 #include "io/dds/time_mapping.h"
 #include "io/ports.h"
 
@@ -39,6 +39,7 @@ class DdsEncoders : public EncoderSource {
   std::string trouble() const override;
   /// Publishers heard at the moment.
   int senders() const override { return reader_.matched(); }
+  std::uint64_t strange() const override { return writer_.strange(); }
 
  private:
   /// Why a message is no sample.
@@ -56,6 +57,7 @@ class DdsEncoders : public EncoderSource {
   std::vector<EncoderScale> scales_;
   std::shared_ptr<TimeMapping> mapping_;
   DdsReader<dds::JointState> reader_;
+  SoleWriter writer_;
   std::uint64_t incomplete_ = 0;
   std::uint64_t in_a_row_ = 0;  ///< of these the last ones, after the last sample
   Lack lack_;                   ///< of the last of them

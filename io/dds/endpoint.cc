@@ -100,4 +100,11 @@ std::uint64_t lost_on_the_way(dds_entity_t reader) {
   return status.total_count;
 }
 
+std::vector<dds_instance_handle_t> writers_heard(dds_entity_t reader) {
+  std::vector<dds_instance_handle_t> writers(kMostWriters);
+  const dds_return_t heard = dds_get_matched_publications(reader, writers.data(), writers.size());
+  writers.resize(std::clamp<std::size_t>(heard < 0 ? 0 : heard, 0, kMostWriters));
+  return writers;
+}
+
 }  // namespace selfcal

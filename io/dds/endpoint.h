@@ -11,6 +11,8 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include <selfcal_messages/types.h>
 
@@ -43,6 +45,8 @@ Result<std::unique_ptr<DdsListening>> open_reader(const DdsParticipant& particip
                                                   Wakeup* wakeup);
 Result<void> write(dds_entity_t writer, const void* message);
 std::uint64_t lost_on_the_way(dds_entity_t reader);
+inline constexpr std::size_t kMostWriters = 64;
+std::vector<dds_instance_handle_t> writers_heard(dds_entity_t reader);
 
 /// Sends messages of the generated type T.
 template <class T>
@@ -84,7 +88,8 @@ class DdsReader {
   }
 
   /// Calls `use(const T&)` for each message that has come, oldest first, at most `most`; the
-  /// message is gone when `use` returns.
+  /// message is gone when `use` returns. Of `use(const T&, dds_instance_handle_t)` the second is
+  /// who wrote it.
   template <class Use>
   Result<void> take(std::size_t most, Use use);
   /// All that have come, up to what a reader keeps at most.
@@ -99,6 +104,8 @@ class DdsReader {
     dds_get_subscription_matched_status(handle(), &status);
     return static_cast<int>(status.current_count);
   }
+  /// The writers that we hear, at most kMostWriters of them.
+  std::vector<dds_instance_handle_t> writers() const { return writers_heard(handle()); }
   /// Messages that never came, and those that came and were pushed out before they were taken.
   /// The latter are seen at the next take.
   std::uint64_t lost() const { return lost_on_the_way(handle()) + pushed_out_; }
@@ -109,6 +116,15 @@ class DdsReader {
   explicit DdsReader(std::unique_ptr<DdsListening> listening) : listening_(std::move(listening)) {}
   dds_entity_t handle() const { return listening_->entity.handle(); }
   void note_taken(std::uint64_t arrived, std::size_t taken, bool all);
+  template <class Use>
+  static void hand_over(Use& use, const T& message, const dds_sample_info_t& info) {
+    if constexpr (std::is_invocable_v<Use&, const T&, dds_instance_handle_t>)
+      use(message, info.publication_handle);
+    else if constexpr (std::is_invocable_v<Use&, const T&, const dds_sample_info_t&>)
+      use(message, info);
+    else
+      use(message);
+  }
 
   std::unique_ptr<DdsListening> listening_;
   std::uint64_t taken_ = 0;
@@ -131,7 +147,7 @@ Result<void> DdsReader<T>::take(std::size_t most, Use use) {
         dds_take(handle(), messages.data(), infos.data(), size, static_cast<std::uint32_t>(size));
     if (count < 0) return dds_failed("messages cannot be read", count);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-      if (infos[i].valid_data) use(*static_cast<const T*>(messages[i]));
+      if (infos[i].valid_data) hand_over(use, *static_cast<const T*>(messages[i]), infos[i]);
     if (count > 0) dds_return_loan(handle(), messages.data(), count);
     taken += static_cast<std::size_t>(count);
     all = static_cast<std::size_t>(count) < size;

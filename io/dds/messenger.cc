@@ -16,7 +16,7 @@ namespace selfcal {
 namespace {
 
 constexpr Nanoseconds kRemembered = 60 * kSecond;
-constexpr std::size_t kMostKnown = 64;
+constexpr std::size_t kMostKnown = 2 * DdsMessenger::kMostCommands * (kRemembered / kSecond + 1);
 
 }  // namespace
 
@@ -28,7 +28,7 @@ Result<std::unique_ptr<DdsMessenger>> DdsMessenger::open(const DdsParticipant& p
   opening.open(endpoints.progress, robot_topic(robot, "progress"), kProgress);
   opening.open(endpoints.result, robot_topic(robot, "result"), kLatched);
   opening.open(endpoints.diagnostics, ros_topic("diagnostics"), kDiagnostics);
-  opening.open(endpoints.reply, robot_topic(robot, "command_reply"), kExchange);
+  opening.open(endpoints.reply, robot_topic(robot, "command_reply"), kReplies);
   opening.open(endpoints.command, robot_topic(robot, "command"), kExchange, &wakeup);
   return opening.finish(
       [&] { return std::unique_ptr<DdsMessenger>(new DdsMessenger(robot, std::move(endpoints))); });
@@ -63,19 +63,18 @@ void DdsMessenger::reply(const CommandReplyMessage& reply) {
 }
 
 void DdsMessenger::take(std::vector<CommandMessage>& out) {
-  std::size_t taken = 0;
+  const Nanoseconds now = monotonic_now();
   // A failure to read is a bug of ours or of the library's; the next call tries again.
-  (void)dds_.command.take([&](const dds::Command& received) {
+  (void)dds_.command.take(kMostRead, [&](const dds::Command& received) {
     CommandMessage command = to_plain(received);
     if (known(command)) return;
     CommandReplyMessage reply{.id = command.id, .verb = command.verb, .accepted = false, .why = ""};
-    if (taken == kMostCommands) {
-      reply.why = std::to_string(kMostCommands) + " other commands are waiting";
-      remember(reply, true);
+    if (!(command.verb == "abort" ? aborts_ : commands_).take(now)) {
+      ++refused_;
+      reply.why = "more than " + std::to_string(kMostCommands) + " commands in a second";
       send(reply);
       return;
     }
-    ++taken;
     remember(std::move(reply), false);
     out.push_back(std::move(command));
   });
@@ -94,7 +93,7 @@ bool DdsMessenger::known(const CommandMessage& command) {
 }
 
 void DdsMessenger::remember(CommandReplyMessage reply, bool replied) {
-  if (known_.size() == kMostKnown) known_.pop_front();
+  if (known_.size() >= kMostKnown) known_.pop_front();
   known_.push_back({std::move(reply), replied, monotonic_now()});
 }
 

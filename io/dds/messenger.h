@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "io/dds/allowance.h"
 #include "io/dds/endpoint.h"
 #include "io/messages.h"
 #include "io/ports.h"
@@ -13,7 +14,10 @@ namespace selfcal {
 
 class DdsMessenger : public Messenger {
  public:
-  static constexpr std::size_t kMostCommands = 16;
+  /// Heard in a second, and as many again of `abort`, which no flood of others may keep away.
+  static constexpr int kMostCommands = 16;
+  /// Looked at in one call; the others wait for the next.
+  static constexpr std::size_t kMostRead = 256;
 
   /// `robot` is the robot's id. `wakeup` hears of commands. Both others must outlive the messenger.
   static Result<std::unique_ptr<DdsMessenger>> open(const DdsParticipant& participant,
@@ -27,6 +31,8 @@ class DdsMessenger : public Messenger {
   void reply(const CommandReplyMessage& reply) override;
   /// A command that was sent again is not taken again: its reply is repeated.
   void take(std::vector<CommandMessage>& out) override;
+
+  std::uint64_t refused() const override { return refused_; }
 
   std::uint64_t unsent() const override { return unsent_; }
 
@@ -56,7 +62,8 @@ class DdsMessenger : public Messenger {
   std::string robot_;
   Endpoints dds_;
   std::deque<Known> known_;  ///< the last commands, so that none is obeyed twice
-  std::uint64_t unsent_ = 0;
+  Allowance commands_{kMostCommands, kMostCommands}, aborts_{kMostCommands, kMostCommands};
+  std::uint64_t refused_ = 0, unsent_ = 0;
 };
 
 }  // namespace selfcal

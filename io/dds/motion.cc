@@ -13,7 +13,7 @@ Result<std::unique_ptr<DdsMotion>> DdsMotion::open(const DdsParticipant& partici
   DdsWriter<dds::MotionRequest> requests;
   DdsReader<dds::MotionReply> replies;
   DdsOpening opening(participant);
-  opening.open(requests, robot_topic(robot, "motion_request"), kExchange, &wakeup);
+  opening.open(requests, robot_topic(robot, "motion_request"), kMotion, &wakeup);
   opening.open(replies, robot_topic(robot, "motion_reply"), kExchange, &wakeup);
   return opening.finish([&] {
     return std::unique_ptr<DdsMotion>(
@@ -33,7 +33,10 @@ Result<void> DdsMotion::stop(const std::string& why) {
 }
 
 Result<void> DdsMotion::take(std::vector<MotionReply>& out) {
-  return replies_.take([&](const dds::MotionReply& reply) { out.push_back(to_plain(reply)); });
+  writer_.look(replies_);
+  return replies_.take([&](const dds::MotionReply& reply, dds_instance_handle_t writer) {
+    if (writer_.believes(writer, replies_)) out.push_back(to_plain(reply));
+  });
 }
 
 }  // namespace selfcal

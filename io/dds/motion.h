@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "io/dds/endpoint.h"
+#include "io/dds/sole_writer.h"
 #include "io/ports.h"
 
 namespace selfcal {
@@ -15,10 +15,14 @@ class DdsMotion : public Motion {
   static Result<std::unique_ptr<DdsMotion>> open(const DdsParticipant& participant,
                                                  const std::string& robot, Wakeup& wakeup);
 
-  /// Fails when no robot listens, or when it has not taken earlier requests in time.
+  /// Fails when no robot listens. Never waits for one: who does not take its requests misses the
+  /// older ones, and the move that then never ends is noticed.
   Result<void> request(const MotionRequest& request) override;
   Result<void> stop(const std::string& why) override;
+  /// Replies of the robot's own writer alone (sole_writer.h).
   Result<void> take(std::vector<MotionReply>& out) override;
+  int senders() const override { return replies_.matched(); }
+  std::uint64_t strange() const override { return writer_.strange(); }
   /// Whether a robot listens to requests and sends replies.
   bool connected() const { return requests_.matched() > 0 && replies_.matched() > 0; }
 
@@ -30,6 +34,7 @@ class DdsMotion : public Motion {
   std::string robot_;
   DdsWriter<dds::MotionRequest> requests_;
   DdsReader<dds::MotionReply> replies_;
+  SoleWriter writer_;       ///< of replies
   std::uint64_t last_ = 0;  ///< id of the last request, which a stop repeats
 };
 

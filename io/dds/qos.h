@@ -26,8 +26,13 @@ inline constexpr DdsQos kLatched{.transient_local = true};
 inline constexpr DdsQos kLatchedReader{.transient_local = true, .depth = 64};
 inline constexpr DdsQos kProgress{.depth = 10};
 inline constexpr DdsQos kDiagnostics{.depth = 10};
-/// Requests, commands and their replies: none may be lost without the sender's knowing.
+/// Commands, and what a robot is asked as it hears it: none may be lost without the sender's
+/// knowing.
 inline constexpr DdsQos kExchange{.depth = 0};
+/// What the service asks of a robot: a stop never waits for a reader that has stopped reading.
+inline constexpr DdsQos kMotion{.depth = 16};
+/// Replies to commands: nor does the loop wait for who asks and does not listen.
+inline constexpr DdsQos kReplies{.depth = 64};
 /// From a robot: reliable to send and best effort to receive, so that publishers of both kinds
 /// are heard and readers of both kinds hear.
 inline constexpr DdsQos kSensorWriter{.depth = 10};

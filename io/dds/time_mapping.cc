@@ -7,18 +7,19 @@
 namespace selfcal {
 
 bool TimeMapping::observe(Nanoseconds stamp, Nanoseconds arrived) {
-  const bool first = !offset_;
+  const bool first = !known_;
   const Nanoseconds offset = arrived - stamp;
-  if (!first && std::abs(offset - *offset_) <= kStep) return false;
+  if (!first && std::abs(offset - offset_) <= kStep) return false;
   offset_ = offset;
+  known_ = true;
   if (first) return false;
   ++steps_;
   return true;
 }
 
 std::optional<Nanoseconds> TimeMapping::ours(Nanoseconds stamp) const {
-  if (!offset_) return std::nullopt;
-  return stamp + *offset_;
+  if (!known_) return std::nullopt;
+  return stamp + offset_;
 }
 
 }  // namespace selfcal

@@ -8,12 +8,14 @@
 // touch notices: its edge and its samples share the offset. A drift of a second counts as a step.
 #pragma once
 
+#include <atomic>
 #include <optional>
 
 #include "io/ports.h"
 
 namespace selfcal {
 
+/// One thread observes; any may ask.
 class TimeMapping {
  public:
   static constexpr Nanoseconds kStep = kSecond;
@@ -27,7 +29,8 @@ class TimeMapping {
   std::uint64_t steps() const { return steps_; }
 
  private:
-  std::optional<Nanoseconds> offset_;
+  std::atomic<bool> known_ = false;
+  std::atomic<Nanoseconds> offset_ = 0;
   std::uint64_t steps_ = 0;
 };
 

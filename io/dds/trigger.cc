@@ -34,7 +34,9 @@ Result<void> DdsTrigger::take(std::vector<Edge>& out) {
 }
 
 Result<void> DdsTrigger::receive() {
-  auto taken = reader_.take([&](const dds::StampedBool& message) {
+  writer_.look(reader_);
+  auto taken = reader_.take([&](const dds::StampedBool& message, dds_instance_handle_t writer) {
+    if (!writer_.believes(writer, reader_)) return;
     const bool changed = level_ && *level_ != message.data_;
     level_ = message.data_;
     if (!changed) return;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "io/dds/endpoint.h"
+#include "io/dds/sole_writer.h"
 #include "io/dds/time_mapping.h"
 #include "io/ports.h"
 
@@ -30,8 +30,8 @@ class DdsTrigger : public TouchTrigger {
   std::optional<bool> closed() override;
   Result<void> take(std::vector<Edge>& out) override;
   std::uint64_t dropped() const override { return reader_.lost() + overflowed_; }
-  /// Publishers heard at the moment.
-  int publishers() const { return reader_.matched(); }
+  int senders() const override { return reader_.matched(); }
+  std::uint64_t strange() const override { return writer_.strange(); }
 
  private:
   DdsTrigger(std::shared_ptr<TimeMapping> mapping, DdsReader<dds::StampedBool> reader)
@@ -40,6 +40,7 @@ class DdsTrigger : public TouchTrigger {
 
   std::shared_ptr<TimeMapping> mapping_;
   DdsReader<dds::StampedBool> reader_;
+  SoleWriter writer_;
   std::optional<bool> level_;
   std::deque<Edge> waiting_;  ///< not taken yet, with the sender's stamps
   std::uint64_t overflowed_ = 0;

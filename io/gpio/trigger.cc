@@ -10,6 +10,7 @@
 #include <cerrno>
 
 #include "io/clock.h"
+#include "io/urgency.h"
 
 namespace selfcal {
 namespace {
@@ -55,6 +56,7 @@ Result<void> GpioTrigger::take_line() {
 }
 
 void GpioTrigger::watch() {
+  become_urgent();  // or not: then the kernel decides
   for (;;) {
     std::array<pollfd, 2> wait = {{{stop_, POLLIN, 0}, {-1, POLLIN, 0}}};
     int longest = kTryAgain;

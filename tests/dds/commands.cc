@@ -83,7 +83,7 @@ TEST_F(DdsCommands, AreObeyedOnceWhenRepeatedAndAnsweredAgain) {
   EXPECT_EQ(replied, 2);
 }
 
-TEST_F(DdsCommands, AreRefusedFromTheSeventeenthThatWaitsOn) {
+TEST_F(DdsCommands, AreRefusedFromTheSeventeenthOfASecondOn) {
   auto commands =
       must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
   auto replies = must(DdsReader<dds::CommandReply>::open(
@@ -102,10 +102,31 @@ TEST_F(DdsCommands, AreRefusedFromTheSeventeenthThatWaitsOn) {
   std::vector<std::string> refused;
   must(replies.take([&](const dds::CommandReply& reply) {
     EXPECT_FALSE(reply.accepted_);
-    EXPECT_THAT(reply.why_, HasSubstr("16 other commands are waiting"));
+    EXPECT_THAT(reply.why_, HasSubstr("more than 16 commands in a second"));
     refused.emplace_back(reply.id_);
   }));
   EXPECT_THAT(refused, ElementsAre("16", "17", "18", "19"));
+  EXPECT_EQ(service->refused(), 4);
+}
+
+TEST_F(DdsCommands, LetAnAbortThroughAFloodOfOthers) {
+  auto commands =
+      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
+  ASSERT_TRUE(eventually([&] { return commands.matched() > 0; }));
+  char start[] = "start", abort[] = "abort", from[] = "";
+  std::vector<CommandMessage> taken;
+  for (int i = 0; i < 100; ++i) {
+    std::string id = std::to_string(i);
+    must(commands.write({.id_ = id.data(), .verb_ = start, .from_ = from}));
+    service->take(taken);
+  }
+  char id[] = "last";
+  must(commands.write({.id_ = id, .verb_ = abort, .from_ = from}));
+
+  EXPECT_TRUE(eventually([&] {
+    service->take(taken);
+    return !taken.empty() && taken.back().verb == "abort";
+  }));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class DdsMachine : public DdsTest {
   void SetUp() override {
     ASSERT_TRUE(eventually([&] {
       return robot->connected() && joints->matched() == 1 && contact->matched() == 1 &&
-             motion->connected() && encoders->senders() == 1 && trigger->publishers() == 1;
+             motion->connected() && encoders->senders() == 1 && trigger->senders() == 1;
     }));
   }
   std::vector<Edge> edges() {

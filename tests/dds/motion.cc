@@ -95,7 +95,24 @@ TEST_F(DdsMotionTest, RefusesAKindOfMotionThatIsNone) {
   EXPECT_THAT(replies[0].why, HasSubstr("\"leap\" is no kind of motion"));
 }
 
+TEST_F(DdsMotionTest, TakesNoReplyOfAnybodyButTheRobot) {
+  must(robot->reply({.id = 6, .outcome = MotionReply::Outcome::done, .why = ""}));
+  std::vector<MotionReply> replies;
+  ASSERT_TRUE(eventually([&] { return must(motion->take(replies)), replies.size() == 1; }));
+  const auto stranger = must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
+  ASSERT_TRUE(eventually([&] { return motion->senders() == 2; }));
+
+  must(stranger->reply({.id = 7, .outcome = MotionReply::Outcome::done, .why = ""}));
+  must(robot->reply({.id = 8, .outcome = MotionReply::Outcome::done, .why = ""}));
+
+  ASSERT_TRUE(eventually([&] { return must(motion->take(replies)), replies.size() == 2; }));
+  EXPECT_EQ(replies[1].id, 8);
+  EXPECT_EQ(motion->strange(), 1);
+}
+
 TEST_F(DdsMotionTest, TakesAnOutcomeThatIsNoneForARefusal) {
+  robot.reset();
+  ASSERT_TRUE(eventually([&] { return motion->senders() == 0; }));
   auto writer = must(DdsWriter<dds::MotionReply>::open(
       participant, robot_topic("r", "motion_reply"), kExchange, &wakeup));
   ASSERT_TRUE(eventually([&] { return writer.matched() == 1; }));

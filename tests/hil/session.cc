@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "io/clock.h"
 #include "tests/hil/bus_cell.h"
 #include "tests/support/end_position.h"
+#include "tests/support/stop_watch.h"
 
 namespace selfcal {
 namespace {
@@ -107,6 +109,26 @@ double worst_lateness(const BusCell& cell) {
   return worst;
 }
 
+/// From every edge that the robot drove by a touch to the request to stop (s), beyond the debounce.
+std::vector<double> stop_times(const BusCell& cell, const StopWatch& stop_watch) {
+  const Nanoseconds offset = realtime_now() - monotonic_now();
+  const auto debounce = must(load_config(cell.folder / "config.yaml")).touch.debounce;
+  std::vector<double> took;
+  Nanoseconds last = 0;
+  for (const std::string& line : cell.driven()) {
+    const json edge = json::parse(line);
+    const Nanoseconds at = edge["after_ns"].get<Nanoseconds>() + offset;
+    const bool bounce = at - last < 5 * kMillisecond;
+    last = at;
+    if (bounce || !edge["closed"].get<bool>()) continue;
+    const auto stop = std::ranges::lower_bound(stop_watch.stops(), at);
+    // What closes without a stop soon after was no contact that a move had to end at.
+    if (stop != stop_watch.stops().end() && *stop - at < kSecond)
+      took.push_back(seconds(*stop - at) - debounce);
+  }
+  return took;
+}
+
 /// Not in the virtual machine: what the session on the bus is compared with.
 TEST(SimulatedPorts, CalibrateTheSameCell) {
   if (environment("SELFCAL_HIL_OUT").empty() || !environment("SELFCAL_HIL_INSIDE").empty())
@@ -129,11 +151,18 @@ TEST_F(BusSession, OfAnOrdinaryUserEqualsThatOnTheSimulatedPorts) {
   BusCell cell(small_session(), wires, wires);
   cell.start_bus_robot();
   cell.start_service();
+  const auto participant = must(DdsParticipant::open(cell.domain, "stop watch"));
+  StopWatch stop_watch(participant, "cell");
   ASSERT_TRUE(cell.start_session()) << cell.robot_log();
   const Nanoseconds began = monotonic_now();
   ASSERT_TRUE(cell.until([&] { return cell.in_state("collecting"); }, 1800 * kSecond));
   const Nanoseconds planned = monotonic_now();
-  ASSERT_TRUE(cell.until([&] { return !cell.in_state("collecting"); }, 1800 * kSecond));
+  ASSERT_TRUE(cell.until(
+      [&] {
+        stop_watch.listen();
+        return !cell.in_state("collecting");
+      },
+      1800 * kSecond));
   const Nanoseconds collected = monotonic_now();
   ASSERT_TRUE(
       cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); }, 1800 * kSecond))
@@ -163,6 +192,11 @@ TEST_F(BusSession, OfAnOrdinaryUserEqualsThatOnTheSimulatedPorts) {
       wires.interface.c_str(), result.touches, result.rejected, seconds(planned - began),
       seconds(collected - planned), seconds(monotonic_now() - collected), 1e3 * before, 1e3 * after,
       sigmas, name.c_str(), pairing_us, worst_lateness(cell));
+  const std::vector<double> stops = stop_times(cell, stop_watch);
+  ASSERT_GT(stops.size(), 20u) << "most touches were seen";
+  std::printf("%s: %zu stops, from the edge beyond the debounce: median %.2f ms, worst %.2f ms\n",
+              wires.interface.c_str(), stops.size(), 1e3 * quantile(stops, 0.5),
+              1e3 * std::ranges::max(stops));
 }
 
 }  // namespace

@@ -94,6 +94,8 @@ const CellKeys kValues = {{"id", "cell-7"},
                           {"accept.check", "0.4"},
                           {"accept.margin", "0.1"},
                           {"accept.largest_change", "{length: 0.001, base_angle: 0.02}"},
+                          {"commands.over", "secured"},
+                          {"commands.allow", "[start, abort]"},
                           {"schedule.every_hours", "24"},
                           {"schedule.at", "\"02:30\""},
                           {"schedule.after_motion_hours", "100"},
@@ -113,8 +115,8 @@ TEST(Config, AcceptsEveryKeyOfItsTable) {
   std::set<std::string> known;
   for (const auto& [path, value] : kValues) known.insert(path);
   for (const auto& [path, value] : cell) known.insert(path);
-  const std::set<std::string> parts = {"encoders", "trigger", "motion", "touch",
-                                       "limits",   "sets",    "accept", "schedule"};
+  const std::set<std::string> parts = {"encoders", "trigger", "motion",   "touch",   "limits",
+                                       "sets",     "accept",  "commands", "schedule"};
   for (const Key& key : keys) {
     if (parts.contains(key.path) || key.path == "sets.places" || key.path == "sets.way_out")
       continue;  // of sockets: see below
@@ -192,6 +194,8 @@ TEST(Config, HasTheDefaultsOfItsTable) {
     ASSERT_TRUE(defaults.contains(path)) << path;
     EXPECT_DOUBLE_EQ(defaults[path], value) << path;
   }
+  EXPECT_EQ(config->commands.over, CommandRules::Over::none);
+  EXPECT_THAT(config->commands.forbids(Verb::abort), HasSubstr("takes no commands"));
   EXPECT_FALSE(config->schedule.any());
   EXPECT_FALSE(config->accept.automatic);
   EXPECT_TRUE(config->resume && config->schedule.check_first);
@@ -215,6 +219,9 @@ TEST(Config, PutsEveryValueInItsPlace) {
   EXPECT_EQ(config->limits.most_failures, 6);
   EXPECT_EQ(config->accept.largest_change.length, 0.001);
   EXPECT_EQ(config->accept.largest_change.angle, 0.005) << "left out";
+  EXPECT_EQ(config->commands.over, CommandRules::Over::secured);
+  EXPECT_EQ(config->commands.forbids(Verb::start), "");
+  EXPECT_THAT(config->commands.forbids(Verb::accept), HasSubstr("does not take 'accept'"));
   EXPECT_EQ(config->schedule.at_minute, 150);
   EXPECT_EQ(config->store_bytes, 50'000'000);
   EXPECT_EQ(config->state.filename(), "kept");
@@ -223,11 +230,24 @@ TEST(Config, PutsEveryValueInItsPlace) {
 
 TEST(Config, RefusesAnUnknownKeyOfEachPartWithFileAndLine) {
   for (const char* part : {"", "encoders.", "trigger.", "motion.", "touch.", "limits.", "sets.",
-                           "accept.", "schedule."}) {
+                           "accept.", "commands.", "schedule."}) {
     const std::string why = refusal({{std::string(part) + "speeed", "1"}});
     EXPECT_THAT(why, testing::ContainsRegex("config\\.yaml:[0-9]+: ")) << part;
     EXPECT_THAT(why, HasSubstr("'speeed'")) << part;
   }
+}
+
+TEST(Config, TakesTheDomainOfTheEnvironmentWhereItNamesNone) {
+  setenv("ROS_DOMAIN_ID", "17", 1);
+  const auto silent = load_cell(), named = load_cell({{"domain", "3"}});
+  setenv("ROS_DOMAIN_ID", "many", 1);
+  const auto broken = load_cell();
+  unsetenv("ROS_DOMAIN_ID");
+  ASSERT_TRUE(silent && named);
+  EXPECT_EQ(silent->domain, 17);
+  EXPECT_EQ(named->domain, 3);
+  ASSERT_FALSE(broken);
+  EXPECT_THAT(broken.error().what, HasSubstr("ROS_DOMAIN_ID"));
 }
 
 }  // namespace

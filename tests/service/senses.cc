@@ -57,7 +57,9 @@ class HeardTrigger : public testing::Test {
   NoMotion motion;
   PlayedTrigger trigger;
   std::deque<Event> events;
-  Senses senses{{nullptr, &encoders, &trigger, &motion, nullptr}, 2 * kMillisecond, 1e-4, kSecond};
+  const Ports ports{nullptr, &encoders, &trigger, &motion, nullptr};
+  Reflex reflex{ports, 2 * kMillisecond};
+  Senses senses{ports, reflex, 1e-4, kSecond};
 };
 
 TEST_F(HeardTrigger, KeepsTheFirstContactOfAProbeThatBouncesWhileTheRobotBrakes) {

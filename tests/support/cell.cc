@@ -77,6 +77,7 @@ void Cell::write_files() const {
            options.automatic ? "{auto: true, check: 0.2}" : "{auto: false, check: 0.2}");
   set_line(config, "simulation", options.robot + "_cell.scenario.yaml");
   set_line(config, "schedule", "{}");
+  if (!options.commands.empty()) set_line(config, "commands", options.commands);
   if (options.live) {
     replace_all(config, "  speed: 3.0", "  speed: 40.0");
     replace_all(config, "touch_speed: 0.05", "touch_speed: 0.5");

@@ -25,6 +25,7 @@ struct CellOptions {
   int touches = 0;                        ///< of each set; 0 as the example has it
   bool automatic = true;                  ///< accept without a person
   bool live = false;                      ///< the robot is a process of its own, and a fast one
+  std::string commands = {};              ///< what the configuration says; "" as the example
   std::string machine, config;            ///< further entries of `machine`, further lines
   std::optional<std::uint32_t> domain;    ///< a new one unless given
 };
@@ -43,6 +44,8 @@ class Cell {
   void kill_robot() { robot_.reset(); }
   /// Ends the robot, which then tells its truth.
   void end_robot();
+  /// Its exit status, once it has ended by itself.
+  int wait_for_service() { return service_->wait(); }
   bool service_lives() { return service_ && service_->alive(); }
   pid_t service_pid() const { return service_->pid(); }
 

@@ -1,0 +1,204 @@
+// From contact to stop request, while others do their worst: commands by the hundred, a slow disk,
+// readers that never read, busy processors. tests/sessions/README.md has the table.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "io/clock.h"
+#include "io/dds/names.h"
+#include "tests/support/cell.h"
+#include "tests/support/stop_watch.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kDebounce = 0.002;  // s, as the example's configuration has it
+// Beyond the debounce: the goal that the service is held to, on a computer that has time for it.
+constexpr double kMost = 0.005;
+
+/// A cell whose robot, in a process of its own, is touched many times.
+class Stop : public testing::Test {
+ protected:
+  static CellOptions options() {
+    CellOptions options;
+    options.live = true;
+    return options;
+  }
+
+  void begin(const std::string& preload = {}) {
+    cell.start_robot();
+    cell.start_service(preload);
+    ASSERT_TRUE(cell.start_session());
+  }
+
+  /// Watches touches until there are enough; between them `meddle` is called every 10 ms.
+  void watch(const std::string& what, const std::function<void()>& meddle = {}) {
+    const auto wanted = static_cast<std::size_t>(repetitions("SELFCAL_STOPS", 40));
+    Nanoseconds meddled = 0;
+    ASSERT_TRUE(cell.until([&] {
+      if (meddle && monotonic_now() - meddled > 10 * kMillisecond) {
+        meddled = monotonic_now();
+        meddle();
+      }
+      stop_watch.listen();
+      if (cell.in_state("idle") && stop_watch.took().size() < wanted && again()) return false;
+      return stop_watch.took().size() >= wanted || cell.in_state("fault");
+    }));
+    ASSERT_FALSE(cell.in_state("fault")) << cell.statuses.back().why;
+    for (double& each : took = stop_watch.took()) each -= kDebounce;
+    std::printf("%-44s %5zu stops: median %7.2f ms, 99 %% %7.2f ms, 99.9 %% %7.2f ms\n",
+                what.c_str(), took.size(), 1e3 * quantile(took, 0.5), 1e3 * quantile(took, 0.99),
+                1e3 * quantile(took, 0.999));
+  }
+
+  /// Another session, when one has ended before enough was seen.
+  bool again() {
+    if (cell.results.empty()) return false;
+    return cell.command("start").accepted;
+  }
+
+  Cell cell{options()};
+  DdsParticipant participant = must(DdsParticipant::open(cell.domain, "stop watch"));
+  StopWatch stop_watch{participant, "cell"};
+  std::vector<double> took;
+};
+
+/// Sends commands that are refused, as fast as it is called.
+class Nuisance {
+ public:
+  explicit Nuisance(const DdsParticipant& participant)
+      : commands_(must(DdsWriter<dds::Command>::open(participant, robot_topic("cell", "command"),
+                                                     kReplies))) {}
+  void ask() {
+    std::string id = std::to_string(++count_);
+    char verb[] = "start", from[] = "a nuisance";
+    (void)commands_.write({.id_ = id.data(), .verb_ = verb, .from_ = from});
+  }
+
+ private:
+  DdsWriter<dds::Command> commands_;
+  int count_ = 0;
+};
+
+TEST_F(Stop, ComesAtOnceWhenNothingElseHappens) {
+  begin();
+  watch("quiet");
+  EXPECT_LT(quantile(took, 0.999), kMost);
+}
+
+TEST_F(Stop, ComesAtOnceUnderAHundredCommandsASecondOnASlowDisk) {
+  begin(SELFCAL_SLOW_DISK);
+  Nuisance nuisance(participant);
+  watch("100 commands a second, 10 ms a disk sync", [&] { nuisance.ask(); });
+  EXPECT_LT(quantile(took, 0.999), kMost);
+}
+
+/// A process that subscribes to all that the service writes and takes nothing: once it is full it
+/// acknowledges nothing any more.
+class MuteReader {
+ public:
+  explicit MuteReader(std::uint32_t domain) {
+    setenv("SELFCAL_MUTE_DOMAIN", std::to_string(domain).c_str(), 1);
+    int ready[2];
+    EXPECT_EQ(pipe(ready), 0);
+    setenv("SELFCAL_MUTE_READY", std::to_string(ready[1]).c_str(), 1);
+    char program[] = "/proc/self/exe", filter[] = "--gtest_filter=ReadersOfEveryTopic.*";
+    char* arguments[] = {program, filter, nullptr};
+    EXPECT_EQ(posix_spawn(&pid_, program, nullptr, nullptr, arguments, environ), 0);
+    close(ready[1]);
+    char word = 0;
+    EXPECT_EQ(::read(ready[0], &word, 1), 1) << "it subscribed";
+    close(ready[0]);
+    unsetenv("SELFCAL_MUTE_DOMAIN");
+  }
+  ~MuteReader() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+
+ private:
+  pid_t pid_ = 0;
+};
+
+/// What a MuteReader runs.
+TEST(ReadersOfEveryTopic, Wait) {
+  const char* domain = std::getenv("SELFCAL_MUTE_DOMAIN");
+  if (!domain) GTEST_SKIP() << "for another test, which starts it in a process of its own";
+  const auto participant =
+      must(DdsParticipant::open(static_cast<std::uint32_t>(std::atoi(domain)), "mute"));
+  const auto reader = [&]<class T>(std::type_identity<T>, const std::string& topic) {
+    return must(DdsReader<T>::open(participant, robot_topic("cell", topic), kExchange));
+  };
+  const auto status = reader(std::type_identity<dds::Status>{}, "status");
+  const auto progress = reader(std::type_identity<dds::Progress>{}, "progress");
+  const auto result = reader(std::type_identity<dds::Result>{}, "result");
+  const auto replies = reader(std::type_identity<dds::CommandReply>{}, "command_reply");
+  const auto requests = reader(std::type_identity<dds::MotionRequest>{}, "motion_request");
+  Wakeup wakeup;
+  EXPECT_TRUE(eventually(wakeup, [&] { return requests.matched() > 0; })) << "the service is there";
+  EXPECT_EQ(::write(std::atoi(std::getenv("SELFCAL_MUTE_READY")), "!", 1), 1);
+  pause();
+}
+
+TEST_F(Stop, ComesAtOnceWhileAReaderOfEveryTopicTakesNothing) {
+  begin();
+  const MuteReader mute(cell.domain);
+  Nuisance nuisance(participant);
+  watch("500 commands a second, a reader that takes nothing", [&] {
+    for (int i = 0; i < 5; ++i) nuisance.ask();
+  });
+  EXPECT_LT(quantile(took, 0.999), kMost);
+}
+
+/// Keeps every core busy, at this process's priority.
+class BusyCores {
+ public:
+  BusyCores() {
+    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
+      threads_.emplace_back([this] {
+        while (!ending_) {
+        }
+      });
+  }
+  ~BusyCores() {
+    ending_ = true;
+    for (std::thread& each : threads_) each.join();
+  }
+
+ private:
+  std::atomic<bool> ending_ = false;
+  std::vector<std::thread> threads_;
+};
+
+/// How late the kernel wakes a thread of ordinary priority here (s), over `count` sleeps.
+std::vector<double> wake_ups(int count) {
+  std::vector<double> late;
+  for (int i = 0; i < count; ++i) {
+    const Nanoseconds began = monotonic_now();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    late.push_back(seconds(monotonic_now() - began) - 0.002);
+  }
+  return late;
+}
+
+TEST_F(Stop, ComesWithinTwoMillisecondsOfTheKernelsOwnWakeUpOnBusyCores) {
+  begin();
+  std::vector<double> kernel;
+  {
+    const BusyCores busy;
+    kernel = wake_ups(500);
+    watch("every core busy");
+  }
+  std::printf("%-44s %5zu times: median %7.2f ms, 99.9 %% %7.2f ms\n", "the kernel's own wake-up",
+              kernel.size(), 1e3 * quantile(kernel, 0.5), 1e3 * quantile(kernel, 0.999));
+  EXPECT_LT(quantile(took, 0.999), quantile(kernel, 0.999) + 0.002);
+}
+
+}  // namespace
+}  // namespace selfcal
