@@ -8,11 +8,11 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "constraints/data_set.h"
+#include "constraints/progress.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -138,9 +138,6 @@ struct Options {
   std::vector<double> effect_sigma = {};
   unsigned long long seed = 1;  ///< of the poses at which the endpoint is judged
 };
-
-/// Called now and then with the stage in words and its share done (0 to 1).
-using Progress = std::function<void(std::string_view stage, double share)>;
 
 /// Identifies. `data` must fit `robot` (as io's reader makes sure); names in `options` must exist.
 Solution identify(const Robot& robot, const DataSet& data, const Options& options = {},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "constraints/contact.h"
@@ -32,11 +33,15 @@ class Candidates {
              const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options)
       : robot_(robot), xi_(xi), sets_(sets), obstacles_(obstacles), options_(options) {}
 
-  std::vector<PlannedTouch> of(const TouchTarget& target, int obstacle, Random& random) const {
+  /// `tell` hears of the share of the wanted ones that is found.
+  std::vector<PlannedTouch> of(const TouchTarget& target, int obstacle, Random& random,
+                               const std::function<void(double)>& tell) const {
     std::vector<PlannedTouch> usable;
     const int wanted = kCandidatesEach * target.touches;
-    for (int round = 0; round < kRounds && static_cast<int>(usable.size()) < wanted; ++round)
+    for (int round = 0; round < kRounds && static_cast<int>(usable.size()) < wanted; ++round) {
+      tell(static_cast<double>(usable.size()) / wanted);
       sample(target, obstacle, random, usable);
+    }
     return usable;
   }
 
@@ -195,21 +200,30 @@ bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::Ve
 
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
-                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options) {
+                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
+                       const Progress& progress) {
+  const auto tell = [&](const char* stage, double share) {
+    if (progress) progress(stage, share);
+  };
   TouchPlan plan;
   const Candidates candidates(robot, xi, sets, obstacles, options);
   Random random(options.seed);
   std::vector<std::vector<PlannedTouch>> usable;
   for (const TouchTarget& target : targets) {
-    usable.push_back(candidates.of(target, target.obstacle, random));
+    const auto before = static_cast<double>(usable.size());
+    usable.push_back(candidates.of(target, target.obstacle, random, [&](double share) {
+      tell("looking for touches", (before + share) / static_cast<double>(targets.size()));
+    }));
     const auto found = static_cast<int>(usable.back().size());
     if (found < target.touches && plan.unreached.empty())
       plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(found) + " of " +
                        std::to_string(target.touches) +
                        " touches are within the joint limits, the tilt and reach of home";
   }
+  tell("choosing touches", 0);
   std::vector<PlannedTouch> chosen = choose(robot, xi, sets, targets, usable);
   mark_check(chosen, sets.size(), options.check);
+  tell("ordering touches", 0);
   plan.touches = order(robot, xi, std::move(chosen), obstacles, options);
   return plan;
 }

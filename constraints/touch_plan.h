@@ -11,6 +11,7 @@
 #include "constraints/configurations.h"
 #include "constraints/data_set.h"
 #include "constraints/identification.h"
+#include "constraints/progress.h"
 
 namespace selfcal {
 
@@ -54,10 +55,12 @@ struct TouchPlan {
   std::string unreached;  ///< which set has no or too few reachable places; empty when all has
 };
 
-/// `xi` are the parameters that are believed; `sets` have their methods (touched ones).
+/// `xi` are the parameters that are believed; `sets` have their methods (touched ones). Tells its
+/// progress between its stages and rounds of sampling, where it can be given up.
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
-                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options);
+                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
+                       const Progress& progress = {});
 
 /// How sure the end position will be after those of the planned touches that are not kept aside,
 /// with every surface and socket unknown: over poses of the whole workspace, a rigid motion

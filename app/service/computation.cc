@@ -2,44 +2,46 @@
 
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 namespace selfcal {
 
 Computation::~Computation() {
+  give_up();
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_one();
   if (thread_.joinable()) thread_.join();
 }
 
 void Computation::start(Job job) {
-  if (thread_.joinable()) thread_.join();
-  given_up_ = false;
-  progress_ = {};
-  failure_.clear();
-  running_ = true;
-  wanted_ = true;
-  thread_ = std::thread([this, job = std::move(job)] {
-    const Tell tell = [this](std::string_view stage, double share) {
-      if (given_up_) throw std::runtime_error("given up");
-      const std::lock_guard lock(mutex_);
-      progress_.stage = stage;
-      progress_.share = share;
-    };
-    std::string failure;
-    try {
-      failure = job(tell);
-    } catch (
-        const std::exception& error) {  // out of memory, or a bug that must not end the service
-      failure = error.what();
-    }
+  {
     const std::lock_guard lock(mutex_);
-    failure_ = std::move(failure);
-    running_ = false;
-  });
+    waiting_ = std::move(job);
+    wanted_ = ++last_;
+    progress_ = {};
+  }
+  if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
+  changed_.notify_one();
+}
+
+void Computation::give_up() {
+  const std::lock_guard lock(mutex_);
+  wanted_ = 0;
+  waiting_.reset();
+}
+
+bool Computation::running() const {
+  const std::lock_guard lock(mutex_);
+  return wanted_ != 0 && done_ != wanted_;
 }
 
 bool Computation::take(std::string& failure) {
-  if (!wanted_ || running_) return false;
-  thread_.join();
-  wanted_ = false;
+  const std::lock_guard lock(mutex_);
+  if (wanted_ == 0 || done_ != wanted_) return false;
+  wanted_ = 0;
   failure = failure_;
   return true;
 }
@@ -47,6 +49,34 @@ bool Computation::take(std::string& failure) {
 Computation::Progress Computation::progress() const {
   const std::lock_guard lock(mutex_);
   return progress_;
+}
+
+void Computation::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return ending_ || waiting_; });
+    if (ending_) return;
+    const Job job = *std::exchange(waiting_, std::nullopt);
+    const std::uint64_t number = last_;
+    lock.unlock();
+    std::string failure = run(job, number);
+    lock.lock();
+    failure_ = std::move(failure);
+    done_ = number;
+  }
+}
+
+std::string Computation::run(const Job& job, std::uint64_t number) {
+  const Tell tell = [&](std::string_view stage, double share) {
+    const std::lock_guard lock(mutex_);
+    if (wanted_ != number) throw std::runtime_error("given up");
+    progress_ = {std::string(stage), share};
+  };
+  try {
+    return job(tell);
+  } catch (const std::exception& error) {  // out of memory, or a bug that must not end the service
+    return error.what();
+  }
 }
 
 }  // namespace selfcal
