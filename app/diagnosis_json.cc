@@ -13,12 +13,18 @@ Json of_gap(const Gap& gap) {
   Json json = Json::object({{"rms_nominal", known(gap.rms_nominal)},
                             {"rms_before", known(gap.rms_before)},
                             {"rms_after", known(gap.rms_after)},
+                            {"rms_all", known(gap.rms_all)},
                             {"max_before", known(gap.max_before)},
                             {"max_after", known(gap.max_after)},
+                            {"max_all", known(gap.max_all)},
                             {"noise_floor", known(gap.noise_floor)}});
-  json["closed_fraction"] = gap.closed_fraction ? finite(*gap.closed_fraction) : Json(nullptr);
-  json["closed_interval"] =
-      gap.closed_fraction ? Json::array({gap.closed_least, gap.closed_most}) : Json(nullptr);
+  const auto add = [&](const Closed& closed, const char* fraction, const char* interval) {
+    json[fraction] = closed.fraction ? finite(*closed.fraction) : Json(nullptr);
+    json[interval] =
+        closed.fraction ? Json::array({finite(closed.least), finite(closed.most)}) : Json(nullptr);
+  };
+  add(gap.closed, "closed_fraction", "closed_interval");
+  add(gap.closed_all, "closed_all", "closed_all_interval");
   json["judged_on"] = gap.judged_on;
   json["rows"] = gap.rows;
   return json;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/gap_words.h"
 #include "app/words.h"
 
 namespace selfcal {
@@ -28,11 +29,6 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string spaced(std::string effect) {
-  std::replace(effect.begin(), effect.end(), '_', ' ');
-  return effect;
-}
-
 std::string joined(const std::vector<std::string>& list) {
   std::string text;
   for (const std::string& each : list) text += (text.empty() ? "" : ", ") + each;
@@ -45,15 +41,21 @@ std::string bar(double share, double most = 18) {
                  most * std::clamp(share, 0.0, 1.0));
 }
 
-std::string gap_table(const Gap& gap) {
+std::string gap_table(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
   if (gap.rows == 0) return "<p>No rows are kept aside: how far the gap closes was not judged.</p>";
-  const double most = std::max({gap.rms_before, gap.rms_after, gap.noise_floor, 1e-12});
+  const double most =
+      std::max({gap.rms_before, gap.rms_after, gap.rms_all, gap.noise_floor, 1e-12});
   std::string text = "<table>";
-  const auto row = [&](const char* what, double value) {
-    text += printed("<tr><td>%s<td class=num>%.4g mm<td>", what, 1e3 * value) + bar(value / most);
+  const auto row = [&](const std::string& what, double value) {
+    text += "<tr><td>" + escaped(what) + printed("<td class=num>%.4g mm<td>", 1e3 * value) +
+            bar(value / most);
   };
   row("calibrated, geometry alone", gap.rms_before);
-  row("with the named effects", gap.rms_after);
+  if (const std::string named = named_in_words(diagnosis); !named.empty())
+    row("with " + named, gap.rms_after);
+  if (const std::string found = found_in_words(diagnosis); !found.empty())
+    row("with " + found, gap.rms_all);
   row("noise", gap.noise_floor);
   text += "</table>";
   text += printed(
@@ -61,9 +63,8 @@ std::string gap_table(const Gap& gap) {
       "the "
       "maker's figures.",
       gap.rows, 1e3 * gap.rms_nominal);
-  if (gap.closed_fraction)
-    text += printed(" %.0f %% of what calibration leaves is closed (95 %%: %.0f to %.0f %%).",
-                    100 * *gap.closed_fraction, 100 * gap.closed_least, 100 * gap.closed_most);
+  if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
+    text += " " + closed + ", each with its 95 % interval.";
   return text + "</p>";
 }
 
@@ -71,7 +72,7 @@ std::string cause_table(const std::vector<CauseResult>& causes) {
   std::string text = "<table><tr><th>cause<th>where<th>probability<th>size<th>cannot be told from";
   for (const CauseResult& each : causes) {
     if (each.probability < 0.01) continue;
-    text += "<tr><td>" + spaced(each.effect) + "<td>" + joined(each.where) +
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + joined(each.where) +
             (each.shape.empty() ? "" : " " + each.shape) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) + "<td>";
     if (each.visible > 0) text += printed("%.2g &times; noise", each.visible);
@@ -122,14 +123,14 @@ std::string where(const Where& where) {
 std::string limits(const Diagnosis& diagnosis) {
   std::string text = "<table><tr><th>cause<th>where<th>smallest that would have been named";
   for (const Detectable& each : diagnosis.detectable)
-    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.where) +
             printed("<td class=num>%.2g %s", each.smallest, each.unit.c_str());
   text += "</table>";
   if (diagnosis.untestable.empty()) return text;
   text += "<h3>Cannot be tested on these rows</h3><table>";
   for (const Untestable& each : diagnosis.untestable)
-    text +=
-        "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.at) + "<td>" + escaped(each.why);
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.at) + "<td>" +
+            escaped(each.why);
   return text + "</table>";
 }
 
@@ -157,7 +158,7 @@ std::string change_table(const std::vector<Change>& changes) {
   if (changes.empty()) return "";
   std::string text = "<table><tr><th>change<th>where<th>probability<th>size";
   for (const Change& each : changes)
-    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.where) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) +
             "<td class=num>" + sizes(each.values);
   return text + "</table>";
@@ -174,7 +175,7 @@ std::string shown_table(const char* title, const std::vector<ShownCause>& causes
                      "</h3><table><tr><th>cause<th>where<th>probability<th>size<th>cannot be told "
                      "from";
   for (const ShownCause& each : causes)
-    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) +
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.where) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) +
             "<td class=num>" + sizes(each.parameters) + "<td class=muted>" +
             joined(each.confounded_with);
@@ -186,7 +187,8 @@ std::string shared_table(const std::vector<SharedCause>& causes) {
   std::string text =
       "<h3>In both</h3><table><tr><th>cause<th>where<th>robot<th>simulation<th>apart";
   for (const SharedCause& each : causes) {
-    text += "<tr><td>" + spaced(each.effect) + "<td>" + escaped(each.where) + "<td><td><td>";
+    text +=
+        "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.where) + "<td><td><td>";
     for (const SideBySide& p : each.parameters)
       text += "<tr><td class=muted>" + escaped(p.robot.name) + "<td><td class=num>" +
               sizes({p.robot}) + "<td class=num>" + sizes({p.simulation}) +
@@ -214,7 +216,7 @@ std::string html_report(const Findings& findings) {
   std::string text = "<!doctype html><html lang=en><meta charset=utf-8><title>Diagnosis of " +
                      escaped(name) + "</title><style>" + kStyle + "</style>";
   text += "<h1>" + escaped(name) + "</h1><p class=why>" + escaped(diagnosis.why) + "</p>";
-  text += "<h2>How far the gap closes</h2>" + gap_table(diagnosis.gap);
+  text += "<h2>How far the gap closes</h2>" + gap_table(diagnosis);
   text += "<h2>What causes it</h2>" + cause_table(diagnosis.candidates);
   text += parameter_table(diagnosis.candidates) + next(diagnosis);
   if (findings.since) text += changed(*findings.since);

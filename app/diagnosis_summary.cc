@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "app/gap_words.h"
 #include "app/words.h"
 
 namespace selfcal {
@@ -10,29 +11,19 @@ namespace {
 
 constexpr size_t kMostListed = 6;
 
-std::string places(const std::vector<std::string>& where) {
-  std::string text;
-  for (size_t i = 0; i < where.size(); ++i)
-    text += (i == 0 ? " at " : i + 1 == where.size() ? " and " : ", ") + where[i];
-  return text;
-}
-
-std::string spaced(std::string effect) {
-  for (char& c : effect)
-    if (c == '_') c = ' ';
-  return effect;
-}
-
-std::string gap_line(const Gap& gap) {
+std::string gap_lines(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
   if (gap.rows == 0) return "No rows are kept aside: how far the gap closes was not judged.\n";
   std::string text = printed("Gap: %.4g mm with the maker's figures, %.4g mm calibrated",
                              1e3 * gap.rms_nominal, 1e3 * gap.rms_before);
-  text += printed(", %.4g mm with the named effects; noise %.4g mm (rms, %d rows %s)\n",
-                  1e3 * gap.rms_after, 1e3 * gap.noise_floor, gap.rows,
+  if (const std::string named = named_in_words(diagnosis); !named.empty())
+    text += printed(", %.4g mm with ", 1e3 * gap.rms_after) + named;
+  if (const std::string found = found_in_words(diagnosis); !found.empty())
+    text += printed(", %.4g mm with ", 1e3 * gap.rms_all) + found;
+  text += printed("; noise %.4g mm (rms, %d rows %s)\n", 1e3 * gap.noise_floor, gap.rows,
                   gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
-  if (gap.closed_fraction)
-    text += printed("     %.0f %% of what calibration leaves is closed (%.0f to %.0f %%)\n",
-                    100 * *gap.closed_fraction, 100 * gap.closed_least, 100 * gap.closed_most);
+  if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
+    text += "     " + closed + "\n";
   return text;
 }
 
@@ -41,7 +32,8 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
   for (size_t i = 0; i < causes.size() && i < kMostListed; ++i) {
     const CauseResult& each = causes[i];
     if (i > 2 && each.probability < 0.02) break;
-    text += printed("  %9.3f    ", each.probability) + spaced(each.effect) + places(each.where);
+    text += printed("  %9.3f    ", each.probability) + effect_in_words(each.effect) +
+            places_in_words(each.where);
     if (!each.shape.empty()) text += " " + each.shape;
     if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
     text += "\n";
@@ -66,7 +58,7 @@ std::string share_line(const char* title, const Shares& shares) {
 }  // namespace
 
 std::string summary(const Diagnosis& diagnosis) {
-  std::string text = diagnosis.why + "\n" + gap_line(diagnosis.gap);
+  std::string text = diagnosis.why + "\n" + gap_lines(diagnosis);
   text += cause_lines(diagnosis.candidates);
   const std::string where = share_line("by joint:", diagnosis.where.by_joint) +
                             share_line("by set:  ", diagnosis.where.by_set);

@@ -24,7 +24,8 @@ TrialCauseNamed named(const CauseResult& cause) {
 TrialAnswer answer_of(const Diagnosis& diagnosis) {
   TrialAnswer answer{named(diagnosis.verdict)};
   for (const CauseResult& each : diagnosis.candidates) answer.candidates.push_back(named(each));
-  answer.closed = diagnosis.gap.closed_fraction;
+  // A fit that is told the truth is told every cause, the verdict names the largest.
+  answer.closed = diagnosis.gap.closed_all.fraction;
   return answer;
 }
 

@@ -98,7 +98,7 @@ class Teller {
         squares += v.dot(bench_.workbench(0).gram(block.columns, block.columns) * v);
         cause.survival = std::max(cause.survival, bench_.survival(c));
         add_parameters(c, estimate, first, cause);
-        bench_.add_sigma(c, found->sizes[i], cause.correction.sigma);
+        bench_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);
       }
       first += size;
     }
@@ -120,7 +120,7 @@ class Teller {
            p.usual_least, p.usual_most});
       entry.set(p.name, Node::of(estimate.mean[i]));
     }
-    cause.correction.entries.push_back(std::move(entry));
+    cause.correction.push_back({std::move(entry)});
   }
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.

@@ -1,8 +1,10 @@
-// How far the gap closes: the geometry alone against the geometry with the named effects, both
-// identified from the `fit` rows by the full, nonlinear identification and judged on the others.
+// How far the gap closes: the geometry alone, with the named effects alone, and with everything
+// found, each identified from the `fit` rows by the full, nonlinear identification and judged on
+// the others.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "constraints/adjustment.h"
@@ -12,12 +14,15 @@ namespace selfcal {
 
 struct Closing {
   std::vector<JudgedRow> judged;
-  Adjusted after;
-  std::shared_ptr<const Robot> model;  ///< of `after`
-  std::vector<Rejected> rejected;      ///< judging rows that neither model explains
+  std::shared_ptr<const Robot> model;  ///< with everything found
+  Adjusted all;                        ///< its fit
+  bool converged = true;               ///< every fit that was judged
+  std::string stop_reason;             ///< of the first one that did not converge
+  std::vector<Rejected> rejected;      ///< judging rows that no model explains
 };
 
-/// `before` is the geometry's own adjustment; the parameters of `correction` are identified.
+/// `before` is the geometry's own adjustment; the parameters of `correction` are identified, those
+/// of its named effects once more without the others.
 /// `noise` is 1 sigma of one scalar (m).
 Closing close_gap(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
                   const DataSet& data, const Correction& correction, const Site& site, double noise,

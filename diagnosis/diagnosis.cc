@@ -8,6 +8,7 @@
 #include "diagnosis/closing.h"
 #include "diagnosis/detectable.h"
 #include "diagnosis/folds.h"
+#include "diagnosis/named.h"
 #include "diagnosis/next.h"
 #include "diagnosis/null.h"
 #include "diagnosis/practice.h"
@@ -109,15 +110,17 @@ class Diagnostician {
       const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
                         view_.parameters(), rule);
       best.structure = 0;
-      best = bench.grow(best, kMostEffects);
+      // What is named is in the model, even where all the rest together makes up for it.
+      best = with_named(bench.grow(best, kMostEffects), result_.verdict, all, posterior_);
       const auto [columns, sigma] = Workbench::unfold(bench.terms(best));
       const double variance =
           bench.workbench(0).estimate(bench.terms(best)).variance * bench.noise_variance(0);
       const bool again = view_.refine(view_.residuals(columns, sigma), variance);
       if (again && pass + 1 < kPasses) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
-        correction.entries.push_back(all.list[best.candidates[i]].entries.front());
-        bench.add_sigma(best.candidates[i], best.sizes[i], correction.sigma);
+        const Candidate& each = all.list[best.candidates[i]];
+        correction.push_back({each.entries.front(), {}, names(result_.verdict, each)});
+        bench.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
       }
       break;
     }
@@ -128,28 +131,27 @@ class Diagnostician {
   /// The best explanation with what is named; beside an unknown one, of what is probable all the
   /// same.
   Hypothesis believed() const {
-    const std::string& named = result_.verdict.effect;
-    if (named == kNone) return {};
-    const auto effect = [&](int c) { return view_.candidates().list[c].effect; };
+    const CauseResult& verdict = result_.verdict;
+    if (verdict.effect == kNone) return {};
+    const auto candidate = [&](int c) -> const Candidate& { return view_.candidates().list[c]; };
+    const auto probable = [&](int c) { return posterior_.family.at(candidate(c).effect) > 0.5; };
+    const auto named = [&](int c) { return names(verdict, candidate(c)); };
     for (const Hypothesis& h : posterior_.hypotheses)
       if (!h.candidates.empty() &&
-          (named == kUnknown
-               ? std::ranges::all_of(h.candidates,
-                                     [&](int c) { return posterior_.family.at(effect(c)) > 0.5; })
-               : std::ranges::any_of(h.candidates, [&](int c) { return effect(c) == named; })))
+          (verdict.effect == kUnknown ? std::ranges::all_of(h.candidates, probable)
+                                      : std::ranges::any_of(h.candidates, named)))
         return h;
     return {};
   }
 
-  /// Geometry alone against geometry with the effects that are there.
+  /// Geometry alone against geometry with what is named, and with everything found.
   void close() {
     const Hypothesis best = believed();
     const double noise = result_.noise;
-    Correction correction;
-    if (!best.candidates.empty()) correction = grown(best);
+    if (!best.candidates.empty()) result_.found = grown(best);
     // What nobody knows is no noise; nor is what more of the named effects explains.
     if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
-    Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, correction,
+    Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, result_.found,
                                 view_.site(), result_.noise, options_);
     result_.judged = std::move(closing.judged);
     result_.gap = gap_of(result_.judged, options_.seed);
@@ -159,21 +161,20 @@ class Diagnostician {
         result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
                                     "no explanation comes near it: a false reading"});
     result_.model = closing.model;
-    result_.values = closing.after.fitted.state.xi;
-    result_.converged = view_.adjusted().fitted.converged && closing.after.fitted.converged;
+    result_.values = closing.all.fitted.state.xi;
+    result_.converged = closing.converged;
     close_each();
-    result_.warnings = warnings_of(view_, data_, closing.after);
+    result_.warnings = warnings_of(view_, data_, closing);
   }
 
   /// What each of the probable causes would close alone.
   void close_each() {
     int tried = 0;
     for (CauseResult& each : result_.candidates) {
-      if (each.correction.entries.empty() || each.probability < kTried || ++tried > kMostTried)
-        continue;
+      if (each.correction.empty() || each.probability < kTried || ++tried > kMostTried) continue;
       const Closing alone = close_gap(view_.shared_geometry(), view_.adjusted(), data_,
                                       each.correction, view_.site(), result_.noise, options_);
-      each.rms_after = gap_of(alone.judged, options_.seed).rms_after;
+      each.rms_after = gap_of(alone.judged, options_.seed).rms_all;
     }
   }
 

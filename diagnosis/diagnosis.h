@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "constraints/identification.h"
+#include "diagnosis/correction.h"
 #include "diagnosis/gap.h"
 #include "diagnosis/search.h"
 
@@ -29,12 +30,6 @@ struct DiagnosisOptions {
 struct NamedValue {
   std::string name, unit;
   double value = 0, sigma = 0, usual_least = 0, usual_most = 0;
-};
-
-/// Effects that are put into the model.
-struct Correction {
-  std::vector<Node> entries;  ///< of a robot file
-  std::vector<double> sigma;  ///< prior 1 sigma of each parameter: the size that the rows speak for
 };
 
 struct CauseResult {
@@ -92,7 +87,7 @@ struct Practice {
 struct Diagnosis {
   /// Why these rows cannot be diagnosed; all else is empty then. Empty: they can.
   std::string problem;
-  bool converged = true;  ///< both fits that the gap is taken between
+  bool converged = true;  ///< the fits that the gap is taken between
   Gap gap;
   std::vector<JudgedRow> judged;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
@@ -106,7 +101,8 @@ struct Diagnosis {
   std::vector<NextStep> next;
   std::vector<Rejected> rejected;
   std::vector<std::string> warnings;
-  std::shared_ptr<const Robot> model;  ///< geometry and the named effects, and its values
+  Correction found;                    ///< the effects of `model`, in its order
+  std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values
   Eigen::VectorXd values;
   double noise = 0;  ///< m, 1 sigma of one scalar
 };

@@ -12,38 +12,44 @@ namespace {
 constexpr int kResamples = 1000;
 constexpr double kWithinFloor = 1.05;  ///< before over floor below which nothing can be said
 
-std::optional<double> closed(const std::vector<JudgedRow>& rows) {
+using Square = double JudgedRow::*;
+
+std::optional<double> fraction(const std::vector<JudgedRow>& rows, Square square) {
   double before = 0, after = 0, floor = 0;
   for (const JudgedRow& row : rows) {
     before += row.before;
-    after += row.after;
+    after += row.*square;
     floor += row.floor;
   }
   if (!(before > kWithinFloor * kWithinFloor * floor)) return std::nullopt;
-  return std::clamp(1 - (after - floor) / (before - floor), 0.0, 1.0);
+  return 1 - (after - floor) / (before - floor);
 }
 
-void add_interval(const std::vector<JudgedRow>& rows, unsigned long long seed, Gap& gap) {
+/// A resample that lies within the floor says that nothing is closed.
+Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long long seed) {
+  Closed part{fraction(rows, square)};
+  if (!part.fraction) return part;
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<size_t> pick(0, rows.size() - 1);
   std::vector<double> list;
   std::vector<JudgedRow> drawn(rows.size());
   for (int i = 0; i < kResamples; ++i) {
     for (JudgedRow& row : drawn) row = rows[pick(random)];
-    list.push_back(closed(drawn).value_or(0));
+    list.push_back(fraction(drawn, square).value_or(0));
   }
   std::sort(list.begin(), list.end());
-  gap.closed_least = list[static_cast<size_t>(0.025 * kResamples)];
-  gap.closed_most = list[static_cast<size_t>(0.975 * kResamples)];
+  part.least = list[static_cast<size_t>(0.025 * kResamples)];
+  part.most = list[static_cast<size_t>(0.975 * kResamples)];
+  return part;
 }
 
-double rms(const std::vector<JudgedRow>& rows, double JudgedRow::*square) {
+double rms(const std::vector<JudgedRow>& rows, Square square) {
   double sum = 0;
   for (const JudgedRow& row : rows) sum += row.*square;
   return rows.empty() ? 0 : std::sqrt(sum / static_cast<double>(rows.size()));
 }
 
-double largest(const std::vector<JudgedRow>& rows, double JudgedRow::*square) {
+double largest(const std::vector<JudgedRow>& rows, Square square) {
   double most = 0;
   for (const JudgedRow& row : rows) most = std::max(most, row.*square);
   return std::sqrt(most);
@@ -58,11 +64,13 @@ Gap gap_of(const std::vector<JudgedRow>& rows, unsigned long long seed) {
   gap.rms_nominal = rms(rows, &JudgedRow::nominal);
   gap.rms_before = rms(rows, &JudgedRow::before);
   gap.rms_after = rms(rows, &JudgedRow::after);
+  gap.rms_all = rms(rows, &JudgedRow::all);
   gap.max_before = largest(rows, &JudgedRow::before);
   gap.max_after = largest(rows, &JudgedRow::after);
+  gap.max_all = largest(rows, &JudgedRow::all);
   gap.noise_floor = rms(rows, &JudgedRow::floor);
-  gap.closed_fraction = closed(rows);
-  if (gap.closed_fraction) add_interval(rows, seed, gap);
+  gap.closed = closed(rows, &JudgedRow::after, seed);
+  gap.closed_all = closed(rows, &JudgedRow::all, seed);
   return gap;
 }
 

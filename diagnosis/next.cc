@@ -86,7 +86,7 @@ class Paper {
 const CauseResult* look_alike(const Diagnosis& diagnosis) {
   for (const CauseResult& each : diagnosis.candidates)
     for (const std::string& name : diagnosis.verdict.confounded_with)
-      if (each.effect != diagnosis.verdict.effect && !each.correction.entries.empty() &&
+      if (each.effect != diagnosis.verdict.effect && !each.correction.empty() &&
           name.substr(0, name.find('@')) == each.effect)
         return &each;
   return nullptr;
@@ -101,8 +101,8 @@ std::string first_label(const CauseResult& cause) {
 std::vector<NextStep> next_steps(const View& view, const DataSet& data,
                                  const Diagnosis& diagnosis) {
   const CauseResult* other = look_alike(diagnosis);
-  if (!other || diagnosis.verdict.correction.entries.empty()) return {};
-  const Paper paper(view, diagnosis.verdict.correction.entries, other->correction.entries);
+  if (!other || diagnosis.verdict.correction.empty()) return {};
+  const Paper paper(view, entries_of(diagnosis.verdict.correction), entries_of(other->correction));
   double own = 0;  // as the candidates have it
   for (const CauseResult& each : diagnosis.candidates)
     if (each.effect == diagnosis.verdict.effect) own = each.probability;

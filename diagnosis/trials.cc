@@ -84,7 +84,7 @@ class Table {
     for (const Trial& trial : trials_) {
       if (!names_effect(trial.truth.effect) || !trial.truth.told_closed) continue;
       told += *trial.truth.told_closed;
-      answered += trial.answer ? trial.answer->closed.value_or(0) : 0;
+      answered += trial.answer ? std::clamp(trial.answer->closed.value_or(0), 0.0, 1.0) : 0;
       any = any || (trial.answer && trial.answer->closed);
       ++line.of;
     }

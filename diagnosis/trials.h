@@ -14,8 +14,9 @@ namespace selfcal {
 struct TrialTruth {
   std::string effect = kNone, second = {};  ///< second: empty for one cause alone
   std::map<std::string, std::vector<std::string>> where = {};  ///< by effect; naming any is right
-  double r = 0;                            ///< what calibration leaves of it, rms over the noise
-  std::optional<double> told_closed = {};  ///< closed fraction of a fit that is told the cause
+  double r = 0;  ///< what calibration leaves of it, rms over the noise
+  /// Closed fraction of a fit that is told every cause, cut to 0 ... 1.
+  std::optional<double> told_closed = {};
 };
 
 struct TrialCauseNamed {
@@ -28,7 +29,7 @@ struct TrialCauseNamed {
 struct TrialAnswer {
   TrialCauseNamed verdict;
   std::vector<TrialCauseNamed> candidates = {};
-  std::optional<double> closed = {};  ///< fraction of the gap
+  std::optional<double> closed = {};  ///< fraction of the gap, by everything found
   double seconds = 0;
 };
 

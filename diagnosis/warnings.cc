@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kGearSigmas = 3;
 
-std::string of_fits(const Adjusted& before, const Adjusted& after) {
-  if (before.fitted.converged && after.fitted.converged) return {};
-  return "a fit did not converge: " + (before.fitted.converged ? after : before).fitted.stop_reason;
+std::string of_fits(const Closing& closing) {
+  if (closing.converged) return {};
+  return "a fit did not converge: " + closing.stop_reason;
 }
 
 std::string of_gears(const View& view) {
@@ -61,24 +61,34 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   if (diagnosis.verdict.effect == kNone) return {};
   if (gap.rows == 0)
     return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
-           "not "
-           "known";
-  if (diagnosis.verdict.effect != kUnknown && gap.rms_after >= gap.rms_before)
-    return "the rows kept aside do not confirm it: they are met no better with the effects than "
-           "without; do not use the corrected model";
-  if (!gap.closed_fraction)
+           "not known";
+  const bool named = diagnosis.verdict.effect != kUnknown;
+  const bool worse = gap.rms_all > gap.rms_before;
+  if (named && gap.rms_after >= gap.rms_before)
+    return std::string(
+               "the rows kept aside do not confirm it: they are met no better with it "
+               "than without") +
+           (gap.rms_all < gap.rms_before ? ", though better with everything found"
+                                         : "; do not use the corrected model");
+  if (worse)
+    return "the rows kept aside are met worse with everything found than with the geometry alone: "
+           "do not use the corrected model";
+  if (!gap.closed.fraction)
     return "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
            "closes";
-  if (diagnosis.verdict.effect != kUnknown && gap.closed_least <= 0)
-    return "the rows kept aside are too few to confirm it: as far as they tell, nothing may have "
-           "closed; measure more before the corrected model is used";
+  if (named && gap.closed.least <= 0)
+    return std::string(
+               "the rows kept aside are too few to confirm it: as far as they tell, it may "
+               "have closed nothing") +
+           (gap.closed_all.least > 0 ? ", though everything found closes some of the gap"
+                                     : "; measure more before the corrected model is used");
   return {};
 }
 
-std::vector<std::string> warnings_of(const View& view, const DataSet& data, const Adjusted& after) {
+std::vector<std::string> warnings_of(const View& view, const DataSet& data,
+                                     const Closing& closing) {
   std::vector<std::string> list;
-  for (const std::string& each :
-       {of_fits(view.adjusted(), after), of_gears(view), of_noise(view, data)})
+  for (const std::string& each : {of_fits(closing), of_gears(view), of_noise(view, data)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -4,20 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/closing.h"
 #include "diagnosis/view.h"
 
 namespace selfcal {
 
 struct Diagnosis;
 
-/// Fits that failed, gear ratios that were off, noise that only a data sheet tells. `after` is the
-/// fit with the named effects.
-std::vector<std::string> warnings_of(const View& view, const DataSet& data, const Adjusted& after);
+/// Fits that failed, gear ratios that were off, noise that only a data sheet tells.
+std::vector<std::string> warnings_of(const View& view, const DataSet& data, const Closing& closing);
 
 /// That the effects of the robot's own file are not used; empty where it has none.
 std::string warning_of_own_effects(const Robot& robot);
 
-/// What the judging rows say of the named cause where that is not plain; empty where it is.
+/// What the judging rows say of the named cause, and of the corrected model with everything found,
+/// where that is not plain; empty where it is.
 std::string warning_of_gap(const Diagnosis& diagnosis);
 
 }  // namespace selfcal

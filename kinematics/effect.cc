@@ -42,6 +42,7 @@ Node Effect::describe(const Eigen::VectorXd& v) const {
   Node node = Node::map();
   node.set("effect", Node::of(std::string(name_)));
   if (!at_.empty()) node.set("at", Node::of(at_));
+  if (named_) node.set("named", Node::of(std::string(*named_ ? "true" : "false")));
   describe_shape(node);
   for (size_t i = 0; i < parameters_.size(); ++i)
     node.set(parameters_[i].name, Node::of(v[static_cast<Eigen::Index>(i)]));
@@ -83,6 +84,7 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const 
     if (problems.list.size() > before) return nullptr;
     effect->name_ = name;
     effect->at_ = std::move(at);
+    if (fields.has("named")) effect->named_ = fields.flag("named", false);
     for (EffectParameter& p : effect->parameters_) p.value = fields.number(p.name, 0.0);
     fields.refuse_unknown();
     return problems.list.size() > before ? nullptr : std::move(effect);

@@ -11,6 +11,7 @@
 
 #include <Eigen/Dense>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -77,6 +78,9 @@ class Effect {
   /// A joint's frame, a set, "probe", "base"; empty for the whole robot.
   const std::string& at() const { return at_; }
   const std::vector<EffectParameter>& parameters() const { return parameters_; }
+  /// Of a robot that a diagnosis corrected: it was named, or only found beside what was. Nothing
+  /// where its entry does not say.
+  const std::optional<bool>& named() const { return named_; }
   /// The entry of a robot file with parameters `v`.
   Node describe(const Eigen::VectorXd& v) const;
   /// True when the robot itself deviates, false when only its measurement does.
@@ -88,7 +92,7 @@ class Effect {
 
  protected:
   friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const Site&, Problems&);
-  /// What describe() adds beside effect, at and the parameters.
+  /// What describe() adds beside effect, at, named and the parameters.
   virtual void describe_shape(Node&) const {}
 
   std::string at_;
@@ -96,6 +100,7 @@ class Effect {
 
  private:
   std::string name_;
+  std::optional<bool> named_;
 };
 
 /// What an effect is made from.

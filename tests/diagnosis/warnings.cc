@@ -11,8 +11,10 @@
 namespace selfcal {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 TEST(Warnings, NameTheEffectsOfTheRobotsFileThatAreNotUsed) {
   const TwoSessions sessions;
@@ -33,18 +35,35 @@ Diagnosis named(double before, double after, double least) {
   diagnosis.gap.rows = 40;
   diagnosis.gap.rms_before = before;
   diagnosis.gap.rms_after = after;
-  diagnosis.gap.closed_fraction = 0.5;
-  diagnosis.gap.closed_least = least;
+  diagnosis.gap.rms_all = after;
+  diagnosis.gap.closed = diagnosis.gap.closed_all = {0.5, least, 1};
   return diagnosis;
 }
 
 TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0.3)), IsEmpty());
-  EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0)), HasSubstr("too few to confirm it"));
-  EXPECT_THAT(warning_of_gap(named(2e-4, 2.1e-4, 0)), HasSubstr("do not confirm it"));
+  EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0)),
+              AllOf(HasSubstr("too few to confirm it"), HasSubstr("measure more")));
+  EXPECT_THAT(warning_of_gap(named(2e-4, 2.1e-4, 0)),
+              AllOf(HasSubstr("do not confirm it"), HasSubstr("do not use the corrected model")));
   Diagnosis unjudged = named(2e-4, 1e-4, 0.3);
   unjudged.gap.rows = 0;
   EXPECT_THAT(warning_of_gap(unjudged), HasSubstr("nothing confirms it"));
+  // The named effect alone is one thing, the corrected model with everything found another.
+  Diagnosis rest_helps = named(2e-4, 2.1e-4, -0.1);
+  rest_helps.gap.rms_all = 1e-4;
+  EXPECT_THAT(warning_of_gap(rest_helps),
+              AllOf(HasSubstr("do not confirm it"), HasSubstr("better with everything found"),
+                    Not(HasSubstr("do not use"))));
+  Diagnosis rest_tells = named(2e-4, 1e-4, 0);
+  rest_tells.gap.closed_all.least = 0.3;
+  EXPECT_THAT(warning_of_gap(rest_tells),
+              AllOf(HasSubstr("too few to confirm it"), HasSubstr("everything found closes some"),
+                    Not(HasSubstr("before the corrected model"))));
+  Diagnosis rest_harms = named(2e-4, 1e-4, 0.3);
+  rest_harms.gap.rms_all = 2.1e-4;
+  EXPECT_THAT(warning_of_gap(rest_harms),
+              AllOf(HasSubstr("worse with everything found"), HasSubstr("do not use")));
   Diagnosis none = named(2e-4, 2.1e-4, 0);
   none.verdict.effect = "none";
   EXPECT_THAT(warning_of_gap(none), IsEmpty());

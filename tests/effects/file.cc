@@ -81,6 +81,27 @@ TEST_P(EffectFile, HasParametersWithUnitsThatAreFixedUnlessFreed) {
   }
 }
 
+TEST_P(EffectFile, KeepsWhetherADiagnosisNamedIt) {
+  std::mt19937_64 random(94);
+  const EffectInstance at = random_instance(GetParam(), random);
+  const Node silent = parsed(robot_text(*at.robot, at.xi)).find("effects")->items.front();
+  EXPECT_EQ(silent.find("named"), nullptr);
+  EXPECT_FALSE(effects_of(*at.robot)[0]->named().has_value());
+  for (const bool named : {true, false}) {
+    const std::string word = named ? "true" : "false";
+    Node entry = silent;
+    entry.set("named", Node::of(word));
+    Problems problems;
+    const auto robot = correct(at.geometry, {entry}, at.site, problems);
+    ASSERT_NE(robot, nullptr) << problems.list.front();
+    const auto back = robot_of(parsed(robot_text(*robot, at.xi)));
+    ASSERT_NE(back, nullptr);
+    EXPECT_EQ(effects_of(*back)[0]->named(), named);
+    EXPECT_EQ(effect_entries(*back).front().find("named")->text, word);
+    EXPECT_EQ(values(*back), at.xi);
+  }
+}
+
 const char* const kArm =
     "robot: arm\nkind: serial\nframes:\n"
     "  - {name: base, joint: fixed, r: 0.5}\n"
@@ -115,6 +136,7 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: joint_compliance, at: base}", "j1, j2, j3"},
       {"{effect: joint_compliance, at: j2, c: soft}", "'c'"},
       {"{effect: joint_compliance, at: j2, lumps: maybe}", "lumps"},
+      {"{effect: joint_compliance, at: j2, named: perhaps}", "named"},
       {"{effect: link_compliance, at: j2, bend_z: 1}", "bend_z"},
       {"{effect: transmission_error, at: j1, waves: [1, 0]}", "waves"},
       {"{effect: transmission_error, at: j1, waves: []}", "waves"},

@@ -107,7 +107,8 @@ Tally ask(const std::vector<std::string>& joints, unsigned first_seed) {
     const bool is_right = right(diagnosis, joints);
     tally.right += is_right;
     std::printf("  %-5s  %-24s %.3f %5.2f %6.3f", is_right ? "yes" : "no", name.c_str(),
-                verdict.probability, verdict.visible, diagnosis.gap.closed_fraction.value_or(NAN));
+                verdict.probability, verdict.visible,
+                diagnosis.gap.closed_all.fraction.value_or(NAN));
     weigh(diagnosis, joints, tally);
     std::printf("\n");
     // Whatever is answered, it is an answer.

@@ -105,6 +105,11 @@ TEST(TrialScore, ComparesTheClosedFractionWithTheToldFit) {
   answers["a"].closed = 0.6;
   answers["b"].closed = 0.1;
   EXPECT_NEAR(*line(score(truths, answers), "closed_over_told").value, 0.75, 1e-12);
+  // A told fraction is cut to 0 ... 1, and so is what is compared with it.
+  answers["a"].closed = 1.2;
+  EXPECT_NEAR(*line(score(truths, answers), "closed_over_told").value, 1 / 0.8, 1e-12);
+  answers["a"].closed = -0.3;
+  EXPECT_NEAR(*line(score(truths, answers), "closed_over_told").value, 0, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+// The gap in words: what is named and everything found, each for what it is.
+#include "app/diagnosis_summary.h"
+
+#include <gmock/gmock.h>
+
+#include "app/diagnosis_json.h"
+#include "app/diagnosis_report.h"
+
+namespace selfcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Diagnosis named(const std::vector<bool>& found) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9};
+  for (const bool each : found) diagnosis.found.push_back({Node::map(), {}, each});
+  diagnosis.gap = {.rms_nominal = 2e-3,
+                   .rms_before = 1e-3,
+                   .rms_after = 6.4e-4,
+                   .rms_all = 3.8e-4,
+                   .max_all = 9e-4,
+                   .noise_floor = 2e-4,
+                   .closed = {0.615, 0.55, 0.66},
+                   .closed_all = {0.891, 0.88, 0.93},
+                   .rows = 40};
+  return diagnosis;
+}
+
+std::string page(const Diagnosis& diagnosis) { return html_report({"arm", diagnosis, {}, {}}); }
+
+TEST(DiagnosisSummary, TellsWhatIsNamedFromEverythingFound) {
+  const Diagnosis diagnosis = named({true, true, false, false, false});
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("1 mm calibrated, 0.64 mm with joint compliance at j2 and j3 (named), "
+                        "0.38 mm with everything found (5 effects, 3 of them not named); noise"));
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("62 % of what calibration leaves is closed by what is named (55 to 66 %), "
+                        "89 % by everything found (88 to 93 %)\n"));
+  EXPECT_THAT(page(diagnosis),
+              HasSubstr("<td>with joint compliance at j2 and j3 (named)<td class=num>0.64 mm"));
+  EXPECT_THAT(page(diagnosis), HasSubstr("<td>with everything found (5 effects, 3 of them not "
+                                         "named)<td class=num>0.38 mm"));
+}
+
+TEST(DiagnosisSummary, SaysThatNothingElseWasFoundWhereAllOfItIsNamed) {
+  const Diagnosis diagnosis = named({true, true});
+  EXPECT_THAT(summary(diagnosis), HasSubstr("(named; nothing else was found); noise"));
+  EXPECT_THAT(summary(diagnosis), HasSubstr("calibration leaves is closed (55 to 66 %)\n"));
+  EXPECT_THAT(summary(diagnosis), Not(HasSubstr("everything found")));
+  EXPECT_THAT(page(diagnosis), Not(HasSubstr("everything found")));
+}
+
+TEST(DiagnosisSummary, NamesNothingWhereTheVerdictIsUnknown) {
+  Diagnosis diagnosis = named({false, false});
+  diagnosis.verdict = {.effect = "unknown"};
+  EXPECT_THAT(summary(diagnosis), HasSubstr("1 mm calibrated, 0.38 mm with everything found (2 "
+                                            "effects, none named); noise"));
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("     89 % of what calibration leaves is closed by everything found"));
+  diagnosis.verdict = {.effect = "none"};
+  diagnosis.found.clear();
+  EXPECT_THAT(summary(diagnosis), HasSubstr("1 mm calibrated; noise"));
+  EXPECT_THAT(summary(diagnosis), Not(HasSubstr("is closed")));
+}
+
+TEST(DiagnosisSummary, KeepsBothFiguresWhereThirdsOfTheRowsNamedForThemselves) {
+  Diagnosis diagnosis = named({true});
+  diagnosis.gap.judged_on = "folds";
+  EXPECT_THAT(summary(diagnosis), HasSubstr("(named), 0.38 mm with everything found (1 effect, "
+                                            "all named)"));
+}
+
+TEST(DiagnosisJson, HasBothFiguresUncutAndNothingWhereTheyAreNotKnown) {
+  Diagnosis diagnosis = named({true, false});
+  diagnosis.gap.closed = {-0.25, -0.5, 1.2};
+  const auto gap = to_json(diagnosis)["gap"];
+  EXPECT_EQ(gap["rms_after"], 6.4e-4);
+  EXPECT_EQ(gap["rms_all"], 3.8e-4);
+  EXPECT_EQ(gap["max_all"], 9e-4);
+  EXPECT_EQ(gap["closed_fraction"], -0.25);
+  EXPECT_EQ(gap["closed_interval"], nlohmann::ordered_json({-0.5, 1.2}));
+  EXPECT_EQ(gap["closed_all"], 0.891);
+  EXPECT_EQ(gap["closed_all_interval"], nlohmann::ordered_json({0.88, 0.93}));
+  diagnosis.gap.closed = diagnosis.gap.closed_all = {};
+  const auto within = to_json(diagnosis)["gap"];
+  EXPECT_TRUE(within["closed_fraction"].is_null() && within["closed_interval"].is_null());
+  EXPECT_TRUE(within["closed_all"].is_null() && within["closed_all_interval"].is_null());
+}
+
+}  // namespace
+}  // namespace selfcal

@@ -1,0 +1,166 @@
+// What is named closes so far, everything found so far: each is that of a fit of its own.
+#include "diagnosis/named.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/closing.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/view.h"
+#include "io/robot_file.h"
+#include "kinematics/corrected_robot.h"
+#include "tests/recovery/session.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kNoise = 20e-6;  // m, of one coordinate
+
+/// A robot whose second joint's gear errs, by far the largest, and whose third joint is dragged
+/// along by the fifth; seen by a tracker in the world's frame.
+struct TwoCauses {
+  TwoCauses() {
+    auto loaded = load_robot(SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml");
+    if (!loaded) std::abort();
+    robot = *std::move(loaded);
+    Random random(5);
+    const Node tracker = recovery::entry({{"method", "position"}, {"noise", "2e-5"}});
+    data = recovery::make_session(*robot, nominal_values(*robot), {{"tracker", tracker, 150}},
+                                  kNoise, random)
+               .data;
+    auto q2 = data.rows.q.col(1);
+    q2.array() += 6e-4 * (3 * q2.array()).sin();
+    data.rows.q.col(2) += 3e-4 * data.rows.q.col(4);
+  }
+
+  std::shared_ptr<const Robot> robot;
+  DataSet data;
+};
+
+/// Enough resamples for a cause to be named, no practice.
+DiagnosisOptions quick() {
+  DiagnosisOptions options;
+  options.practice = 0;
+  options.resamples = 99;
+  return options;
+}
+
+/// m, rms of the distance between measured and modelled positions of the check rows.
+double left_by(const Robot& robot, const Eigen::VectorXd& xi, const Observations& rows) {
+  double squares = 0;
+  int count = 0;
+  for (int row = 0; row < rows.rows(); ++row) {
+    if (!rows.check[row]) continue;
+    const Eigen::Vector3d measured = rows.position.row(row).transpose();
+    squares += (locate(robot, xi, rows.q.row(row).transpose()).p - measured).squaredNorm();
+    ++count;
+  }
+  return std::sqrt(squares / count);
+}
+
+/// The same of an identification of the geometry with the effects of `entries`, from the fit rows.
+double left_by_fit_of(const TwoCauses& of, const std::vector<Node>& entries) {
+  Problems problems;
+  const std::shared_ptr<const Robot> model = correct(of.robot, entries, {}, problems);
+  Options options;
+  options.free = {"K*"};
+  for (const Parameter& p : model->parameters())
+    if (p.part == Part::effect) options.free.push_back(p.name);
+  return left_by(*model, identify(*model, of.data, options).values, of.data.rows);
+}
+
+/// Of the corrected robot's file, the entries that it says are named; or those that are not.
+std::vector<Node> entries_of(const Diagnosis& diagnosis, const char* named) {
+  std::vector<Node> list;
+  const Node file = diagnosis.model->describe(diagnosis.values);
+  for (const Node& entry : file.find("effects")->items)
+    if (const Node* flag = entry.find("named"); flag && flag->text == named) list.push_back(entry);
+  return list;
+}
+
+// The fits of a diagnosis have priors as wide as the rows speak for, those of an identification ten
+// times the usual: of 100 fit rows that shifts what is left by less than 2 %.
+constexpr double kPriors = 0.02;
+
+TEST(Named, ClosesAsFarAsAFitOfTheNamedEffectsAlone) {
+  const TwoCauses of;
+  const Diagnosis diagnosis = diagnose(of.robot, of.data, quick());
+  const Gap& gap = diagnosis.gap;
+  ASSERT_EQ(diagnosis.verdict.effect, "transmission_error") << diagnosis.why;
+  ASSERT_EQ(diagnosis.verdict.where, std::vector<std::string>{"j2"});
+  ASSERT_EQ(gap.rows, std::ranges::count(of.data.rows.check, 1));
+
+  const std::vector<Node> named = entries_of(diagnosis, "true"),
+                          beside = entries_of(diagnosis, "false");
+  ASSERT_FALSE(named.empty() || beside.empty());
+  for (const Node& entry : named) {
+    EXPECT_EQ(entry.find("effect")->text, "transmission_error");
+    EXPECT_EQ(entry.find("at")->text, "j2");
+  }
+  EXPECT_EQ(named.size() + beside.size(), diagnosis.found.size());
+  EXPECT_THAT(beside, testing::Contains(testing::ResultOf(
+                          [](const Node& entry) { return entry.find("effect")->text; },
+                          testing::Eq("joint_coupling"))));
+
+  EXPECT_NEAR(gap.rms_before, left_by_fit_of(of, {}), kPriors * gap.rms_before);
+  EXPECT_NEAR(gap.rms_after, left_by_fit_of(of, named), kPriors * gap.rms_after);
+  EXPECT_NEAR(gap.rms_all, left_by(*diagnosis.model, diagnosis.values, of.data.rows),
+              1e-9 * gap.rms_all);
+  // The coupling that the verdict does not name is several times the noise.
+  EXPECT_GT(gap.rms_after, 2 * gap.rms_all);
+  EXPECT_LT(gap.rms_after, gap.rms_before);
+}
+
+TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
+  const TwoCauses of;
+  const DiagnosisOptions options = quick();
+  const View view(of.robot, of.data, options, {});
+  Node entry = recovery::entry({{"effect", "transmission_error"}, {"at", "j2"}, {"waves", "3"}});
+  const auto closed = [&](bool named) {
+    return gap_of(close_gap(view.shared_geometry(), view.adjusted(), of.data,
+                            {{entry, {1e-3, 1e-3}, named}}, view.site(), kNoise, options)
+                      .judged,
+                  1);
+  };
+  const Gap found = closed(false), named = closed(true);
+  EXPECT_EQ(found.rms_after, found.rms_before);
+  EXPECT_EQ(*found.closed.fraction, 0);
+  EXPECT_GT(*found.closed_all.fraction, 0.5);
+  EXPECT_EQ(named.rms_after, named.rms_all);
+  EXPECT_EQ(named.rms_all, found.rms_all);
+}
+
+TEST(WithNamed, PutsBackThePlacesThatTheVerdictNames) {
+  Candidates all;
+  all.list = {{.effect = "backlash", .at = "j1"},
+              {.effect = "backlash", .at = "j2"},
+              {.effect = "backlash", .at = "j2"},
+              {.effect = "zero_shift", .at = "j2"}};
+  Posterior posterior;
+  posterior.hypotheses = {{{0}, 0, -0.5, {4}}, {{2, 3}, 0, -1, {2, 8}}, {{1}, 0, -2, {1}}};
+  const CauseResult verdict{.effect = "backlash", .where = {"j1", "j2"}};
+
+  // Of the second place the shape that the most probable hypothesis has, with its size.
+  const Hypothesis whole = with_named({{3, 0}, 0, 0, {8, 4}}, verdict, all, posterior);
+  EXPECT_EQ(whole.candidates, (std::vector<int>{3, 0, 2}));
+  EXPECT_EQ(whole.sizes, (std::vector<double>{8, 4, 2}));
+  // What is there in any shape stays as it is, and nothing is put where nothing is named.
+  EXPECT_EQ(with_named({{0, 1}, 0, 0, {4, 1}}, verdict, all, posterior).candidates,
+            (std::vector<int>{0, 1}));
+  EXPECT_EQ(with_named({{3}, 0, 0, {8}}, {.effect = kUnknown}, all, posterior).candidates,
+            std::vector<int>{3});
+}
+
+TEST(Names, TheVerdictsEffectAtItsPlaces) {
+  const CauseResult verdict{.effect = "backlash", .where = {"j1", "j2"}};
+  EXPECT_TRUE(names(verdict, {.effect = "backlash", .at = "j2"}));
+  EXPECT_FALSE(names(verdict, {.effect = "backlash", .at = "j3"}));
+  EXPECT_FALSE(names(verdict, {.effect = "zero_shift", .at = "j2"}));
+  EXPECT_TRUE(names({.effect = "thermal_expansion"}, {.effect = "thermal_expansion", .at = ""}));
+}
+
+}  // namespace
+}  // namespace selfcal
