@@ -10,6 +10,7 @@ namespace selfcal {
 namespace {
 
 constexpr size_t kMostListed = 12;
+constexpr double kAlone = 0.9;  ///< share of the scale that one length carries alone
 
 [[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
   char text[512];
@@ -128,6 +129,18 @@ std::string set_line(const SetResult& set) {
   return text;
 }
 
+/// Of a length given: what hangs on it, and from what size on an error in it is noticed.
+std::string scale_line(const ScaleLength& each, bool alone) {
+  std::string text =
+      print("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
+  text += alone ? ", alone" : print(" (%.0f %% of it)", 100 * each.share);
+  text += print(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
+  return text + print(
+                    "; the maker's lengths expect %.6g +- %.2g mm and notice an error from %.2g mm "
+                    "on",
+                    1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
+}
+
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
   std::vector<std::string> steps;
   if (!solution.converged)
@@ -139,6 +152,11 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         "Mark about a third of the rows `check` (column part): a result is judged on rows "
         "it has not seen.");
+  else if (solution.scale.against_maker)
+    steps.push_back(
+        "Measure the length given once more, or give another one: on a wrong one the whole robot "
+        "is "
+        "too large or too small.");
   else if (solution.endpoint.rms > data.target)
     steps.push_back(
         print("The end position is known to %.3g mm only. Add rows that move the joints "
@@ -163,6 +181,10 @@ std::string summary(const DataSet& data, const Solution& solution) {
   if (without_rows) return text;
   text += parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
+  const std::vector<ScaleLength>& lengths = solution.scale.stands_on;
+  const bool alone = lengths.size() == 1 && lengths.front().share > kAlone;
+  list(text, "The scale stands on", lengths,
+       [alone](const ScaleLength& each) { return scale_line(each, alone); });
   list(text, "Held", solution.gauge,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Not excited by these rows", solution.unexcited,

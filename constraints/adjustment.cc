@@ -97,9 +97,7 @@ class Adjustment {
   /// it is tried from the placed robot and from robots drawn from the tolerances, and the most
   /// probable one is kept.
   void doubt() {
-    const Chi2 chi2 = prior_chi2();
-    const bool strained =
-        chi2.freedom > 0.5 && chi_square_exceeds(chi2.value, chi2.freedom) < kPriorTest;
+    const bool strained = widening(moved()) > 1;
     if (!options_.priors || (adjusted_.fitted.converged && !strained)) return;
     std::mt19937_64 random(options_.seed);
     std::normal_distribution<double> normal;
@@ -148,28 +146,19 @@ class Adjustment {
     return true;
   }
 
-  /// Squares of the moves over the maker's tolerances, and how many of them the rows determine.
-  Chi2 prior_chi2() const {
-    Chi2 chi2;
-    for (size_t i = 0; i < parameters().size(); ++i) {
-      const Parameter& p = parameters()[i];
-      if (!adjusted_.prior.free[i] || !is_own(p)) continue;
-      chi2.value += std::pow((adjusted_.fitted.state.xi[i] - p.nominal) / p.tolerance, 2);
-      chi2.freedom += 1 - adjusted_.fitted.covariance(i, i) / std::pow(adjusted_.prior.sigma[i], 2);
-    }
-    return chi2;
+  Chi2 moved() const {
+    return prior_chi2(robot_, adjusted_.prior, adjusted_.fitted.state.xi,
+                      adjusted_.fitted.covariance.diagonal());
   }
 
   /// One factor for the robot's own priors when their chi-square says that they are too narrow: the
   /// one that makes it one a degree of freedom. Not repeated: touches of a small patch would run
   /// away.
   void widen_priors() {
-    adjusted_.chi2 = prior_chi2();
-    if (!options_.priors || adjusted_.chi2.freedom < 0.5) return;
-    adjusted_.priors_fail =
-        chi_square_exceeds(adjusted_.chi2.value, adjusted_.chi2.freedom) < kPriorTest;
+    adjusted_.chi2 = moved();
+    if (options_.priors) adjusted_.widening = widening(adjusted_.chi2);
+    adjusted_.priors_fail = adjusted_.widening > 1;
     if (!adjusted_.priors_fail) return;
-    adjusted_.widening = std::sqrt(adjusted_.chi2.value / adjusted_.chi2.freedom);
     for (size_t i = 0; i < parameters().size(); ++i)
       if (is_own(parameters()[i]))
         adjusted_.prior.sigma[i] = adjusted_.widening * parameters()[i].tolerance;
@@ -189,6 +178,23 @@ class Adjustment {
 
 bool is_placed(const Parameter& p) { return p.part == Part::base || p.part == Part::tool; }
 bool is_own(const Parameter& p) { return p.part == Part::link || p.part == Part::gear; }
+
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance) {
+  Chi2 chi2;
+  for (Eigen::Index i = 0; i < xi.size(); ++i) {
+    const Parameter& p = robot.parameters()[static_cast<size_t>(i)];
+    if (!prior.free[i] || !is_own(p)) continue;
+    chi2.value += std::pow((xi[i] - p.nominal) / p.tolerance, 2);
+    chi2.freedom += 1 - variance[i] / std::pow(prior.sigma[i], 2);
+  }
+  return chi2;
+}
+
+double widening(const Chi2& chi2) {
+  if (chi2.freedom < 0.5 || !(chi_square_exceeds(chi2.value, chi2.freedom) < kPriorTest)) return 1;
+  return std::sqrt(chi2.value / chi2.freedom);
+}
 
 Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress) {
   return Adjustment(equations, options, progress).run();

@@ -33,6 +33,13 @@ bool is_placed(const Parameter& p);
 /// True for parameters of the links and gears, which the maker gives tolerances for.
 bool is_own(const Parameter& p);
 
+/// `variance` of the parameters is that of their posterior with `prior`.
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance);
+/// The factor on the tolerances that makes it one a degree of freedom where it is beyond 99 %; 1
+/// where it is not.
+double widening(const Chi2& chi2);
+
 Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress);
 
 }  // namespace selfcal

@@ -66,6 +66,9 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
     own_at_.push_back(own_end_);
     own_count_.push_back(plans_[s].items.empty() ? 0 : data.sets[s].method->own_freedom());
     own_end_ += own_count_.back();
+    known_at_.push_back(known_end_);
+    if (!plans_[s].items.empty())
+      known_end_ += static_cast<int>(data.sets[s].method->known_lengths().size());
   }
 }
 
@@ -176,14 +179,13 @@ std::vector<RowResidual> Equations::residuals(const State& state) const {
   return list;
 }
 
-void Equations::chain_rule(const Block& block, int set, bool motions, Eigen::MatrixXd& W) const {
+void Equations::chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const {
   const Set& s = data_.sets[set];
   const int equations = static_cast<int>(block.quantities.size());
-  W.setZero(equations * kLanes, columns() + (motions ? kMotions : 0) + 1);
+  W.setZero(equations * kLanes, columns() + (beside ? kMotions + known_lengths() : 0) + 1);
   add_product(block.out.G_now, block.psi_now, equations, W);
   if (s.method->paired()) add_product(block.out.G_before, block.psi_before, equations, W);
-  const bool axes = block.G_axes.cols() > 0;
-  if (axes) add_product(block.G_axes, block.psi_axes, equations, W);
+  if (block.G_axes.cols() > 0) add_product(block.G_axes, block.psi_axes, equations, W);
   const auto own_block = [&](const MethodOutput::Block& D, int of) {
     const int m = own_count_[of];
     for (int a = 0; m > 0 && a < equations; ++a)
@@ -191,23 +193,31 @@ void Equations::chain_rule(const Block& block, int set, bool motions, Eigen::Mat
   };
   own_block(block.out.D_own, set);
   if (s.reference >= 0) own_block(block.out.D_reference, s.reference);
-  if (motions) {
-    PsiBlock psi;
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(W.rows(), kMotions);
-    motion_columns(block.X_now, psi);
-    add_product(block.out.G_now, psi, equations, M);
-    if (s.method->paired()) {
-      motion_columns(block.X_before, psi);
-      add_product(block.out.G_before, psi, equations, M);
-    }
-    if (axes) {
-      motion_columns(block.X_axes, psi);
-      add_product(block.G_axes, psi, equations, M);
-    }
-    W.middleCols(columns(), kMotions) = M;
-  }
+  if (beside) beside_unknowns(block, set, W);
   for (int a = 0; a < equations; ++a)
     W.col(W.cols() - 1).segment(a * kLanes, kLanes) = -block.out.r.col(a).matrix();
+}
+
+void Equations::beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const {
+  const Method& method = *data_.sets[set].method;
+  const int equations = static_cast<int>(block.quantities.size());
+  PsiBlock psi;
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(W.rows(), kMotions);
+  motion_columns(block.X_now, psi);
+  add_product(block.out.G_now, psi, equations, M);
+  if (method.paired()) {
+    motion_columns(block.X_before, psi);
+    add_product(block.out.G_before, psi, equations, M);
+  }
+  if (block.G_axes.cols() > 0) {
+    motion_columns(block.X_axes, psi);
+    add_product(block.G_axes, psi, equations, M);
+  }
+  W.middleCols(columns(), kMotions) = M;
+  const std::vector<KnownLength> known = method.known_lengths();
+  for (size_t i = 0; i < known.size(); ++i)
+    if (known[i].by_row)
+      W.col(columns() + kMotions + known_at_[set] + static_cast<Eigen::Index>(i)).setOnes();
 }
 
 State Equations::stepped(const State& state, const Linearised& at,

@@ -1,9 +1,9 @@
 // The system of equations that a data set gives: from rows and a state to R of [W | Delta Y].
 //
 // Columns of the system: every parameter of the robot, then the own freedoms of each set, then (on
-// demand) the six motions of the world, then Delta Y. The unknowns of a group of rows (a shared
-// point) are eliminated as its rows pass by Householder reflections on the group's columns, so that
-// the system stays small however many groups there are.
+// demand, beside the unknowns) the six motions of the world and the known lengths, then Delta Y.
+// The unknowns of a group of rows (a shared point) are eliminated as its rows pass by Householder
+// reflections on the group's columns, so that the system stays small however many groups there are.
 #pragma once
 
 #include <Eigen/Dense>
@@ -109,8 +109,12 @@ class Equations {
   /// First column of the own freedoms of `set`, and their count (0 for a set without rows here).
   int own_at(int set) const { return own_at_[set]; }
   int own_freedom(int set) const { return own_count_[set]; }
-  /// Columns before Delta Y, without the motions.
+  /// Columns before Delta Y, without those beside the unknowns.
   int columns() const { return own_end_; }
+  /// Lengths that the entries of sets with rows here give (Method::known_lengths), and the place of
+  /// the first one of `set` among their columns.
+  int known_lengths() const { return known_end_; }
+  int known_at(int set) const { return known_at_[set]; }
   int group_freedoms(int set) const;
   /// Freedoms of all own unknowns, those of groups included.
   int all_own_freedoms() const;
@@ -118,7 +122,9 @@ class Equations {
   /// Own and group values that fit the rows best with parameters xi; other entries of `state` stay.
   void start(State& state) const;
 
-  Linearised linearise(const State& state, const Weighting& weighting, bool motions = false) const;
+  /// `beside`: with the columns beside the unknowns. That of a known length is what the rows say
+  /// when the length were shorter than its entry says, over their sigma.
+  Linearised linearise(const State& state, const Weighting& weighting, bool beside = false) const;
   /// R of [W | -r_vv] at `state`, r_vv the second derivative of the rows along `step` (which gives
   /// the unweighed rows' second difference over a tenth of the step); `at` is the linearisation at
   /// `state`.
@@ -142,7 +148,9 @@ class Equations {
                 bool jacobian) const;
   /// Takes the vectors of a method that has such in the axes of the first moving link.
   void into_axes(Block& block) const;
-  void chain_rule(const Block& block, int set, bool motions, Eigen::MatrixXd& W) const;
+  void chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const;
+  /// Writes the columns beside the unknowns.
+  void beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const;
   void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
              Linearised& out) const;
   void gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
@@ -155,9 +163,9 @@ class Equations {
   void gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
                     const Weighting& weighting, bool bent, Gatherer& gatherer,
                     Linearised& out) const;
-  Linearised sweep(const State& state, const Weighting& weighting, bool motions,
+  Linearised sweep(const State& state, const Weighting& weighting, bool beside,
                    const Bend* bend) const;
-  void sweep_set(int set, const State& state, const Weighting& weighting, bool motions,
+  void sweep_set(int set, const State& state, const Weighting& weighting, bool beside,
                  const Bend* bend, StreamingQr& qr, Gatherer& gatherer, Linearised& out) const;
   void bend_right_side(int set, int first, int count, const Bend& bend, Eigen::MatrixXd& W) const;
   void own_equations(const State& state, bool structural, Linearised& out,
@@ -167,8 +175,8 @@ class Equations {
   const DataSet& data_;
   bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
   std::vector<SetPlan> plans_;
-  std::vector<int> own_at_, own_count_;
-  int own_end_ = 0;
+  std::vector<int> own_at_, own_count_, known_at_;
+  int own_end_ = 0, known_end_ = 0;
 };
 
 }  // namespace selfcal

@@ -57,7 +57,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
         for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
           Eigen::RowVectorXd& row = collector.add(block.rows[lane]);
           row.head(columns()) = W.row(a * kLanes + lane).head(columns());
-          row[all] = W(a * kLanes + lane, columns() + kMotions);
+          row[all] = W(a * kLanes + lane, W.cols() - 1);
           row.tail<3>() = W.row(a * kLanes + lane).segment<3>(columns());
           if (freedom > 0)
             row.segment(groups_at[s] + freedom * data_.rows.group[block.rows[lane]], freedom) =

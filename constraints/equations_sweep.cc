@@ -61,7 +61,8 @@ void Equations::own_equations(const State& state, bool structural, Linearised& o
     if (plans_[s].items.empty()) continue;
     const auto equations = data_.sets[s].method->own_equations(
         state.own[s], reference < 0 ? nullptr : &state.own[reference]);
-    for (const OwnEquation& each : equations) {
+    for (size_t i = 0; i < equations.size(); ++i) {
+      const OwnEquation& each = equations[i];
       rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
       auto row = rows.row(rows.rows() - 1);
       const double sigma = structural ? 1 : each.sigma;
@@ -69,6 +70,9 @@ void Equations::own_equations(const State& state, bool structural, Linearised& o
       row.segment(own_at_[s], own_count_[s]) = each.D_own.transpose() / sigma;
       row.segment(own_at_[reference], own_count_[reference]) =
           each.D_reference.head(own_count_[reference]).transpose() / sigma;
+      if (row.size() > columns() + 1)  // the known lengths stand before Delta Y
+        row[row.size() - 1 - known_lengths() + known_at_[s] + static_cast<Eigen::Index>(i)] =
+            1 / sigma;
       row[row.size() - 1] = -each.residual / sigma;
       out.cost += std::pow(each.residual / sigma, 2);
       ++out.equations;
@@ -130,9 +134,11 @@ void Equations::gather_links(int set, const SetPlan::Cluster& cluster, const Sta
   const int freedom = data_.sets[set].method->group_freedom();
   for (const GroupLink& link : cluster.links) {
     auto row = gatherer.next();
-    const double r =
-        link_row(set, link, weighting.structural ? 1 : link.noise, state,
-                 freedom * cluster.place(link.a), freedom * cluster.place(link.b), row);
+    const double sigma = weighting.structural ? 1 : link.noise;
+    const double r = link_row(set, link, sigma, state, freedom * cluster.place(link.a),
+                              freedom * cluster.place(link.b), row);
+    if (row.size() > freedom * static_cast<Eigen::Index>(cluster.groups.size()) + columns() + 1)
+      row[row.size() - 1 - known_lengths() + known_at_[set] + link.known] = 1 / sigma;
     row[row.size() - 1] = bent ? 0 : -r;
     out.cost += r * r;
     ++out.equations;
@@ -158,19 +164,18 @@ Eigen::MatrixXd Equations::bend(const State& state, const Weighting& weighting,
   return sweep(state, weighting, false, &bend).R;
 }
 
-Linearised Equations::linearise(const State& state, const Weighting& weighting,
-                                bool motions) const {
-  return sweep(state, weighting, motions, nullptr);
+Linearised Equations::linearise(const State& state, const Weighting& weighting, bool beside) const {
+  return sweep(state, weighting, beside, nullptr);
 }
 
-Linearised Equations::sweep(const State& state, const Weighting& weighting, bool motions,
+Linearised Equations::sweep(const State& state, const Weighting& weighting, bool beside,
                             const Bend* bend) const {
-  const int global = columns() + (motions ? kMotions : 0) + 1;
+  const int global = columns() + (beside ? kMotions + known_lengths() : 0) + 1;
   StreamingQr qr(global);
   Gatherer gatherer(global, qr);
   Linearised result;
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s)
-    sweep_set(s, state, weighting, motions, bend, qr, gatherer, result);
+    sweep_set(s, state, weighting, beside, bend, qr, gatherer, result);
   Eigen::MatrixXd rows(0, global);
   own_equations(state, weighting.structural, result, rows);
   if (bend) rows.rightCols(1).setZero();  // hardly bent: a plane's step, a length
@@ -180,7 +185,7 @@ Linearised Equations::sweep(const State& state, const Weighting& weighting, bool
 }
 
 /// Blocks are full however small the clusters are: one goes on where the last one ended.
-void Equations::sweep_set(int set, const State& state, const Weighting& weighting, bool motions,
+void Equations::sweep_set(int set, const State& state, const Weighting& weighting, bool beside,
                           const Bend* bend, StreamingQr& qr, Gatherer& gatherer,
                           Linearised& out) const {
   const SetPlan& plan = plans_[set];
@@ -192,7 +197,7 @@ void Equations::sweep_set(int set, const State& state, const Weighting& weightin
   for (int first = 0; first < items; first += kLanes) {
     const int count = std::min(kLanes, items - first);
     evaluate(set, first, count, state, block, true);
-    chain_rule(block, set, motions, W);
+    chain_rule(block, set, beside, W);
     if (bend) bend_right_side(set, first, count, *bend, W);
     weigh(set, weighting, block, W, out);
     if (cluster->groups.empty()) {

@@ -6,12 +6,14 @@
 #include <tuple>
 
 #include "constraints/adjustment.h"
+#include "constraints/angles.h"
 #include "constraints/endpoint_sigma.h"
 #include "constraints/excitation.h"
 #include "constraints/gauge.h"
 #include "constraints/identifiability.h"
 #include "constraints/judgement.h"
 #include "constraints/results.h"
+#include "constraints/robot_scale.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {
@@ -69,6 +71,18 @@ bool nothing_free(const Adjusted& adjusted) {
   return std::find(free.begin(), free.end(), char{1}) == free.end();
 }
 
+EndpointQuestion endpoint_question(const Equations& equations, const Adjusted& adjusted,
+                                   const Eigen::MatrixXd& R, unsigned long long seed) {
+  EndpointQuestion question;
+  question.robot = &equations.robot();
+  question.xi = adjusted.fitted.state.xi;
+  question.unseen = unseen_motions(equations, R);
+  question.point_unknown = point_is_unknown(equations);
+  question.data = &equations.data().rows;
+  question.seed = seed;
+  return question;
+}
+
 Solution assemble(const Equations& equations, const Adjusted& adjusted, const Options& options,
                   const Progress& progress) {
   const Robot& robot = equations.robot();
@@ -87,7 +101,11 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
 
   const Weighting weighting{fitted.noise.used, fitted.noise.put_aside};
   const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
-  const Eigen::MatrixXd C = covariance(equations, adjusted, R);
+  Eigen::MatrixXd C = covariance(equations, adjusted, R);
+  EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
+  const ScaleJudgement scale = judge_scale(equations, adjusted, R, question);
+  for (const Eigen::VectorXd& doubt : scale.doubts) C += doubt * doubt.transpose();
+  solution.scale = scale.scale;
   const Identifiability rank = identifiability(equations, R, fitted.state, adjusted.prior.free, {});
   solution.parameters =
       parameter_results(robot, fitted.state.xi, C, rank, adjusted.candidate, adjusted.prior.free);
@@ -102,24 +120,25 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.rejected = rejected_rows(data, after, fitted.noise.put_aside);
   solution.sets = set_results(equations, fitted, C, after);
 
+  const std::vector<std::string> turned = gross_angles(robot, data, before, after);
   add_warnings(data, adjusted, solution);
+  for (const auto* contradictions : {&scale.scale.contradictions, &turned})
+    solution.warnings.insert(solution.warnings.end(), contradictions->begin(),
+                             contradictions->end());
   if (progress) progress("done", 1);
   if (nothing_free(adjusted)) {  // certain of what was given, not of what is true
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";
     return solution;
   }
-  EndpointQuestion question;
-  question.robot = &robot;
-  question.xi = fitted.state.xi;
   question.covariance = C.topLeftCorner(equations.robot_columns(), equations.robot_columns());
-  question.unseen = unseen_motions(equations, R);
-  question.point_unknown = point_is_unknown(equations);
-  question.data = &data.rows;
-  question.seed = options.seed;
   solution.endpoint = endpoint_sigma(question);
-  solution.verdict =
-      verdict(before, after, solution.residual, solution.endpoint, data.target, fitted.converged,
-              nominal_explains(adjusted, rank, solution.residual.fit));
+  Grounds grounds{solution.endpoint, data.target, fitted.converged,
+                  nominal_explains(adjusted, rank, solution.residual.fit), turned};
+  // Given lengths that only differ among themselves are a warning while the end position bears it.
+  if (scale.scale.against_maker || solution.endpoint.rms > data.target)
+    grounds.contradictions.insert(grounds.contradictions.end(), scale.scale.contradictions.begin(),
+                                  scale.scale.contradictions.end());
+  solution.verdict = verdict(before, after, solution.residual, grounds);
   return solution;
 }
 

@@ -58,11 +58,18 @@ struct Rejected {
   std::string why;
 };
 
+/// Figures of the angles beside the residuals of rows (rad), of the rows that have any.
+struct AngleFigures {
+  int rows = 0;
+  double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
+};
+
 /// Figures of row residuals (m; app/selfcal-data.5 says what the residual of a row is).
 struct Figures {
   int rows = 0;
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
   double rms_without_rejected = 0;
+  AngleFigures angle;
 };
 
 struct SetFigures {
@@ -98,6 +105,28 @@ struct EndpointSigma {
   int poses = 0;                        ///< 0 where nothing was identified: not known
 };
 
+/// A length that the entry of a set gives and that the robot's scale stands on (m).
+struct ScaleLength {
+  std::string set, what;        ///< what: in words, "distance from table"
+  double value = 0, sigma = 0;  ///< as given
+  double share = 0;             ///< relative change of the robot's lengths with it over its own
+  double moves = 0;             ///< end position for one of it (rms over the poses)
+  /// What the maker's lengths and the rows make of it where none of these lengths is given.
+  double expected = 0, expected_sigma = 0;
+  double unseen = 0;  ///< an error smaller than this would rather not be noticed
+  /// The same where the others are given; the sigma is negative where there are none.
+  double by_others = 0, by_others_sigma = -1;
+  bool odd = false;  ///< contradicts what the others make of it, more than any other one
+};
+
+/// What gives the robot's scale, and whether the maker's lengths agree.
+struct RobotScale {
+  std::vector<ScaleLength> stands_on;
+  double excess = 0, excess_sigma = 0;      ///< of these lengths over what is expected, relative
+  bool against_maker = false;               ///< the excess is beyond the tolerances
+  std::vector<std::string> contradictions;  ///< in words
+};
+
 struct Observability {
   double condition = 0, o1 = 0, o2 = 0, o3 = 0, o4 = 0, o5 = 0;
 };
@@ -119,6 +148,7 @@ struct Solution {
   std::vector<Rejected> rejected;
   Residuals residual;
   EndpointSigma endpoint;
+  RobotScale scale;
   double prior_chi2 = 0;
   double prior_dof = 0;
   double prior_widening = 1;

@@ -1,8 +1,8 @@
 // Residual figures and the answer: the end position must be known to the target, and a paired test
 // on the check rows (Wilcoxon's signed ranks of |before| - |after|) must say that they improved, at
-// 95 %. Where the end position is not known to the target, but the check rows are no better and the
-// fitted rows do not contradict the maker's figures either, there is nothing to improve: that is an
-// answer too.
+// 95 %; their squares must fall, and those of their angles must not rise. Where the end position is
+// not known to the target, but the check rows are no better and the fitted rows do not contradict
+// the maker's figures either, there is nothing to improve: that is an answer too.
 #include "constraints/judgement.h"
 
 #include <algorithm>
@@ -15,6 +15,8 @@ namespace selfcal {
 namespace {
 
 constexpr double kSignificance = 0.05;
+/// Normal quantile of the same, and how much the squares of angles that say little may rise.
+constexpr double kRise = 1.645, kLittle = 0.1;
 /// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
 const double kFar = NoiseRule{}.far_quantile;
 
@@ -22,6 +24,24 @@ struct Pair {
   const RowResidual* before;
   const RowResidual* after;
 };
+
+AngleFigures angle_figures(const std::vector<Pair>& pairs) {
+  AngleFigures f;
+  for (const Pair& pair : pairs) {
+    if (pair.after->angles == 0) continue;
+    const double b = pair.before->angle, a = pair.after->angle;
+    ++f.rows;
+    f.rms_before += b * b;
+    f.rms_after += a * a;
+    f.mean_after += a;
+    f.max_after = std::max(f.max_after, a);
+  }
+  if (f.rows == 0) return f;
+  f.rms_before = std::sqrt(f.rms_before / f.rows);
+  f.rms_after = std::sqrt(f.rms_after / f.rows);
+  f.mean_after /= f.rows;
+  return f;
+}
 
 Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_out) {
   Figures f;
@@ -37,6 +57,7 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
     kept += a * a;
     ++kept_rows;
   }
+  f.angle = angle_figures(pairs);
   if (f.rows == 0) return f;
   f.rms_before = std::sqrt(f.rms_before / f.rows);
   f.rms_after = std::sqrt(f.rms_after / f.rows);
@@ -127,13 +148,22 @@ std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
 
 namespace {
 
+/// A false reading: far under both models, each by its own noise, and no farther under the new one
+/// than the old one's noise explains. What the new model alone makes far counts, however far it is.
+bool is_false(size_t i, const Judged& before, const Judged& after) {
+  const RowResidual &b = before.check[i], &a = after.check[i];
+  return is_far(b, before) && is_far(a, after) &&
+         a.length - b.length <
+             chi_quantile(b.lengths, kFar) * b.factor * before.check_scale[b.set].length;
+}
+
 /// The rows' squares fall, of all and of each set that only judges: many small gains must not
-/// outvote one great loss. Outliers are left out, as they are in both.
-bool falls(const Judged& before, const Judged& after, const Residuals& residual) {
+/// outvote one great loss. False readings say nothing of either model.
+bool lengths_fall(const Judged& before, const Judged& after) {
   double all = 0;
   std::vector<double> of_set(after.aligned.size(), 0);
   for (size_t i = 0; i < after.check.size(); ++i) {
-    if (residual.check_rows[i].rejected) continue;
+    if (is_false(i, before, after)) continue;
     const double gain = std::pow(before.check[i].length, 2) - std::pow(after.check[i].length, 2);
     all += gain;
     if (after.aligned[after.check[i].set]) of_set[after.check[i].set] += gain;
@@ -141,11 +171,41 @@ bool falls(const Judged& before, const Judged& after, const Residuals& residual)
   return all > 0 && std::ranges::none_of(of_set, [](double gain) { return gain < 0; });
 }
 
+/// The squares of a set's angles rise by more than a tenth, and by more than chance explains:
+/// angles in which noise outweighs the robot may say nothing, but must not contradict.
+bool angles_rise(const Judged& before, const Judged& after) {
+  struct Sum {
+    double before = 0, loss = 0, squares = 0;
+  };
+  std::vector<Sum> of_set(after.aligned.size());
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    if (is_false(i, before, after)) continue;
+    const double b = std::pow(before.check[i].angle, 2), a = std::pow(after.check[i].angle, 2);
+    Sum& sum = of_set[after.check[i].set];
+    sum.before += b;
+    sum.loss += a - b;
+    sum.squares += std::pow(a - b, 2);
+  }
+  return std::ranges::any_of(of_set, [](const Sum& sum) {
+    return sum.loss > kLittle * sum.before && sum.loss > kRise * std::sqrt(sum.squares);
+  });
+}
+
+/// What became of the check rows, and how well the end position is known.
+std::string change(const Figures& check, double p_value, const EndpointSigma& endpoint) {
+  std::string text =
+      print("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
+  if (check.angle.rows > 0)
+    text += print(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
+                  1e3 * check.angle.rms_after);
+  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : print("= %.2g", p_value)) +
+         "); end position known to " + print("%.3g mm", 1e3 * endpoint.rms);
+}
+
 }  // namespace
 
 Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
-                const EndpointSigma& endpoint, double target, bool converged,
-                bool nominal_explains) {
+                const Grounds& grounds) {
   Verdict v;
   if (residual.check.rows == 0) {
     v.why = "no check rows to judge by";
@@ -155,20 +215,19 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
   for (size_t i = 0; i < after.check.size(); ++i)
     gain.push_back(before.check[i].length - after.check[i].length);
   v.p_value = signed_rank_p(gain);
-  const std::string change =
-      print("check residual %.4g to %.4g mm (p ", 1e3 * residual.check.rms_before,
-            1e3 * residual.check.rms_after) +
-      (v.p_value < 1e-9 ? "< 1e-9" : print("= %.2g", v.p_value)) + "); end position known to " +
-      print("%.3g mm", 1e3 * endpoint.rms);
-  const bool better = v.p_value < kSignificance && falls(before, after, residual);
-  if (!converged) {
-    v.why = "the identification did not converge; " + change;
-  } else if (endpoint.rms <= target) {
+  v.why = change(residual.check, v.p_value, grounds.endpoint);
+  const bool worse_turned = angles_rise(before, after);
+  const bool better = v.p_value < kSignificance && lengths_fall(before, after) && !worse_turned;
+  if (!grounds.converged) {
+    v.why = "the identification did not converge; " + v.why;
+  } else if (!grounds.contradictions.empty()) {
+    for (const std::string& each : grounds.contradictions) v.why += "; " + each;
+  } else if (grounds.endpoint.rms <= grounds.target) {
     v.answer = better ? Answer::improved : Answer::not_improved;
-    v.why = change;
+    if (worse_turned) v.why += "; the angles are met worse than before";
   } else {
-    v.why = change + print(", %.3g mm wanted", 1e3 * target);
-    if (better || !nominal_explains) return v;
+    v.why += print(", %.3g mm wanted", 1e3 * grounds.target);
+    if (better || !grounds.nominal_explains) return v;
     v.answer = Answer::not_improved;
     v.why += "; the rows ask for no other robot than the maker's";
   }

@@ -2,6 +2,7 @@
 // the answer that follows from them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "constraints/fit.h"
@@ -31,9 +32,18 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
 std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
                                     const std::vector<char>& put_aside);
 
-/// `nominal_explains`: the moves of the parameters stay within what the maker's tolerances allow.
+/// What else the answer hangs on.
+struct Grounds {
+  EndpointSigma endpoint;
+  double target = 0;  ///< m
+  bool converged = false;
+  /// The moves of the parameters stay within what the maker's tolerances allow.
+  bool nominal_explains = false;
+  /// What the data contradict themselves in, in words: with any of it nothing is determined.
+  std::vector<std::string> contradictions = {};
+};
+
 Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
-                const EndpointSigma& endpoint, double target, bool converged,
-                bool nominal_explains);
+                const Grounds& grounds);
 
 }  // namespace selfcal

@@ -68,6 +68,16 @@ struct OwnEquation {
 struct GroupLink {
   int a = 0, b = 0;
   double distance = 0, noise = 0;
+  int known = 0;  ///< its place among the known lengths
+};
+
+/// A length that the entry of a set gives: it may be what the scale of the robot stands on.
+struct KnownLength {
+  std::string what;     ///< in words, after the set's name ("distance from table")
+  double value = 0;     ///< m
+  double sigma = 0;     ///< m, as stated; 0 where it is taken as exact
+  bool by_row = false;  ///< the residual of every row falls with it, by as much; otherwise the
+                        ///< residual of the own equation or link of its place in their list does
 };
 
 /// A number that a method reports of its own unknowns: name without the set's ("nx"), value, and
@@ -142,6 +152,7 @@ class Method {
   /// each moved by the freedom of its own place.
   virtual std::vector<std::string> group_names() const { return {}; }
   virtual std::vector<GroupLink> links() const { return {}; }
+  virtual std::vector<KnownLength> known_lengths() const { return {}; }
   /// Residual of a link and its derivatives to the two groups' freedoms.
   virtual double link_residual(const GroupLink& link, const Eigen::VectorXd& a,
                                const Eigen::VectorXd& b, Eigen::VectorXd& D_a,

@@ -65,8 +65,9 @@ Json of_rejected(const Rejected& rejected) {
                        {"why", rejected.why}});
 }
 
-/// Appends figures to `json`; without rows there are none.
-void add_figures(const Figures& figures, Json& json) {
+/// Appends figures (Figures or AngleFigures) to `json`; without rows there are none.
+template <class Any>
+void add_numbers(const Any& figures, Json& json) {
   const auto known = [&](double number) {
     return figures.rows > 0 ? finite(number) : Json(nullptr);
   };
@@ -75,6 +76,11 @@ void add_figures(const Figures& figures, Json& json) {
   json["rms_after"] = known(figures.rms_after);
   json["mean_after"] = known(figures.mean_after);
   json["max_after"] = known(figures.max_after);
+}
+
+void add_figures(const Figures& figures, Json& json) {
+  add_numbers(figures, json);
+  if (figures.angle.rows > 0) add_numbers(figures.angle, json["angle"]);
 }
 
 Json of_residuals(const Residuals& residuals) {
@@ -98,6 +104,29 @@ Json of_endpoint(const EndpointSigma& endpoint) {
                        {"median", known(endpoint.median)},
                        {"max", known(endpoint.max)},
                        {"poses", endpoint.poses}});
+}
+
+Json of_scale(const RobotScale& scale) {
+  const auto length = [](const ScaleLength& each) {
+    const bool alone = each.by_others_sigma < 0;
+    return Json::object({{"set", each.set},
+                         {"what", each.what},
+                         {"value", finite(each.value)},
+                         {"sigma", finite(each.sigma)},
+                         {"share", finite(each.share)},
+                         {"per_tenth_mm", finite(1e-4 * each.moves)},
+                         {"expected", finite(each.expected)},
+                         {"expected_sigma", sigma(each.expected_sigma)},
+                         {"unseen", finite(each.unseen)},
+                         {"by_others", alone ? Json() : finite(each.by_others)},
+                         {"by_others_sigma", sigma(each.by_others_sigma)},
+                         {"odd", each.odd}});
+  };
+  const bool known = !scale.stands_on.empty();
+  return Json::object({{"stands_on", array_of(scale.stands_on, length)},
+                       {"excess", known ? finite(scale.excess) : Json()},
+                       {"excess_sigma", known ? finite(scale.excess_sigma) : Json()},
+                       {"against_maker", scale.against_maker}});
 }
 
 Json of_prior(const Solution& solution) {
@@ -139,6 +168,7 @@ nlohmann::ordered_json to_json(const Solution& solution, const std::string& robo
   json["rejected"] = array_of(solution.rejected, of_rejected);
   json["residual"] = of_residuals(solution.residual);
   json["endpoint_sigma"] = of_endpoint(solution.endpoint);
+  json["scale"] = of_scale(solution.scale);
   json["prior_chi2"] = of_prior(solution);
   json["observability"] = of_observability(solution.observability);
   json["warnings"] = solution.warnings;

@@ -85,6 +85,10 @@ class OnePlane final : public Touch {
 
   bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return known_ ? 0 : 3; }
+  std::vector<KnownLength> known_lengths() const override {
+    if (!known_) return {};
+    return {{"distance of the plane from the world's origin", known_->d, 0, true}};
+  }
   std::optional<Plane> plane(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
     return Plane{own.head<3>(), own[3]};
   }
@@ -147,6 +151,9 @@ class ParallelPlane final : public Touch {
     return dynamic_cast<const OnePlane*>(&other) != nullptr;
   }
   int own_freedom() const override { return 1; }
+  std::vector<KnownLength> known_lengths() const override {
+    return {{"distance from " + reference_, distance_, noise_, false}};
+  }
   std::optional<Plane> plane(const Eigen::VectorXd& own,
                              const Eigen::VectorXd* reference) const override {
     return Plane{reference->head<3>(), own[0]};

@@ -13,7 +13,8 @@ namespace {
 
 class PositionConstraint final : public Method {
  public:
-  explicit PositionConstraint(std::vector<GroupLink> links) : links_(std::move(links)) {}
+  PositionConstraint(std::vector<GroupLink> links, std::vector<std::string> names)
+      : links_(std::move(links)), names_(std::move(names)) {}
 
   std::string_view name() const override { return "position-constraint"; }
   std::vector<Quantity> equations() const override { return {3, Quantity::length}; }
@@ -23,6 +24,13 @@ class PositionConstraint final : public Method {
   int group_freedom() const override { return 3; }
   std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
   std::vector<GroupLink> links() const override { return links_; }
+  std::vector<KnownLength> known_lengths() const override {
+    std::vector<KnownLength> list;
+    for (const GroupLink& link : links_)
+      list.push_back({"distance of " + names_[link.a] + " from " + names_[link.b], link.distance,
+                      link.noise, false});
+    return list;
+  }
 
   Eigen::VectorXd start_group(const std::vector<Location>& X) const override {
     Eigen::Vector3d c;
@@ -59,6 +67,7 @@ class PositionConstraint final : public Method {
 
  private:
   std::vector<GroupLink> links_;
+  std::vector<std::string> names_;  ///< of the groups that the links know by their index
 };
 
 GroupLink read_link(const Node& node, SetEntry& entry) {
@@ -86,7 +95,8 @@ MethodPtr make_position_constraint(SetEntry& entry) {
     if (list->kind != Node::Kind::list)
       entry.fields.fail("apart", "a list of {groups: [A, B], distance: D, noise: S}");
     for (const Node& item : list->items) {
-      const GroupLink link = read_link(item, entry);
+      GroupLink link = read_link(item, entry);
+      link.known = static_cast<int>(links.size());
       if (std::ranges::any_of(links, [&](const GroupLink& other) {
             return std::minmax(link.a, link.b) == std::minmax(other.a, other.b);
           }))
@@ -94,7 +104,7 @@ MethodPtr make_position_constraint(SetEntry& entry) {
       links.push_back(link);
     }
   }
-  return std::make_unique<PositionConstraint>(std::move(links));
+  return std::make_unique<PositionConstraint>(std::move(links), entry.groups);
 }
 
 }  // namespace selfcal

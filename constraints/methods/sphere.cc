@@ -20,6 +20,10 @@ class Sphere final : public Method {
   TouchedSurface touches() const override { return TouchedSurface::curved; }
   bool may_leave_scale_free() const override { return true; }
   int own_freedom() const override { return radius_at() + (radius_ ? 0 : 1); }
+  std::vector<KnownLength> known_lengths() const override {
+    if (!radius_) return {};
+    return {{"radius", *radius_, 0, true}};
+  }
 
   /// |P|^2 = 2 P . c + (rho^2 - |c|^2), linear in c and the constant.
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,

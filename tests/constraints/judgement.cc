@@ -1,14 +1,26 @@
-// Many small gains do not outvote one great loss.
+// The answer: many small gains do not outvote one great loss, no row is excused by the model on
+// trial, and angles are judged as lengths are.
 #include "constraints/judgement.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace selfcal {
 namespace {
 
 constexpr double kMicrometre = 1e-6;
+constexpr double kMicroradian = 1e-6;
 
+/// Rows of two sets, the second of which only judges. The nominal robot's noise is 100 um a set,
+/// as its residuals are; the calibrated one's 30 um.
 struct Rows {
+  Rows() {
+    data.sets.resize(2);
+    nominal.aligned = calibrated.aligned = {0, 1};
+    nominal.check_scale.assign(2, {100 * kMicrometre, 1000 * kMicroradian});
+    calibrated.check_scale.assign(2, {30 * kMicrometre, 1000 * kMicroradian});
+  }
+
   /// `count` rows of a set whose residual goes from `before` to `after` (m).
   void add(int set, int count, double before, double after) {
     for (int i = 0; i < count; ++i) {
@@ -20,20 +32,34 @@ struct Rows {
       nominal.check.push_back(row);
       row.length = after + i * kMicrometre / 50;
       calibrated.check.push_back(row);
-      residual.check_rows.push_back({row.length, false});
-      ++residual.check.rows;
     }
   }
 
-  Answer answer() {
-    nominal.aligned = calibrated.aligned = {0, 1};  // the second set only judges
-    EndpointSigma known;
-    known.rms = kMicrometre;
-    return verdict(nominal, calibrated, residual, known, 1e-3, true, false).answer;
+  /// Angles of the last `count` rows (rad).
+  void turn(int count, double before, double after) {
+    for (size_t i = nominal.check.size() - count; i < nominal.check.size(); ++i) {
+      nominal.check[i].angle = before;
+      calibrated.check[i].angle = after;
+      nominal.check[i].angles = calibrated.check[i].angles = 3;
+    }
   }
 
+  Verdict judged(std::vector<std::string> contradictions = {}) const {
+    Grounds grounds;
+    grounds.endpoint.rms = kMicrometre;
+    grounds.target = 1e-3;
+    grounds.converged = true;
+    grounds.contradictions = std::move(contradictions);
+    return verdict(nominal, calibrated, figures(), grounds);
+  }
+  Answer answer() const { return judged().answer; }
+
+  Residuals figures() const {
+    return residual_figures(data, nominal, calibrated, std::vector<char>(nominal.check.size(), 0));
+  }
+
+  DataSet data;
   Judged nominal, calibrated;
-  Residuals residual;
 };
 
 TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
@@ -47,6 +73,29 @@ TEST(Verdict, IsNotImprovedWhereTheSquaresGrow) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 90 * kMicrometre);
   rows.add(0, 5, 100 * kMicrometre, 3000 * kMicrometre);
+  ASSERT_TRUE(rows.figures().check_rows.back().rejected);  // far, by the noise of the new model
+  EXPECT_EQ(rows.answer(), Answer::not_improved);
+}
+
+TEST(Verdict, IsNotImprovedWhereFiveRowsInAHundredAreRuined) {
+  Rows rows;
+  rows.add(0, 95, 100 * kMicrometre, 30 * kMicrometre);
+  rows.add(0, 5, 100 * kMicrometre, 3000 * kMicrometre);
+  EXPECT_EQ(rows.answer(), Answer::not_improved);
+}
+
+TEST(Verdict, IsImprovedWhereFalseReadingsAreFarUnderBothModels) {
+  Rows rows;  // the robot moved by 100 um: so do the false readings, to either side
+  rows.add(0, 95, 100 * kMicrometre, 30 * kMicrometre);
+  rows.add(0, 4, 8000 * kMicrometre, 8100 * kMicrometre);
+  rows.add(0, 1, 8000 * kMicrometre, 7900 * kMicrometre);
+  EXPECT_EQ(rows.answer(), Answer::improved);
+}
+
+TEST(Verdict, IsNotImprovedWhereRowsThatWereFarAreMadeMuchWorse) {
+  Rows rows;
+  rows.add(0, 95, 100 * kMicrometre, 30 * kMicrometre);
+  rows.add(0, 5, 800 * kMicrometre, 8000 * kMicrometre);
   EXPECT_EQ(rows.answer(), Answer::not_improved);
 }
 
@@ -55,6 +104,44 @@ TEST(Verdict, IsNotImprovedWhereASetThatOnlyJudgesIsMetWorse) {
   rows.add(0, 60, 500 * kMicrometre, 30 * kMicrometre);
   rows.add(1, 10, 200 * kMicrometre, 300 * kMicrometre);
   EXPECT_EQ(rows.answer(), Answer::not_improved);
+}
+
+TEST(Verdict, IsNotImprovedWhereTheAnglesAreMetWorse) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  rows.turn(60, 500 * kMicroradian, 900 * kMicroradian);
+  const Verdict verdict = rows.judged();
+  EXPECT_EQ(verdict.answer, Answer::not_improved);
+  EXPECT_THAT(verdict.why, testing::HasSubstr("angles are met worse"));
+}
+
+TEST(Verdict, IsImprovedWhereTheAnglesAreNoiseBeforeAndAfter) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  rows.turn(60, 1000 * kMicroradian, 1040 * kMicroradian);  // squares grow by less than a tenth
+  EXPECT_EQ(rows.answer(), Answer::improved);
+}
+
+TEST(Verdict, IsNotDeterminedWhereTheDataContradictThemselves) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  const Verdict verdict = rows.judged({"the gauge says otherwise"});
+  EXPECT_EQ(verdict.answer, Answer::not_determined);
+  EXPECT_THAT(verdict.why, testing::HasSubstr("the gauge says otherwise"));
+}
+
+TEST(Figures, HaveTheAnglesOfTheRowsThatHaveAny) {
+  Rows rows;
+  rows.add(0, 10, 100 * kMicrometre, 30 * kMicrometre);
+  rows.add(1, 4, 100 * kMicrometre, 30 * kMicrometre);
+  rows.turn(4, 800 * kMicroradian, 200 * kMicroradian);
+  const Residuals residual = rows.figures();
+  EXPECT_EQ(residual.check.angle.rows, 4);
+  EXPECT_DOUBLE_EQ(residual.check.angle.rms_before, 800 * kMicroradian);
+  EXPECT_DOUBLE_EQ(residual.check.angle.rms_after, 200 * kMicroradian);
+  ASSERT_EQ(residual.check_by_set.size(), 2u);
+  EXPECT_EQ(residual.check_by_set[0].figures.angle.rows, 0);
+  EXPECT_EQ(residual.check_by_set[1].figures.angle.rows, 4);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(Equations, MoveTheWorldAsTheBaseFramesDo) {
   const Equations equations(*made.robot, made.data, Use::fit);
   const Eigen::MatrixXd R = equations.linearise(made.state, made.weighting, true).R;
   const int global = equations.columns();
-  ASSERT_EQ(R.cols(), global + 6 + 1);
+  ASSERT_EQ(R.cols(), global + 6 + equations.known_lengths() + 1);
   // Shifts along x, y, z, turns about them: see arm.h. Rounding of columns of length 1000.
   const char* const kMotions[] = {"d0", "r1", "r0", "alpha0", "beta0", "theta0"};
   for (int i = 0; i < 6; ++i) {
@@ -131,6 +131,43 @@ TEST(Equations, MoveTheWorldAsTheBaseFramesDo) {
     EXPECT_GT(R.col(p).norm(), 1) << kMotions[i];
     EXPECT_LT((R.col(global + i) - R.col(p)).norm(), 1e-10) << kMotions[i];
   }
+}
+
+TEST(Equations, HaveAColumnForEachLengthThatAnEntryGives) {
+  // What the residuals gain where a given length is shorter than its entry says, a metre for one.
+  constexpr double h = 1e-3;  // lengths are taken as they are: no curvature
+  const std::vector<std::pair<int, const char*>> given = {
+      {3,
+       "s: {method: position-constraint, apart: [{groups: [g0, g1], distance: 0.299,"
+       " noise: 0.01}]}"},
+      {5,
+       "s: {method: plane, parallel_to: {set: table, distance: 0.199, noise: 0.01}}\n"
+       "table: {method: plane}"},
+      {8, "s: {method: sphere, radius: 0.149}"}};
+  EquationsCase made(9);
+  const Equations equations(*made.robot, made.data, Use::fit);
+  ASSERT_EQ(equations.known_lengths(), 3);
+  const Eigen::MatrixXd R = equations.linearise(made.state, made.weighting, true).R;
+  const Eigen::MatrixXd W = made.dense(equations);
+  const int global = equations.columns();
+  const Eigen::Index local = W.cols() - 1 - global;
+  Eigen::MatrixXd all(W.rows(), W.cols() + 3);
+  all << W.leftCols(global), Eigen::MatrixXd::Zero(W.rows(), 3), W.rightCols(local + 1);
+  const Eigen::VectorXd r = made.residuals(equations, made.state);
+  for (const auto& [set, text] : given) {
+    EquationsCase shorter(9);
+    shorter.data.sets[set].method = make_sets(text)[0].method;
+    if (set == 8) shorter.state.own[set][3] -= h;
+    const Equations then(*shorter.robot, shorter.data, Use::fit);
+    const Eigen::VectorXd gain = (shorter.residuals(then, shorter.state) - r) / h;
+    all.col(global + equations.known_at(set)) = made.root_weights(equations).cwiseProduct(gain);
+  }
+  std::vector<int> kept;
+  for (int c = 0; c < static_cast<int>(R.cols()); ++c)
+    if (c < global || c >= global + 6) kept.push_back(c);
+  Eigen::VectorXd lengths(global + 4);
+  lengths << all.leftCols(global + 3).colwise().norm().transpose(), all.rightCols(1).norm();
+  EXPECT_LT(difference(gram(R(Eigen::all, kept)), schur(all, global + 3), lengths), kRelative);
 }
 
 TEST(Equations, HaveTheSameFactorWithAndWithoutMotions) {

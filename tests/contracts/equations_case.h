@@ -27,7 +27,8 @@ struct EquationsCase {
         "nest: {method: location-constraint}\n"
         "gauge: {method: plane, parallel_to: {set: table, distance: 0.2, noise: 0.01}}\n"
         "table: {method: plane}\n"
-        "ball: {method: sphere}\n");
+        "ball: {method: sphere}\n"
+        "globe: {method: sphere, radius: 0.15}\n");
     std::vector<SampleRequest> requests;
     for (size_t s = 0; s < data.sets.size(); ++s) {
       data.sets[s].groups.clear();  // drawn rows name their own; the link is of the first two

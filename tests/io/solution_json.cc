@@ -57,7 +57,7 @@ TEST(SolutionJson, HasTheKeysOfTheFormatInItsOrder) {
   EXPECT_THAT(keys(json), ElementsAre("robot", "model_hash", "converged", "stop_reason",
                                       "iterations", "verdict", "parameters", "covariance", "gauge",
                                       "unexcited", "sets", "rejected", "residual", "endpoint_sigma",
-                                      "prior_chi2", "observability", "warnings"));
+                                      "scale", "prior_chi2", "observability", "warnings"));
   EXPECT_THAT(keys(json["parameters"][0]),
               ElementsAre("name", "frame", "unit", "nominal", "value", "sigma", "prior_sigma",
                           "status", "grouped_with"));
