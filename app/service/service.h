@@ -111,6 +111,8 @@ class Service {
   void recall_use();
 
   // service_health.cc: how well everything is
+  void recall_damage();
+  void tell_damage();
   void report_health(bool in_any_case);
   std::vector<HealthMessage> health() const;
   HealthMessage health_of_service() const;
@@ -124,7 +126,8 @@ class Service {
   Messenger& messenger_;
   Store& store_;
   Models models_;
-  std::string damaged_;
+  std::string damaged_, damaged_before_;  ///< of the store: found now, and in earlier lives
+  std::size_t damage_told_ = 0;           ///< of Store::met
   Supervisor supervisor_;
   Senses senses_;
   Situation situation_;
