@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <set>
 
 #include "app/drift.h"
 #include "app/message_json.h"
@@ -37,6 +38,9 @@ struct Past {
   std::optional<ResultRecord> result;
 };
 
+/// Of a damaged session nothing is known but its number (Store::sessions).
+bool is_damaged(const Past& past) { return past.session.kind.empty(); }
+
 Result<Source> find_source(const std::string& where) {
   std::error_code error;
   if (where.empty()) {
@@ -58,7 +62,7 @@ Result<std::vector<Past>> read_past(Store& store, int newest) {
   for (SessionRecord& session : *sessions) {
     const auto found = std::ranges::find(*results, session.id, &ResultRecord::session);
     past.push_back({std::move(session), std::nullopt});
-    if (found != results->end()) past.back().result = *found;
+    if (found != results->end() && !is_damaged(past.back())) past.back().result = *found;
   }
   return past;
 }
@@ -84,6 +88,7 @@ Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
 }
 
 std::string state_of(const Past& past) {
+  if (is_damaged(past)) return "damaged";
   switch (past.session.state) {
     case SessionState::collecting:
     case SessionState::collected:
@@ -91,7 +96,7 @@ std::string state_of(const Past& past) {
     case SessionState::aborted:
       return "aborted";
     case SessionState::finished:
-      return "finished";
+      return past.result ? "finished" : "damaged result";
   }
   return "";
 }
@@ -125,15 +130,31 @@ Result<void> print_slots(Store& store) {
   std::string empty = "the factory's";
   for (const Slot slot : {Slot::active, Slot::previous, Slot::candidate}) {
     const auto record = store.slot(slot);
-    if (!record) return tl::unexpected(record.error());
-    std::string text = empty;
-    if (*record && (*record)->session > 0)
+    const bool damaged = !record && !store.met().empty();
+    if (!record && !damaged) return tl::unexpected(record.error());
+    std::string text = damaged ? "damaged: a start of the service sets it aside" : empty;
+    if (record && *record && (*record)->session > 0)
       text = "session " + std::to_string((*record)->session) + ", since " +
              date_time((*record)->since_ms);
     // Before the first accepted parameters were the factory's; before those there is nothing.
-    if (!*record || slot == Slot::previous) empty = "none";
+    if (!damaged && (!*record || slot == Slot::previous)) empty = "none";
     std::printf("  %-10s %s\n", std::string(to_string(slot)).c_str(), text.c_str());
   }
+  return {};
+}
+
+/// What is damaged: as the service has found it at its starts, and what was met just now.
+Result<void> print_damage(Store& store, std::FILE* out) {
+  auto all = store.damage();
+  if (!all) return tl::unexpected(all.error());
+  std::set<std::string> noted;
+  for (const DamageRecord& note : *all) noted.insert(note.what);
+  for (const std::string& what : store.met())
+    if (!noted.contains(what)) all->insert(all->begin(), {0, "", what, ""});
+  if (!all->empty()) std::fprintf(out, "\nDamaged and not used, with the day it was found\n");
+  for (const DamageRecord& each : *all)
+    std::fprintf(out, "  %-16s  %s\n", each.unix_ms == 0 ? "now" : date_time(each.unix_ms).c_str(),
+                 one_line(each.what).c_str());
   return {};
 }
 
@@ -187,7 +208,7 @@ Result<void> print_history(Store& store, const Arguments& arguments) {
     auto records = nlohmann::ordered_json::array();
     for (const Past& each : *past) records.push_back(record_of(each));
     std::printf("%s\n", line_of(records).c_str());
-    return {};
+    return print_damage(store, stderr);
   }
   if (past->empty())
     std::printf("No session yet.\n");
@@ -200,7 +221,8 @@ Result<void> print_history(Store& store, const Arguments& arguments) {
         "\nDrift of the parameters that moved most: since the factory (since the one "
         "before)\n%s",
         drift_table(*calibrations, drifts(*calibrations, kDrifting)).c_str());
-  return print_slots(store);
+  if (auto printed = print_slots(store); !printed) return printed;
+  return print_damage(store, stdout);
 }
 
 Result<void> print_export(Store& store, const Arguments& arguments, const Source& source) {
@@ -208,6 +230,9 @@ Result<void> print_export(Store& store, const Arguments& arguments, const Source
   const std::string& folder = arguments.exported[1];
   const auto rows = export_session(store, session, source.robot_text, folder);
   if (!rows) return tl::unexpected(rows.error());
+  for (const std::string& what : store.met())
+    if (what.ends_with(" of session " + std::to_string(session)))
+      std::fprintf(stderr, "selfcal: %s is damaged and left out\n", what.c_str());
   if (arguments.json)
     std::printf("%s\n",
                 line_of({{"session", session}, {"folder", folder}, {"rows", *rows}}).c_str());

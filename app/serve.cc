@@ -131,6 +131,9 @@ Result<void> serve(const Arguments& arguments, Config config) {
   if (!opened) return tl::unexpected(opened.error());
   auto models = Models::load(config.robot, *opened->store);
   if (!models) return tl::unexpected(models.error());
+  // Before the file that others read changes with them.
+  if (!opened->set_aside.empty()) spdlog::error("{}", opened->set_aside);
+  if (!models->refused().empty()) spdlog::error("{}", models->refused());
   if (auto written = models->write_active(config.state); !written) return written;
 
   const auto reach = dds_reach();

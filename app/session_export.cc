@@ -30,8 +30,8 @@ Result<void> make_empty_folder(const fs::path& folder) {
 Result<std::string> nominal_text(Store& store, const SessionRecord& record,
                                  const std::string& given) {
   const auto result = store.result(record.id);
-  if (!result) return tl::unexpected(result.error());
-  const bool stored = *result && !(*result)->robot_text.empty();
+  if (!result && given.empty()) return tl::unexpected(result.error());
+  const bool stored = result && *result && !(*result)->robot_text.empty();
   if (!stored && given.empty())
     return bad_input(name_of(record.id) +
                      ": no robot is stored with it (it is a check, or came to no result): give "

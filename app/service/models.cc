@@ -4,6 +4,23 @@
 #include "io/robot_file.h"
 
 namespace selfcal {
+namespace {
+
+constexpr std::size_t kLongestRobot = std::size_t{1} << 24;  // bytes
+
+/// What is noted of active parameters, or of the whole store, since those that are active now came.
+Result<std::string> lost(Store& store, const std::optional<SlotRecord>& active) {
+  const auto notes = store.damage();
+  if (!notes) return tl::unexpected(notes.error());
+  for (const DamageRecord& note : *notes) {
+    if (note.place == "store" && !active) return note.what;
+    if (note.place == "active" && (!active || note.unix_ms >= active->since_ms))
+      return note.what + " were damaged and are set aside";
+  }
+  return std::string();
+}
+
+}  // namespace
 
 Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) {
   Models models;
@@ -14,26 +31,28 @@ Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) 
   const auto candidate = store.slot(Slot::candidate);
   if (!candidate) return tl::unexpected(candidate.error());
   models.candidate_ = candidate->has_value() && (*candidate)->model_hash == models.hash_;
-  if (!*slot) return models;
+  const auto what = lost(store, *slot);
+  if (!what) return tl::unexpected(what.error());
+  const std::string before = what->empty() ? "" : *what + "; ";
+  const auto refuse = [&](const std::string& why) {
+    models.refused_ = why + ": the factory's are used";
+    return models;
+  };
+  if (!*slot || (*slot)->session == 0) return what->empty() ? models : refuse(*what);
   const SlotRecord& record = **slot;
-  if (record.session == 0) return models;
-  if (record.model_hash != models.hash_) {
-    models.refused_ = "the stored parameters belong to another robot (" +
-                      record.model_hash.substr(0, 15) + "…, not " + models.hash_.substr(0, 15) +
-                      "…): the factory's are used";
-    return models;
-  }
+  if (record.model_hash != models.hash_)
+    return refuse(before + "the stored parameters belong to another robot (" +
+                  record.model_hash.substr(0, 15) + "…, not " + models.hash_.substr(0, 15) + "…)");
   auto robot = robot_of(record.robot_text, "active parameters");
-  if (!robot) {
-    models.refused_ = robot.error().what + ": the factory's are used";
-    return models;
-  }
+  if (!robot) return refuse(before + robot.error().what);
   // The maker's file as it is today (limits, tolerances), with the values of the slot.
   Problems problems;
   models.active_ = make_robot(models.factory_->describe(values(**robot)), problems);
   if (problems.any()) return bad_input(problems);
   models.session_ = record.session;
   models.since_ms_ = record.since_ms;
+  if (!what->empty())
+    models.refused_ = *what + ": those before them, of " + models.name() + ", are used";
   return models;
 }
 
@@ -42,8 +61,12 @@ std::string Models::name() const {
 }
 
 Result<void> Models::write_active(const std::filesystem::path& folder) const {
-  return write_file_atomically(folder / "active.robot.yaml",
-                               robot_text(*active_, values(*active_)));
+  const std::filesystem::path path = folder / "active.robot.yaml";
+  const std::string text = robot_text(*active_, values(*active_));
+  const auto there = read_file(path, kLongestRobot);
+  if (!refused_.empty() && there && *there != text)
+    if (auto kept = write_file_atomically(path.string() + ".before", *there); !kept) return kept;
+  return write_file_atomically(path, text);
 }
 
 }  // namespace selfcal

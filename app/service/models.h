@@ -13,7 +13,8 @@ namespace selfcal {
 class Models {
  public:
   /// Reads the slots. Parameters of another robot (another model hash), or that cannot be read, are
-  /// not used: `refused` says so and the factory's are active.
+  /// not used: `refused` says so and the factory's are active. It also says that parameters were
+  /// lost with a damaged store or slot, until others are accepted.
   static Result<Models> load(std::shared_ptr<const Robot> factory, Store& store);
 
   const std::shared_ptr<const Robot>& factory() const { return factory_; }
@@ -27,7 +28,8 @@ class Models {
   const std::string& refused() const { return refused_; }
   std::string name() const;  ///< "factory" or "session 12"
 
-  /// Puts the active robot's file where its owner's programs read it, whole or not at all.
+  /// Puts the active robot's file where its owner's programs read it, whole or not at all. While
+  /// something is refused, a file that says otherwise is kept as active.robot.yaml.before.
   Result<void> write_active(const std::filesystem::path& folder) const;
 
  private:

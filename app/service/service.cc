@@ -26,7 +26,10 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
   situation_.since = now_;
   situation_.why = "testing encoders, trigger and store";
   testing_ = true;
-  if (!damaged_.empty()) tell("error", "the store was damaged: " + damaged_);
+  if (!damaged_.empty())
+    tell("error", "the store was damaged: " + damaged_);
+  else
+    recall_damage();
   if (!models_.refused().empty()) tell("error", models_.refused());
   const auto unfinished = store_.unfinished();
   if (stored(unfinished)) situation_.unfinished = unfinished->has_value();

@@ -115,6 +115,8 @@ class Service {
   void recall_use();
 
   // service_health.cc: how well everything is
+  void recall_damage();
+  void tell_damage();
   void report_health(bool in_any_case);
   std::vector<HealthMessage> health() const;
   HealthMessage health_of_service() const;
@@ -129,7 +131,8 @@ class Service {
   Store& store_;
   Journal& journal_;
   Models models_;
-  std::string damaged_;
+  std::string damaged_, damaged_before_;  ///< of the store: found now, and in earlier lives
+  std::size_t damage_told_ = 0;           ///< of Store::met
   Supervisor supervisor_;
   Reflex reflex_;
   Senses senses_;

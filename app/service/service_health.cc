@@ -9,6 +9,7 @@ namespace selfcal {
 namespace {
 
 constexpr Nanoseconds kHealth = kSecond / 5;  // between two looks at what may have degraded
+constexpr std::int64_t kRecentDamage_ms = std::int64_t{30} * 86'400'000;  // warned of so long
 
 std::string text(double value) {
   char out[32];
@@ -25,6 +26,7 @@ std::string with_trouble(const std::string& state, const std::string& trouble) {
 void Service::report_health(bool in_any_case) {
   if (!in_any_case && now_ - last_health_ < kHealth) return;
   last_health_ = now_;
+  tell_damage();
   const std::vector<HealthMessage> lines = health();
   std::string levels;
   for (const HealthMessage& line : lines) levels += std::to_string(static_cast<int>(line.level));
@@ -87,13 +89,35 @@ HealthMessage Service::health_of_trigger() const {
                                                ports_.motion->strange())}}};
 }
 
+void Service::recall_damage() {
+  const auto notes = store_.damage();
+  if (!notes || notes->empty()) return;
+  damaged_before_ = "found damaged before: " + notes->front().what +
+                    (notes->size() == 1 ? "" : " and more (selfcal history)");
+  tell("warning", damaged_before_);
+  if (ports_.clock->unix_ms() - notes->front().unix_ms > kRecentDamage_ms) damaged_before_.clear();
+}
+
+void Service::tell_damage() {
+  if (store_.met().size() == damage_told_) return;
+  for (; damage_told_ < store_.met().size(); ++damage_told_) {
+    const std::string& what = store_.met()[damage_told_];
+    damaged_ += (damaged_.empty() ? "" : ", ") + what;
+    tell("error", "the store is damaged, and this not used: " + what);
+  }
+}
+
 HealthMessage Service::health_of_store() const {
   const auto bytes = store_.bytes();
+  const bool error = !bytes || !damaged_.empty();
   return {"selfcal: store",
-          bytes && damaged_.empty() ? Health::ok : Health::error,
-          !bytes             ? bytes.error().what
-          : damaged_.empty() ? "sound"
-                             : damaged_,
+          error                     ? Health::error
+          : damaged_before_.empty() ? Health::ok
+                                    : Health::warn,
+          !bytes                    ? bytes.error().what
+          : !damaged_.empty()       ? damaged_
+          : damaged_before_.empty() ? "sound"
+                                    : damaged_before_,
           {{"size_mb", text(bytes ? static_cast<double>(*bytes) / 1e6 : 0)},
            {"limit_mb", text(static_cast<double>(config_.store_bytes) / 1e6)}}};
 }

@@ -116,7 +116,9 @@ void Service::remember_use() {
 void Service::remember_held() { stored(store_.remember("held", situation_.held ? "yes" : "")); }
 
 void Service::recall_use() {
-  if (const auto held = store_.remembered("held")) situation_.held = *held == "yes";
+  // What cannot be read must not let the robot begin by itself.
+  const auto held = store_.remembered("held");
+  situation_.held = !held || *held == "yes";
   const auto line = store_.remembered("use");
   long long unix_ms = 0;
   double temperature = std::nan("");

@@ -82,7 +82,7 @@ Result<void> Store::prune(std::int64_t most_bytes) {
     if (!fits) return tl::unexpected(fits.error());
     if (*fits) break;
   }
-  if (auto done = transaction->commit(); !done) return done;
+  if (auto done = commit(*transaction); !done) return done;
   // Free pages leave the file; it shrinks when the log is copied into it, later if someone reads.
   for (const char* sql : {"PRAGMA incremental_vacuum", "PRAGMA wal_checkpoint(TRUNCATE)"}) {
     if (auto ran = sqlite::run(database_, sql); !ran) return tl::unexpected(ran.error());

@@ -1,4 +1,5 @@
 // Results of sessions, and the candidate that a result may come with.
+#include "io/store/checksums.h"
 #include "io/store/sqlite.h"
 #include "io/store/store.h"
 #include "io/store/tables.h"
@@ -6,11 +7,63 @@
 namespace selfcal {
 namespace {
 
-#define SELFCAL_FIGURES                                                                  \
-  "SELECT session, unix_ms, answer, decision, why, p_value, check_before, check_after, " \
-  "endpoint_sigma, touches, rejected, identified"
+#define SELFCAL_FIGURES                                                            \
+  "SELECT result.session, unix_ms, answer, decision, why, p_value, check_before, " \
+  "check_after, endpoint_sigma, touches, rejected, identified, " SELFCAL_DAMAGED_RESULT
+constexpr int kDamagedResult = 12;
 
-ResultRecord figures_of(const sqlite::Statement& row) {
+Result<void> add_result(sqlite3* database, const ResultRecord& result) {
+  if (auto there = require_session(database, result.session); !there) return there;
+  const Result<std::int64_t> robot = keep_text(database, result.robot_text);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto added = sqlite::run(
+      database,
+      "INSERT INTO result VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, NULL)",
+      {result.session, result.unix_ms, std::string(to_string(result.answer)),
+       std::string(to_string(result.decision)), result.why, result.p_value, result.check_before,
+       result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
+       std::int64_t{result.rejected}, std::int64_t{result.identified}, *robot});
+  if (!added) return tl::unexpected(added.error());
+  if (auto put = put_checksum(database, kResults, result.session); !put) return put;
+  if (!result.json.empty()) {
+    const auto kept = sqlite::run(database, "INSERT INTO json VALUES(?1, ?2, NULL)",
+                                  {result.session, result.json});
+    if (!kept) return tl::unexpected(kept.error());
+    if (auto put = put_checksum(database, kJsons, result.session); !put) return put;
+  }
+  return set_session_state(database, result.session, SessionState::finished, result.unix_ms);
+}
+
+/// Puts the candidate; the one that it takes the place of was neither accepted nor rejected.
+Result<void> put_candidate(sqlite3* database, const SlotRecord& candidate) {
+  const auto replaced = sqlite::integer(database,
+                                        "SELECT session FROM slot WHERE slot = 2 AND session <> ?1"
+                                        " AND " SELFCAL_DAMAGED_SLOT " IS NULL",
+                                        {candidate.session});
+  if (!replaced) return tl::unexpected(replaced.error());
+  if (auto set = set_decision(database, *replaced, ResultDecision::replaced); !set) return set;
+  const Result<std::int64_t> robot = keep_text(database, candidate.robot_text);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto put = sqlite::run(
+      database, "INSERT OR REPLACE INTO slot VALUES(2, nullif(?1, 0), ?2, ?3, ?4, NULL)",
+      {candidate.session, candidate.since_ms, candidate.model_hash, *robot});
+  if (!put) return tl::unexpected(put.error());
+  return put_checksum(database, kSlots, static_cast<std::int64_t>(Slot::candidate));
+}
+
+}  // namespace
+
+Result<void> Store::finish(const ResultRecord& result, const SlotRecord* candidate) {
+  Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  if (auto added = add_result(database_, result); !added) return added;
+  if (candidate != nullptr) {
+    if (auto put = put_candidate(database_, *candidate); !put) return put;
+  }
+  return commit(*transaction);
+}
+
+ResultRecord Store::figures_of(const sqlite::Statement& row) {
   ResultRecord result;
   result.session = row.integer(0);
   result.unix_ms = row.integer(1);
@@ -28,82 +81,41 @@ ResultRecord figures_of(const sqlite::Statement& row) {
   return result;
 }
 
-Result<void> add_result(sqlite3* database, const ResultRecord& result) {
-  if (auto there = require_session(database, result.session); !there) return there;
-  const Result<std::int64_t> robot = keep_text(database, result.robot_text);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto added = sqlite::run(
-      database, "INSERT INTO result VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
-      {result.session, result.unix_ms, std::string(to_string(result.answer)),
-       std::string(to_string(result.decision)), result.why, result.p_value, result.check_before,
-       result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
-       std::int64_t{result.rejected}, std::int64_t{result.identified}, *robot});
-  if (!added) return tl::unexpected(added.error());
-  if (!result.json.empty()) {
-    const auto kept =
-        sqlite::run(database, "INSERT INTO json VALUES(?1, ?2)", {result.session, result.json});
-    if (!kept) return tl::unexpected(kept.error());
-  }
-  const auto ended =
-      sqlite::run(database, "UPDATE session SET state = 2, ended_ms = ?2 WHERE id = ?1",
-                  {result.session, result.unix_ms});
-  if (!ended) return tl::unexpected(ended.error());
-  return {};
-}
-
-/// Puts the candidate; the one that it takes the place of was neither accepted nor rejected.
-Result<void> put_candidate(sqlite3* database, const SlotRecord& candidate) {
-  const auto replaced = sqlite::run(database,
-                                    "UPDATE result SET decision = 'replaced' WHERE session ="
-                                    " (SELECT session FROM slot WHERE slot = 2 AND session <> ?1)",
-                                    {candidate.session});
-  if (!replaced) return tl::unexpected(replaced.error());
-  const Result<std::int64_t> robot = keep_text(database, candidate.robot_text);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto put =
-      sqlite::run(database, "INSERT OR REPLACE INTO slot VALUES(2, nullif(?1, 0), ?2, ?3, ?4)",
-                  {candidate.session, candidate.since_ms, candidate.model_hash, *robot});
-  if (!put) return tl::unexpected(put.error());
-  return {};
-}
-
-}  // namespace
-
-Result<void> Store::finish(const ResultRecord& result, const SlotRecord* candidate) {
-  Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
-  if (!transaction) return tl::unexpected(transaction.error());
-  if (auto added = add_result(database_, result); !added) return added;
-  if (candidate != nullptr) {
-    if (auto put = put_candidate(database_, *candidate); !put) return put;
-  }
-  return transaction->commit();
-}
-
 Result<std::optional<ResultRecord>> Store::result(std::int64_t session) {
   if (auto there = require_session(database_, session); !there) {
     return tl::unexpected(there.error());
   }
-  auto row =
-      sqlite::Statement::prepare(database_,
-                                 SELFCAL_FIGURES
-                                 ", json.body, text.body FROM result JOIN text ON text.id = robot"
-                                 " LEFT JOIN json USING(session) WHERE session = ?1",
-                                 {session});
+  auto row = sqlite::Statement::prepare(
+      database_,
+      SELFCAL_FIGURES ", json.body, " SELFCAL_DAMAGED_JSON ", text.body, " SELFCAL_DAMAGED_TEXT
+                      " FROM result LEFT JOIN text ON text.id = robot"
+                      " LEFT JOIN json ON json.session = result.session"
+                      " WHERE result.session = ?1",
+      {session});
   if (!row) return tl::unexpected(row.error());
   const Result<bool> there = row->step();
   if (!there) return tl::unexpected(there.error());
   if (!*there) return std::nullopt;
+  if (!sound(*row, kDamagedResult))
+    return sqlite::failure(database_, row->text(kDamagedResult) + " is damaged");
   ResultRecord result = figures_of(*row);
-  result.json = row->text(12);
-  result.robot_text = row->text(13);
+  if (sound(*row, 14)) result.json = row->text(13);
+  if (sound(*row, 16)) result.robot_text = row->text(15);
   return result;
 }
 
 Result<std::vector<ResultRecord>> Store::results(int newest) {
-  return sqlite::all(sqlite::Statement::prepare(
-                         database_, SELFCAL_FIGURES " FROM result ORDER BY session DESC LIMIT ?1",
-                         {std::int64_t{newest < 0 ? 0 : newest}}),
-                     figures_of);
+  auto rows =
+      sqlite::Statement::prepare(database_, SELFCAL_FIGURES " FROM result ORDER BY session DESC");
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<ResultRecord> results;
+  while (std::ssize(results) < newest) {
+    const Result<bool> row = rows->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    if (sound(*rows, kDamagedResult)) results.push_back(figures_of(*rows));
+  }
+  return results;
 }
 
 }  // namespace selfcal

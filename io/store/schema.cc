@@ -9,12 +9,19 @@
 #include <sqlite3.h>
 
 #include <array>
+#include <memory>
 #include <string>
 
+#include "io/store/checksums.h"
 #include "io/store/sqlite.h"
 
 namespace selfcal {
 namespace {
+
+#define SELFCAL_ADD_CHECKSUMS(table, checksum) \
+  "ALTER TABLE " table                         \
+  " ADD COLUMN checksum INTEGER;\n"            \
+  "UPDATE " table " SET checksum = " checksum ";\n"
 
 constexpr Migration kFromNothing = R"sql(
 CREATE TABLE text (
@@ -88,7 +95,32 @@ CREATE TABLE remembered (
   text TEXT NOT NULL) STRICT, WITHOUT ROWID;
 )sql";
 
-constexpr std::array<Migration, 1> kMigrations{kFromNothing};
+// What is there has no checksums yet, and gets them as it stands: damage of before cannot be seen,
+// but for that of texts, which had their hashes.
+constexpr Migration kChecksums = SELFCAL_ADD_CHECKSUMS("session", SELFCAL_SESSION_CHECKSUM)
+    SELFCAL_ADD_CHECKSUMS("plan", SELFCAL_PLAN_CHECKSUM) SELFCAL_ADD_CHECKSUMS(
+        "posture", SELFCAL_POSTURE_CHECKSUM) SELFCAL_ADD_CHECKSUMS("touch", SELFCAL_TOUCH_CHECKSUM)
+        SELFCAL_ADD_CHECKSUMS("result", SELFCAL_RESULT_CHECKSUM)
+            SELFCAL_ADD_CHECKSUMS("json", SELFCAL_JSON_CHECKSUM)
+                SELFCAL_ADD_CHECKSUMS("slot", SELFCAL_SLOT_CHECKSUM)
+                    SELFCAL_ADD_CHECKSUMS("event", SELFCAL_EVENT_CHECKSUM)
+                        SELFCAL_ADD_CHECKSUMS("remembered", SELFCAL_REMEMBERED_CHECKSUM) R"sql(
+CREATE TABLE damage (
+  id INTEGER PRIMARY KEY,
+  unix_ms INTEGER NOT NULL,        -- when it was found
+  place TEXT NOT NULL,             -- active, previous, candidate, store, or the table
+  what TEXT NOT NULL,
+  row TEXT,                        -- of one that left its table: the columns as SQL writes them
+  checksum INTEGER) STRICT;
+
+CREATE TABLE change (               -- one row: how many there have been
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  number INTEGER NOT NULL,
+  checksum INTEGER) STRICT;
+INSERT INTO change VALUES(1, 0, selfcal_checksum('change', 1, 0));
+)sql";
+
+constexpr std::array<Migration, 2> kMigrations{kFromNothing, kChecksums};
 
 }  // namespace
 
@@ -98,6 +130,40 @@ Result<int> version(sqlite3* database) {
   const Result<std::int64_t> number = sqlite::integer(database, "PRAGMA user_version");
   if (!number) return tl::unexpected(number.error());
   return static_cast<int>(*number);
+}
+
+namespace {
+
+/// The columns of all tables, a line a table; the order and the types of both count.
+Result<std::string> columns(sqlite3* database) {
+  std::string all;
+  for (const Verified& table : kVerified) {
+    const Result<std::string> list =
+        sqlite::text(database,
+                     "SELECT group_concat(name || ' ' || type || ' ' || \"notnull\" || ' ' || pk)"
+                     " FROM pragma_table_xinfo(?1)",
+                     {table.table});
+    if (!list) return list;
+    all += table.table + (": " + *list) + "\n";
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<bool> has_its_columns(sqlite3* database) {
+  const Result<int> found = version(database);
+  if (!found) return tl::unexpected(found.error());
+  if (*found < 0 || *found > static_cast<int>(migrations().size())) return false;
+  sqlite3* memory = nullptr;
+  sqlite3_open(":memory:", &memory);
+  const std::unique_ptr<sqlite3, decltype(&sqlite3_close)> owner(memory, sqlite3_close);
+  if (auto added = add_checksum_functions(memory); !added) return tl::unexpected(added.error());
+  const auto list = migrations().first(static_cast<std::size_t>(*found));
+  if (auto made = migrate(memory, list); !made) return tl::unexpected(made.error());
+  const Result<std::string> right = columns(memory), there = columns(database);
+  if (!right || !there) return tl::unexpected((!right ? right : there).error());
+  return *right == *there;
 }
 
 Result<void> migrate(sqlite3* database, std::span<const Migration> list) {

@@ -8,12 +8,17 @@
 //   touch      what came of one attempt: raw counts before and after the edge, or why it failed
 //   slot       robot parameters that are in use (active), were (previous), may be (candidate)
 //   event      a line of the log that a person may need in a year
+//
+// Every row has a checksum (checksums.h), which every function that reads it verifies. A row whose
+// checksum does not hold is never returned as what it says: a function of one row fails, lists say
+// below what they do; `met` has its name. Calls must come one at a time.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -94,15 +99,34 @@ struct EventRecord {
   std::string text;
 };
 
+/// Something that was found damaged, and is not used any more.
+struct DamageRecord {
+  std::int64_t unix_ms = 0;  ///< when it was found
+  std::string place;         ///< active, previous, candidate, store, or the table
+  std::string what;          ///< as a person calls it
+  std::string row;           ///< of a row that left its table: its columns; else empty
+};
+
+namespace sqlite {
+class Statement;
+class Transaction;
+}  // namespace sqlite
+class StoreMark;
+
 class Store {
  public:
   struct Opened;
 
-  /// Opens or creates the store in `folder` (selfcal.db), migrating an older schema. A damaged one
-  /// (SQLite's quick_check) is set aside as selfcal.db.damaged-N with its -wal file and a new one
-  /// is begun; `set_aside` says so. A store written by a newer program is a failure and left alone.
+  /// Opens or creates the store in `folder` (selfcal.db), migrating an older schema. One whose
+  /// pages are damaged (SQLite's integrity_check) is set aside as selfcal.db.damaged-N with its
+  /// -wal file, and a new one is begun with the rows of it that can be read; one that is gone or of
+  /// 0 bytes, too. Then every row is looked at: damaged slots are set aside (the previous
+  /// parameters take the place of damaged active ones), unfinished sessions that cannot go on are
+  /// ended. `set_aside` says all of it, `damage` has it noted. A store written by a newer program
+  /// is a failure and left alone.
   static Result<Opened> open(const std::filesystem::path& folder);
-  /// Opens an existing store to read while a service may be writing; functions that write fail.
+  /// Opens an existing store to read while a service may be writing; functions that write fail. It,
+  /// too, looks at every page and row, and `met` has what is damaged.
   static Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& folder);
   ~Store();
   Store(const Store&) = delete;
@@ -114,7 +138,8 @@ class Store {
   Result<void> set_state(std::int64_t session, SessionState state, std::int64_t unix_ms);
   /// The newest session that is `collecting` or `collected`.
   Result<std::optional<SessionRecord>> unfinished();
-  Result<std::vector<SessionRecord>> sessions(int newest);  ///< newest first
+  /// Newest first. A damaged one has its number, the reason that it is damaged, and nothing else.
+  Result<std::vector<SessionRecord>> sessions(int newest);
   Result<SessionRecord> session(std::int64_t id);
   /// As begun; once pruned the steps have no readings, and then there are no steps.
   Result<std::vector<StepRecord>> plan(std::int64_t session);
@@ -122,30 +147,42 @@ class Store {
   /// Fails when the session has ended or its plan has no such step. Counts beyond a sample's
   /// joints are not kept.
   Result<void> add(std::int64_t session, const TouchRecord& touch);
-  Result<std::vector<TouchRecord>> touches(std::int64_t session);  ///< in the order they came
+  /// In the order they came, without damaged ones.
+  Result<std::vector<TouchRecord>> touches(std::int64_t session);
 
   /// Puts the result and ends the session in one transaction. With `candidate`, the robot becomes
   /// the candidate in the same; the decision of one that it takes the place of becomes `replaced`.
   /// A session has one result: a second is a failure.
   Result<void> finish(const ResultRecord& result, const SlotRecord* candidate);
+  /// A damaged json or robot_text is empty.
   Result<std::optional<ResultRecord>> result(std::int64_t session);
-  Result<std::vector<ResultRecord>> results(int newest);  ///< without json and robot_text
+  /// Without json and robot_text, and without damaged ones.
+  Result<std::vector<ResultRecord>> results(int newest);
 
   Result<std::optional<SlotRecord>> slot(Slot slot);
-  /// active becomes previous, candidate becomes active, and the session's decision `applied`.
+  /// active becomes previous, candidate becomes active, and the session's decision `applied`. Fails
+  /// on a damaged candidate; damaged active ones are set aside and leave previous as it is.
   Result<void> accept(std::int64_t unix_ms);
   /// The candidate is dropped; its session's decision becomes `rejected`.
   Result<void> reject(std::int64_t unix_ms);
   /// active and previous change places (an empty previous is the factory's: active becomes empty).
-  /// Fails when there is nothing to go back to.
+  /// Fails when there is nothing to go back to, or it is damaged; damaged active ones are set
+  /// aside.
   Result<void> roll_back(std::int64_t unix_ms);
 
   Result<void> add(const EventRecord& event);  ///< `id` is ignored
+  /// Newest first. A damaged one has its id and says that it is damaged.
   Result<std::vector<EventRecord>> events(int newest);
 
   /// A small text kept under a name ("motion_hours"); empty when never set.
   Result<void> remember(const std::string& name, const std::string& text);
   Result<std::string> remembered(const std::string& name);
+
+  /// What was found damaged whenever the store was opened, or slots were changed; newest first.
+  Result<std::vector<DamageRecord>> damage();
+  /// What was found damaged and had not been noted, each once: by reading, and where the store was
+  /// opened to read.
+  const std::vector<std::string>& met() const { return met_; }
 
   /// Deletes the oldest until the content fits `most_bytes`: events first, then the json of results
   /// (the figures stay), then the readings of plans and touches put aside, last the raw rows of
@@ -155,13 +192,24 @@ class Store {
   Result<std::int64_t> bytes();  ///< of the content, without free pages and the log
 
  private:
-  explicit Store(sqlite3* database) : database_(database) {}
+  Store(sqlite3* database, std::unique_ptr<StoreMark> mark);
+  /// Ends a change: it counts, in the store and in the mark beside it.
+  Result<void> commit(sqlite::Transaction& change);
+  void meet(const std::string& what);
+  /// Whether the column says nothing (SELFCAL_DAMAGED_…); what it says is met.
+  bool sound(const sqlite::Statement& row, int column);
+  SessionRecord session_of(const sqlite::Statement& row);
+  ResultRecord figures_of(const sqlite::Statement& row);
+
   sqlite3* database_;
+  std::unique_ptr<StoreMark> mark_;  ///< none where it was opened to read
+  std::set<std::string> known_;      ///< damage that was told of
+  std::vector<std::string> met_;
 };
 
 struct Store::Opened {
   std::unique_ptr<Store> store;
-  std::string set_aside;  ///< what was damaged and where it is now; empty when all was well
+  std::string set_aside;  ///< what was damaged and what became of it; empty when all was well
 };
 
 }  // namespace selfcal

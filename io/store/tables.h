@@ -4,16 +4,25 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/result.h"
-
-struct sqlite3;
+#include "io/store/store.h"
 
 namespace selfcal {
 
-/// The id of a text in the table of texts, where it is put when it is not there.
+/// The id of a text in the table of texts, where it is put when it is not there. One that is there
+/// and damaged is whole again then.
 Result<std::int64_t> keep_text(sqlite3* database, std::string_view body);
 
-/// Fails when there is no such session.
+/// Fails when there is no such session; it may be damaged.
 Result<void> require_session(sqlite3* database, std::int64_t session);
+/// Fails when there is none, or it is damaged.
+Result<void> require_sound_session(sqlite3* database, std::int64_t session);
+
+/// Within the caller's transaction; fails as require_sound_session.
+Result<void> set_session_state(sqlite3* database, std::int64_t session, SessionState state,
+                               std::int64_t ended_ms);
+
+/// Sets the decision of a session's result, if it has one that is sound, and adds to its `why`.
+Result<void> set_decision(sqlite3* database, std::int64_t session, ResultDecision decision,
+                          std::string_view why = {});
 
 }  // namespace selfcal

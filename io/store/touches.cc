@@ -1,4 +1,5 @@
 // Touches: the raw counts that everything else can be computed from again.
+#include "io/store/checksums.h"
 #include "io/store/packing.h"
 #include "io/store/sqlite.h"
 #include "io/store/store.h"
@@ -9,7 +10,7 @@ namespace {
 
 /// Fails when the session cannot take a touch of this step.
 Result<void> check_room(sqlite3* database, std::int64_t session, const TouchRecord& touch) {
-  if (auto there = require_session(database, session); !there) return there;
+  if (auto sound = require_sound_session(database, session); !sound) return sound;
   const auto fits = sqlite::integer(
       database, "SELECT state < 2 AND ?2 >= 0 AND ?2 < steps FROM session WHERE id = ?1",
       {session, std::int64_t{touch.step}});
@@ -47,12 +48,13 @@ Result<void> Store::add(std::int64_t session, const TouchRecord& touch) {
   if (!id) return tl::unexpected(id.error());
   const std::string stamps = pack_stamps(touch);
   const auto added =
-      sqlite::run(database_, "INSERT INTO touch VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+      sqlite::run(database_, "INSERT INTO touch VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, NULL)",
                   {*id, std::int64_t{touch.step}, std::int64_t{touch.attempt},
                    static_cast<std::int64_t>(touch.outcome), or_null(touch.why), touch.unix_ms,
                    touch.temperature, sqlite::Blob{stamps}});
   if (!added) return tl::unexpected(added.error());
-  return transaction->commit();
+  if (auto put = put_checksum(database_, kTouches, *id); !put) return put;
+  return commit(*transaction);
 }
 
 Result<std::vector<TouchRecord>> Store::touches(std::int64_t session) {
@@ -61,7 +63,8 @@ Result<std::vector<TouchRecord>> Store::touches(std::int64_t session) {
   }
   auto rows = sqlite::Statement::prepare(
       database_,
-      "SELECT step, attempt, outcome, why, unix_ms, temperature, stamps FROM touch"
+      "SELECT step, attempt, outcome, why, unix_ms, temperature, stamps, " SELFCAL_DAMAGED_TOUCH
+      " FROM touch"
       " WHERE id >= ?1 AND id < ?2 ORDER BY id",
       {first_touch(session), first_touch(session + 1)});
   if (!rows) return tl::unexpected(rows.error());
@@ -70,6 +73,7 @@ Result<std::vector<TouchRecord>> Store::touches(std::int64_t session) {
     const Result<bool> row = rows->step();
     if (!row) return tl::unexpected(row.error());
     if (!*row) return touches;
+    if (!sound(*rows, 7)) continue;
     TouchRecord& touch = touches.emplace_back();
     touch.step = static_cast<int>(rows->integer(0));
     touch.attempt = static_cast<int>(rows->integer(1));

@@ -11,7 +11,7 @@
 #include "io/file.h"
 #include "io/store/schema.h"
 #include "tests/io/scratch.h"
-#include "tests/io/store_records.h"
+#include "tests/io/store_content.h"
 
 namespace selfcal {
 namespace {
@@ -36,8 +36,9 @@ void expect_set_aside(const Scratch& scratch, const std::string& damaged, int nu
   const std::string name = "selfcal.db.damaged-" + std::to_string(number);
   EXPECT_THAT(again->set_aside, HasSubstr(name));
   EXPECT_EQ(content(scratch.folder() / name), damaged);
-  EXPECT_TRUE(again->store->sessions(1)->empty());
-  EXPECT_EQ(whole_session(*again->store, 3), 1);
+  // What was salvaged is some of the four sessions, and the new store goes on.
+  EXPECT_LE(again->store->sessions(10)->size(), 4u);
+  whole_session(*again->store, 3);
 }
 
 TEST(StoreDamage, OverwrittenBytesSetItAside) {
@@ -76,8 +77,8 @@ TEST(StoreDamage, TheLogGoesAsideWithTheStore) {
   EXPECT_EQ(content(scratch.folder() / "selfcal.db.damaged-1-wal"), "a log");
 }
 
-// Any page may break; the store is then set aside or, where the damage only changed numbers that
-// no check can see, opens and answers. It never crashes and never fails to start.
+// Any page may break; the store is then set aside, or opens and answers. It never crashes and never
+// fails to start.
 TEST(StoreDamage, AnyBrokenPageIsSetAsideOrAnswered) {
   const Scratch scratch;
   const std::string whole = filled(scratch);
@@ -98,14 +99,6 @@ TEST(StoreDamage, AnyBrokenPageIsSetAsideOrAnswered) {
       (void)again->store->result(session.id);
     }
   }
-}
-
-/// Runs SQL on the file itself.
-void with_sqlite(const std::filesystem::path& path, const char* sql) {
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(database);
 }
 
 TEST(StoreVersion, ANewerStoreIsRefusedAndLeftAlone) {
