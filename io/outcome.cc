@@ -8,8 +8,8 @@ namespace {
 // In the order of the enumerations.
 constexpr std::array<std::string_view, 6> kAnswers = {
     "improved", "not-improved", "not-determined", "explained", "not-explained", "failed"};
-constexpr std::array<std::string_view, 6> kDecisions = {"none",     "rejected", "candidate",
-                                                        "applying", "applied",  "replaced"};
+constexpr std::array<std::string_view, 7> kDecisions = {
+    "none", "rejected", "candidate", "applying", "applied", "replaced", "rolled-back"};
 
 template <class E, std::size_t n>
 std::optional<E> parse(const std::array<std::string_view, n>& names, std::string_view text) {

@@ -22,7 +22,8 @@ enum class ResultDecision : std::uint8_t {
   candidate,  ///< waits for a person
   applying,   ///< by the ruling alone; begun, and after a power cut still to be done
   applied,
-  replaced,  ///< by a newer candidate, before anybody had decided
+  replaced,     ///< by a newer candidate, before anybody had decided
+  rolled_back,  ///< applied, and given up by a person afterwards
 };
 
 /// As the store and the messages have it: "not-improved".

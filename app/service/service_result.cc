@@ -224,12 +224,17 @@ void Service::reject() {
 }
 
 void Service::roll_back() {
+  const std::string given_up = models_.name();
   const auto done = store_.roll_back(ports_.clock->unix_ms());
-  if (command_)
-    messenger_.reply(
-        {command_->id, command_->verb, done.has_value(), done ? "rolled back" : done.error().what});
-  if (!done || !reload_models()) return;
-  tell("warning", "rolled back to " + models_.name());
+  if (!done) {
+    if (command_) refuse(*command_, done.error().what + "; active: " + models_.name());
+    return;
+  }
+  if (!reload_models()) return;
+  const std::string said = models_.name() + " is active now; " + given_up +
+                           " was rolled back and is not used again by itself";
+  if (command_) messenger_.reply({command_->id, command_->verb, true, said});
+  tell("warning", said);
 }
 
 void Service::publish() {

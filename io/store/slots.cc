@@ -119,8 +119,9 @@ Result<void> Store::roll_back(std::int64_t unix_ms) {
   const Result<Found> active = find(database_, Slot::active);
   const Result<Found> previous = find(database_, Slot::previous);
   if (!active || !previous) return tl::unexpected((!active ? active : previous).error());
-  if (!active->there && !previous->there) {
-    return sqlite::failure(database_, "there are no parameters to go back to");
+  if (!active->there) {
+    return sqlite::failure(database_,
+                           "the factory's parameters are active: there is nothing further back");
   }
   if (!previous->damaged.empty()) return damaged(database_, *previous);
   // Where the active ones are damaged, setting them aside is the way back already.
@@ -128,10 +129,13 @@ Result<void> Store::roll_back(std::int64_t unix_ms) {
     return tl::unexpected(aside.error());
   }
   if (active->damaged.empty()) {
+    auto set = active->session == 0
+                   ? Result<void>{}
+                   : set_decision(database_, active->session, ResultDecision::rolled_back);
+    if (!set) return set;
     const auto changed = change(database_, unix_ms,
-                                {"UPDATE slot SET slot = 3 WHERE slot = 0",
-                                 "UPDATE slot SET slot = 0, since_ms = ?1 WHERE slot = 1",
-                                 "UPDATE slot SET slot = 1, since_ms = ?1 WHERE slot = 3"});
+                                {"DELETE FROM slot WHERE slot = 0",
+                                 "UPDATE slot SET slot = 0, since_ms = ?1 WHERE slot = 1"});
     if (!changed) return changed;
   }
   return commit(*transaction);

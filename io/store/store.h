@@ -165,9 +165,9 @@ class Store {
   Result<void> accept(std::int64_t unix_ms);
   /// The candidate is dropped; its session's decision becomes `rejected`.
   Result<void> reject(std::int64_t unix_ms);
-  /// active and previous change places (an empty previous is the factory's: active becomes empty).
-  /// Fails when there is nothing to go back to, or it is damaged; damaged active ones are set
-  /// aside.
+  /// One step back: active is given up and its session's decision becomes `rolled_back`, previous
+  /// becomes active (an empty previous is the factory's: active becomes empty). What was rolled
+  /// back never comes back by another step. Fails when the factory's are active.
   Result<void> roll_back(std::int64_t unix_ms);
 
   Result<void> add(const EventRecord& event);  ///< `id` is ignored

@@ -30,7 +30,7 @@ TEST(StoreSlots, AreEmptyAtFirstAndThenNothingCanBeDone) {
   EXPECT_EQ(behind(*store), (Sessions{-1, -1, -1}));
   EXPECT_THAT(store->accept(1).error().what, testing::HasSubstr("no candidate to accept"));
   EXPECT_THAT(store->reject(1).error().what, testing::HasSubstr("no candidate to reject"));
-  EXPECT_THAT(store->roll_back(1).error().what, testing::HasSubstr("no parameters to go back to"));
+  EXPECT_THAT(store->roll_back(1).error().what, testing::HasSubstr("nothing further back"));
 }
 
 TEST(StoreSlots, GiveBackACandidateBitByBit) {
@@ -80,7 +80,7 @@ TEST(StoreSlots, ANewCandidateReplacesTheOldOneAndSaysSo) {
   EXPECT_EQ(decision(*store, b), ResultDecision::candidate);
 }
 
-TEST(StoreSlots, RollBackSwapsAndTwiceIsNothing) {
+TEST(StoreSlots, RollBackGoesStepByStepAndNeverForth) {
   const Scratch scratch;
   const auto store = opened(scratch.folder());
   const std::int64_t a = whole_session(*store, 2, true);
@@ -88,10 +88,12 @@ TEST(StoreSlots, RollBackSwapsAndTwiceIsNothing) {
   const std::int64_t b = whole_session(*store, 2, true);
   ASSERT_TRUE(store->accept(20).has_value());
   ASSERT_TRUE(store->roll_back(30).has_value());
-  EXPECT_EQ(behind(*store), (Sessions{a, b, -1}));
+  EXPECT_EQ(behind(*store), (Sessions{a, -1, -1}));
   EXPECT_EQ(store->slot(Slot::active).value()->since_ms, 30);
+  EXPECT_EQ(decision(*store, b), ResultDecision::rolled_back);
   ASSERT_TRUE(store->roll_back(40).has_value());
-  EXPECT_EQ(behind(*store), (Sessions{b, a, -1}));
+  EXPECT_EQ(behind(*store), (Sessions{-1, -1, -1}));
+  EXPECT_THAT(store->roll_back(50).error().what, testing::HasSubstr("nothing further back"));
 }
 
 TEST(StoreSlots, RollBackFromTheFirstParametersGoesToTheFactorys) {
@@ -100,7 +102,7 @@ TEST(StoreSlots, RollBackFromTheFirstParametersGoesToTheFactorys) {
   const std::int64_t a = whole_session(*store, 2, true);
   ASSERT_TRUE(store->accept(10).has_value());
   ASSERT_TRUE(store->roll_back(20).has_value());
-  EXPECT_EQ(behind(*store), (Sessions{-1, a, -1}));
+  EXPECT_EQ(behind(*store), (Sessions{-1, -1, -1}));
   const std::int64_t b = whole_session(*store, 2, true);
   ASSERT_TRUE(store->accept(30).has_value());
   EXPECT_EQ(behind(*store), (Sessions{b, -1, -1}));  // before b were the factory's, not a

@@ -53,10 +53,14 @@ TEST(Manners, ALateJoinerSeesTheLastResultAndAPersonDecides) {
   EXPECT_TRUE(cell.command("accept").accepted);
   ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
   EXPECT_EQ(cell.statuses.back().active, "session 1");
-  EXPECT_TRUE(cell.command("rollback").accepted);
+  const CommandReplyMessage back = cell.command("rollback");
+  EXPECT_TRUE(back.accepted);
+  EXPECT_EQ(back.why,
+            "factory is active now; session 1 was rolled back and is not used again by itself");
   ASSERT_TRUE(cell.until([&] { return cell.statuses.back().active == "factory"; }));
-  EXPECT_TRUE(cell.command("rollback").accepted) << "and forth";
-  ASSERT_TRUE(cell.until([&] { return cell.statuses.back().active == "session 1"; }));
+  const CommandReplyMessage again = cell.command("rollback");
+  EXPECT_FALSE(again.accepted) << "never forth: session 1 was given up";
+  EXPECT_NE(again.why.find("active: factory"), std::string::npos) << again.why;
 }
 
 TEST(Manners, AbortStopsTheRobotAndKeepsWhatWasCollected) {
