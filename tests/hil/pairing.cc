@@ -91,8 +91,9 @@ Pairs Pairing::pair(int touches, int step_every) {
   NoMotion motion;
   const auto encoders = must(CanEncoders::open(spinning_settings(wires.interface)));
   const auto trigger = must(GpioTrigger::open({.chip = wires.chip, .line = wires.line}, wakeup));
-  Senses senses({&clock, encoders.get(), trigger.get(), &motion, nullptr}, 2 * kMillisecond, 1e-4,
-                kSecond);
+  const Ports ports{&clock, encoders.get(), trigger.get(), &motion, nullptr};
+  Reflex reflex(ports, 2 * kMillisecond);
+  Senses senses(ports, reflex, 1e-4, kSecond);
   Pairs pairs;
   std::deque<Edge> waiting;
   const Nanoseconds end = clock.now() + touches * 200 * kMillisecond;

@@ -99,7 +99,7 @@ TEST(StoreSlots, RollBackGoesStepByStepAndNeverForth) {
 TEST(StoreSlots, RollBackFromTheFirstParametersGoesToTheFactorys) {
   const Scratch scratch;
   const auto store = opened(scratch.folder());
-  const std::int64_t a = whole_session(*store, 2, true);
+  whole_session(*store, 2, true);
   ASSERT_TRUE(store->accept(10).has_value());
   ASSERT_TRUE(store->roll_back(20).has_value());
   EXPECT_EQ(behind(*store), (Sessions{-1, -1, -1}));
