@@ -77,6 +77,12 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
   ProgressMessage progress;
   progress.unix_ms = ports_.clock->unix_ms();
   progress.robot = config_.id;
+  if (situation_.state == ServiceState::planning) {  // what is planned has no number yet
+    progress.kind = to_string(situation_.kind);
+    progress.seconds_left = progress.residual = std::nan("");
+    progress.note = note;
+    return messenger_.publish(progress);
+  }
   progress.session = session_.record.id;
   progress.kind = session_.record.kind;
   progress.planned = static_cast<std::uint32_t>(session_.plan.size());

@@ -25,7 +25,7 @@ CellOptions small_and_live() {
 bool makes_five_touches(Cell& cell) {
   cell.start_robot();
   cell.start_service();
-  return cell.start_session() && cell.until([&] { return cell.progress.size() >= 5; });
+  return cell.start_session() && cell.until([&] { return cell.touches() >= 5; });
 }
 
 TEST(Manners, ALateJoinerSeesTheLastResultAndAPersonDecides) {

@@ -3,8 +3,6 @@
 
 #include <fstream>
 
-#include <algorithm>
-
 #include "tests/support/cell.h"
 
 namespace selfcal {
@@ -26,15 +24,12 @@ TEST(Overhead, StaysBelowFiveMillisecondsOfCpuATouch) {
   cell.start_robot();
   cell.start_service();
   ASSERT_TRUE(cell.start_session());
-  const auto touches = [&] {
-    return std::ranges::count_if(cell.progress, [](const auto& p) { return !p.set.empty(); });
-  };
-  ASSERT_TRUE(cell.until([&] { return touches() >= 6; }));
+  ASSERT_TRUE(cell.until([&] { return cell.touches() >= 6; }));
   const double own_before = cpu_seconds(cell.service_pid(), true);
   const double all_before = cpu_seconds(cell.service_pid(), false);
-  const auto first = touches();
-  ASSERT_TRUE(cell.until([&] { return touches() >= 60; }));
-  const double count = static_cast<double>(touches() - first);
+  const auto first = cell.touches();
+  ASSERT_TRUE(cell.until([&] { return cell.touches() >= 60; }));
+  const double count = static_cast<double>(cell.touches() - first);
   const double own = (cpu_seconds(cell.service_pid(), true) - own_before) / count;
   const double all = (cpu_seconds(cell.service_pid(), false) - all_before) / count;
   std::printf(

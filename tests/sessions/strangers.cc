@@ -21,19 +21,19 @@ class Strangers : public testing::Test {
     cell.start_robot();
     cell.start_service();
     ASSERT_TRUE(cell.start_session());
-    ASSERT_TRUE(cell.until([&] { return cell.progress.size() >= 3; }));
+    ASSERT_TRUE(cell.until([&] { return cell.touches() >= 3; }));
   }
   /// The service stops for the stranger, who speaks every few milliseconds, and takes nothing of
   /// it.
   void expect_fault(const std::string& topic, const std::function<void()>& speak) {
-    const std::size_t before = cell.progress.size();
+    const std::size_t before = cell.touches();
     ASSERT_TRUE(cell.until([&] {
       speak();
       return cell.in_state("fault");
     }));
     EXPECT_NE(cell.statuses.back().why.find("two senders of " + topic), std::string::npos)
         << cell.statuses.back().why;
-    EXPECT_LE(cell.progress.size(), before + 2) << "the touch under way and one more, at most";
+    EXPECT_LE(cell.touches(), before + 2) << "the touch under way and one more, at most";
     for (const TouchRecord& touch : must(cell.store()->touches(1)))
       EXPECT_TRUE(touch.outcome != TouchOutcome::taken || touch.before.counts[0] != kForged);
   }

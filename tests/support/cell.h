@@ -2,6 +2,7 @@
 // watched over DDS by the test.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +58,10 @@ class Cell {
   CommandReplyMessage command(const std::string& verb);
   /// Starts a session once the service is idle; false, and a failed test, when it does not begin.
   bool start_session();
+  /// Touches that were told of.
+  std::size_t touches() const {
+    return std::ranges::count_if(progress, [](const auto& each) { return !each.set.empty(); });
+  }
   bool in_state(const std::string& state) const {
     return !statuses.empty() && statuses.back().state == state;
   }
