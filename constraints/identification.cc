@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 #include "constraints/adjustment.h"
@@ -83,12 +84,9 @@ EndpointQuestion endpoint_question(const Equations& equations, const Adjusted& a
   return question;
 }
 
-Solution assemble(const Equations& equations, const Adjusted& adjusted, const Options& options,
-                  const Progress& progress) {
-  const Robot& robot = equations.robot();
-  const DataSet& data = equations.data();
+/// What the fit itself tells.
+Solution fit_figures(const Adjusted& adjusted) {
   const Fit& fitted = adjusted.fitted;
-  if (progress) progress("judging", 0.9);
   Solution solution;
   solution.converged = fitted.converged;
   solution.stop_reason = fitted.stop_reason;
@@ -98,35 +96,56 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.prior_chi2 = adjusted.chi2.value;
   solution.prior_dof = adjusted.chi2.freedom;
   solution.prior_widening = adjusted.widening;
+  return solution;
+}
 
-  const Weighting weighting{fitted.noise.used, fitted.noise.put_aside};
-  const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
-  Eigen::MatrixXd C = covariance(equations, adjusted, R);
-  EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
-  const ScaleJudgement scale = judge_scale(equations, adjusted, R, question);
-  for (const Eigen::VectorXd& doubt : scale.doubts) C += doubt * doubt.transpose();
-  solution.scale = scale.scale;
-  const Identifiability rank = identifiability(equations, R, fitted.state, adjusted.prior.free, {});
+/// The posterior of every parameter: rank, sigma, covariance. `R` is whitened, with the columns
+/// beside the unknowns.
+Identifiability add_posterior(const Equations& equations, const Adjusted& adjusted,
+                              const Eigen::MatrixXd& R, const Eigen::MatrixXd& C,
+                              Solution& solution) {
+  const Fit& fitted = adjusted.fitted;
+  const Robot& robot = equations.robot();
+  Identifiability rank = identifiability(equations, R, fitted.state, adjusted.prior.free, {});
   solution.parameters =
       parameter_results(robot, fitted.state.xi, C, rank, adjusted.candidate, adjusted.prior.free);
   std::tie(solution.covariance_order, solution.covariance) =
       covariance_result(solution.parameters, C);
   solution.observability = identified_observability(equations, R, rank, fitted.noise);
-  solution.unexcited = unexcited(robot, data, rank, adjusted.candidate);
+  solution.unexcited = unexcited(robot, equations.data(), rank, adjusted.candidate);
+  return rank;
+}
+
+Solution assemble(const Equations& equations, const Adjusted& adjusted, const Options& options,
+                  const Progress& progress) {
+  const Robot& robot = equations.robot();
+  const DataSet& data = equations.data();
+  const Fit& fitted = adjusted.fitted;
+  if (progress) progress("judging", 0.9);
+  Solution solution = fit_figures(adjusted);
+
+  const Weighting weighting{fitted.noise.used, fitted.noise.put_aside};
+  const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
+  Eigen::MatrixXd C = covariance(equations, adjusted, R);
+  EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
+  const bool nothing = nothing_free(adjusted);
+  const ScaleJudgement scale =
+      nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
+  for (const Eigen::VectorXd& doubt : scale.doubts) C += doubt * doubt.transpose();
+  solution.scale = scale.scale;
+  const Identifiability rank = add_posterior(equations, adjusted, R, C, solution);
 
   const Judged before = judge(robot, data, equations, adjusted.before);
   const Judged after = judge(robot, data, equations, fitted);
   solution.residual = residual_figures(data, before, after, fitted.noise.put_aside);
   solution.rejected = rejected_rows(data, after, fitted.noise.put_aside);
   solution.sets = set_results(equations, fitted, C, after);
-
   const std::vector<std::string> turned = gross_angles(robot, data, before, after);
   add_warnings(data, adjusted, solution);
-  for (const auto* contradictions : {&scale.scale.contradictions, &turned})
-    solution.warnings.insert(solution.warnings.end(), contradictions->begin(),
-                             contradictions->end());
+  std::ranges::copy(scale.scale.contradictions, std::back_inserter(solution.warnings));
+  std::ranges::copy(turned, std::back_inserter(solution.warnings));
   if (progress) progress("done", 1);
-  if (nothing_free(adjusted)) {  // certain of what was given, not of what is true
+  if (nothing) {  // certain of what was given, not of what is true
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";
     return solution;
   }
@@ -136,8 +155,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
                   nominal_explains(adjusted, rank, solution.residual.fit), turned};
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || solution.endpoint.rms > data.target)
-    grounds.contradictions.insert(grounds.contradictions.end(), scale.scale.contradictions.begin(),
-                                  scale.scale.contradictions.end());
+    std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
   solution.verdict = verdict(before, after, solution.residual, grounds);
   return solution;
 }

@@ -60,19 +60,22 @@ class ScaleTest {
     compare_with_maker(at);
     if (lengths().size() > 1) compare_with_others(at);
     const double least = kLeastShare / static_cast<double>(lengths().size());
+    const bool elsewhere = adjusted_.prior.free != prior_.free;  // on the length that is not free
     std::erase_if(lengths(), [&](const ScaleLength& each) {
-      return adjusted_.scale >= 0 || std::abs(each.share) < least;
+      return elsewhere || std::abs(each.share) < least;
     });
     return std::move(result_);
   }
 
  private:
-  /// The length held for the scale is free here, within its tolerance.
+  /// Lengths that are held or fixed are free here, within their tolerance: so much they may be off.
   static Prior as_the_maker_says(const Robot& robot, const Adjusted& adjusted) {
     Prior prior = adjusted.prior;
-    for (size_t i = 0; i < robot.parameters().size(); ++i)
-      if (is_own(robot.parameters()[i])) prior.sigma[i] = robot.parameters()[i].tolerance;
-    if (adjusted.scale >= 0) prior.free[adjusted.scale] = 1;
+    for (size_t i = 0; i < robot.parameters().size(); ++i) {
+      const Parameter& p = robot.parameters()[i];
+      if (is_own(p)) prior.sigma[static_cast<Eigen::Index>(i)] = p.tolerance;
+      if (p.link_length) prior.free[i] = 1;
+    }
     return prior;
   }
 

@@ -16,8 +16,9 @@ struct ScaleJudgement {
 };
 
 /// `R` is whitened, at `adjusted.fitted`, with the columns beside the unknowns; `question` is that
-/// of the end position, whose covariance is not looked at. Nothing stands on given lengths where
-/// the scale is held, though they are tested; without priors there is nothing to test them by.
+/// of the end position, whose covariance is not looked at. Nothing stands on given lengths where a
+/// length of the robot is held or fixed, though they are tested; without priors, or where nothing
+/// is free, they are not.
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
                            const Eigen::MatrixXd& R, EndpointQuestion question);
 
