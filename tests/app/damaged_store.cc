@@ -96,15 +96,12 @@ TEST_F(DamagedStore, IsToldByHistoryRowByRow) {
 
   const Ran table = run_selfcal("history " + state.string());
   const Ran events = run_selfcal("history --events " + state.string());
-  const Ran exported =
-      run_selfcal("history --export 2 " + (folder / "out").string() + " " + state.string());
 
   EXPECT_EQ(table.status, 0) << table.out;
   EXPECT_THAT(table.out, AllOf(HasSubstr("damaged result"), HasSubstr("this row of the store"),
                                HasSubstr("previous   damaged"), HasSubstr("touch 1 of session 2")));
   EXPECT_THAT(events.out, HasSubstr("error    this row of the store is damaged"));
   EXPECT_EQ(events.out.find("all is well"), std::string::npos);
-  EXPECT_NE(exported.out.find("session 2"), std::string::npos);
 }
 
 }  // namespace
