@@ -31,7 +31,7 @@ std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, s
   std::vector<Drift> all;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     Drift drift;
-    drift.name = parameters[p].name + " " + parameters[p].frame + "." + parameters[p].field;
+    drift.name = full_name(parameters[p]);
     drift.quantity = parameters[p].quantity;
     double before = parameters[p].nominal;
     for (const AcceptedParameters& calibration : calibrations) {

@@ -58,8 +58,12 @@ std::string first_line(const DataSet& data, const Solution& solution) {
                   1e3 * fit.rms_before, 1e3 * fit.rms_after);
   }
   size_t told = 0;
-  for (const Note& note : solution.gauge)
-    if (told < 2) text += (told++ ? ", " : "; ") + note.parameter + " held";
+  const std::vector<Note>& held = solution.gauge;
+  for (size_t i = 0; i < held.size() && told < 2; ++i) {
+    if (i > 0 && held[i].text == held[i - 1].text) continue;  // one of several for one reason
+    const bool alone = i + 1 == held.size() || held[i + 1].text != held[i].text;
+    text += (told++ ? ", " : "; ") + held[i].parameter + (alone ? "" : "…") + " held";
+  }
   for (const ParameterResult& p : solution.parameters)
     if (p.status == Status::grouped && !p.grouped_with.empty() && told < 4)
       text += (told++ ? ", " : "; ") + carried(p);
@@ -93,7 +97,7 @@ std::string parameter_table(const Solution& solution) {
     without_effect += p.status == Status::no_effect;
     if (p.status != Status::identified) continue;
     const Shown unit = shown(p.parameter);
-    const std::string name = p.parameter.name + " " + p.parameter.frame + "." + p.parameter.field;
+    const std::string name = full_name(p.parameter);
     text += print(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
                                                    : "  %-18s %9.4f  %9.4f %s\n",
                   name.c_str(), unit.factor * (p.value - p.parameter.nominal),

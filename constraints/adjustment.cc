@@ -57,6 +57,7 @@ class Adjustment {
       for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 0;
     adjusted_.candidate = adjusted_.prior.free;
     for (const Note& note : held_base(robot_, equations_)) hold(note);
+    for (const Note& note : held_orientation(robot_, equations_)) hold(note);
   }
 
   void hold(const Note& note) {

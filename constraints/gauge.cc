@@ -35,6 +35,20 @@ std::vector<Note> held_base(const Robot& robot, const Equations& equations) {
   return notes;
 }
 
+bool orientation_is_seen(const Equations& equations) {
+  return !every_set(equations, [](const Method& m) { return !m.sees_orientation(); });
+}
+
+std::vector<Note> held_orientation(const Robot& robot, const Equations& equations) {
+  if (orientation_is_seen(equations)) return {};
+  std::vector<Note> notes;
+  for (const Parameter& p : robot.parameters())
+    if (p.part == Part::tool && p.of_whole_pose && p.quantity == Quantity::angle)
+      notes.push_back(
+          {p.name, "no row sees how the tool is turned: it is held as the file has it"});
+  return notes;
+}
+
 std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
                               const Eigen::VectorXd& xi, const std::vector<char>& free) {
   if (!every_set(equations, [](const Method& m) { return m.may_leave_scale_free(); }))

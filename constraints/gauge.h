@@ -1,4 +1,5 @@
-// What the rows can never see: the scale of touches, the place of the base, the target's point.
+// What the rows can never see: the scale of touches, the place of the base, how the tool is
+// turned, the target's point.
 #pragma once
 
 #include <optional>
@@ -12,6 +13,13 @@ namespace selfcal {
 /// Parameters that are held before anything is estimated, with the reason: the base frames when
 /// every set is measured by a device whose own frame is unknown.
 std::vector<Note> held_base(const Robot& robot, const Equations& equations);
+
+/// The same of how a tool is turned that is a whole pose, when no row sees an orientation: where it
+/// is says it all then.
+std::vector<Note> held_orientation(const Robot& robot, const Equations& equations);
+
+/// True when a row tells how the endpoint is turned.
+bool orientation_is_seen(const Equations& equations);
 
 /// Index of the link length to hold because the rows leave the scale free, if they do: the scale is
 /// known worse than the maker's tolerance tells it. Judged on whitened R; `free` are the free

@@ -32,7 +32,26 @@ Eigen::MatrixXd covariance(const Equations& equations, const Adjusted& adjusted,
   return C + sigma * sigma * follow * follow.transpose();
 }
 
-void add_warnings(const DataSet& data, const Adjusted& adjusted, Solution& solution) {
+std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
+
+/// Moves beyond four tolerances; of an angle of the tool, where no row sees how it is turned,
+/// beyond one: it then imitates an offset.
+void warn_of_move(const ParameterResult& each, bool orientation_is_seen,
+                  std::vector<std::string>& warnings) {
+  const Parameter& p = each.parameter;
+  if (each.status == Status::fixed || p.part == Part::effect) return;
+  const double moved = std::abs(each.value - p.nominal) / p.tolerance;
+  const std::string in_frame = p.frame + "." + p.field;
+  const std::string name = p.name == in_frame ? p.name : p.name + " (" + in_frame + ")";
+  if (moved > 4) warnings.push_back(name + " moved by " + rounded(moved) + " tolerances");
+  if (moved > 1 && !orientation_is_seen && p.part == Part::tool && p.quantity == Quantity::angle)
+    warnings.push_back(name + " turns the tool by " + rounded(1e3 * (each.value - p.nominal)) +
+                       " mrad (" + rounded(moved) +
+                       " tolerances) where no row sees how it is turned, to imitate an offset: its "
+                       "orientation is false; give the tool as a whole pose (xyz, rpy)");
+}
+
+void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution& solution) {
   if (adjusted.widening != 1)
     solution.warnings.push_back(
         "the robot differs from the maker's figures more than their tolerances allow (chi2 " +
@@ -40,18 +59,14 @@ void add_warnings(const DataSet& data, const Adjusted& adjusted, Solution& solut
         format_number(std::round(adjusted.chi2.freedom)) +
         " degrees of freedom): priors widened by " +
         format_number(std::round(adjusted.widening * 100) / 100));
-  for (const ParameterResult& each : solution.parameters) {
-    const double moved = std::abs(each.value - each.parameter.nominal) / each.parameter.tolerance;
-    if (moved > 4 && each.status != Status::fixed && each.parameter.part != Part::effect)
-      solution.warnings.push_back(each.parameter.name + " (" + each.parameter.frame + "." +
-                                  each.parameter.field + ") moved by " +
-                                  format_number(std::round(moved * 10) / 10) + " tolerances");
-  }
+  const bool seen = orientation_is_seen(equations);
+  for (const ParameterResult& each : solution.parameters)
+    warn_of_move(each, seen, solution.warnings);
   if (!adjusted.before.converged)
     solution.warnings.push_back(
         "the figures before are of a nominal robot not placed to the end: " +
         adjusted.before.stop_reason);
-  add_set_warnings(data, adjusted.fitted, solution);
+  add_set_warnings(equations.data(), adjusted.fitted, solution);
 }
 
 /// The rows say something of the robot, but nothing against its maker's figures: the moves stay
@@ -141,7 +156,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.rejected = rejected_rows(data, after, fitted.noise.put_aside);
   solution.sets = set_results(equations, fitted, C, after);
   const std::vector<std::string> turned = gross_angles(robot, data, before, after);
-  add_warnings(data, adjusted, solution);
+  add_warnings(equations, adjusted, solution);
   std::ranges::copy(scale.scale.contradictions, std::back_inserter(solution.warnings));
   std::ranges::copy(turned, std::back_inserter(solution.warnings));
   if (progress) progress("done", 1);

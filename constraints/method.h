@@ -119,6 +119,8 @@ class Method {
   virtual bool constrains() const { return true; }
   /// True when one of the equations is of an angle, and so has a noise of its own.
   bool has_angles() const;
+  /// True when a row tells how the endpoint is turned, beside where it is.
+  virtual bool sees_orientation() const { return has_angles(); }
   Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
   virtual TouchedSurface touches() const { return TouchedSurface::none; }

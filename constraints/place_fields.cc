@@ -16,7 +16,7 @@ std::optional<Location> read_place(const Node& node) {
     return std::nullopt;
   Eigen::VectorXd v(static_cast<Eigen::Index>(node.items.size()));
   for (Eigen::Index i = 0; i < v.size(); ++i) {
-    const auto number = parse_number(node.items[i].text);
+    const auto number = written_number(node.items[i].text);
     if (!number) return std::nullopt;
     v[i] = *number;
   }

@@ -25,7 +25,7 @@ std::string shape_in_words(const Node& entry) {
       {"moment", "from %.0f s on"}, {"settle", "settling in %.0f s"}, {"lag", "lagging by %.0f s"}};
   for (const auto& [key, words] : kTold) {
     const Node* field = entry.find(key);
-    const auto value = field ? parse_number(field->text) : std::nullopt;
+    const auto value = field ? written_number(field->text) : std::nullopt;
     if (!value) continue;
     char text[64];
     std::snprintf(text, sizeof text, words, *value);

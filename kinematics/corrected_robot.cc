@@ -27,7 +27,9 @@ class CorrectedRobot final : public Robot {
         preference_(geometry_->preference()) {
     for (const auto& effect : effects_)
       for (const EffectParameter& p : effect->parameters()) {
-        const std::string place = effect->at().empty() ? "robot" : effect->at();
+        std::string place = effect->at().empty() ? "robot" : effect->at();
+        // A base that is a whole pose has a base.x of its own.
+        if (find_parameter(*geometry_, place + "." + p.name) >= 0) place = effect->name();
         Parameter parameter{place + "." + p.name, place, p.name, Quantity::other, Part::effect};
         parameter.value = p.value;
         parameter.tolerance = kLooseness * p.usual_most;

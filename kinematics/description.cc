@@ -34,7 +34,19 @@ std::string found(const Node* node) {
 
 std::optional<double> number_of(const Node* node) {
   if (node == nullptr || node->kind != Node::Kind::text) return std::nullopt;
-  return parse_number(node->text);
+  return written_number(node->text);
+}
+
+std::string_view without_blanks(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return text;
+}
+
+/// A number without a sign.
+std::optional<double> plain_number(std::string_view text) {
+  if (text.starts_with('+') || text.starts_with('-')) return std::nullopt;
+  return parse_number(text);
 }
 
 }  // namespace
@@ -223,7 +235,7 @@ std::vector<double> Fields::positives(std::string_view key, const std::string& w
   std::vector<double> numbers;
   const auto take = [&](const Node& item) {
     const auto number =
-        item.kind == Node::Kind::text ? parse_number(item.text) : std::optional<double>();
+        item.kind == Node::Kind::text ? written_number(item.text) : std::optional<double>();
     if (number && *number > 0)
       numbers.push_back(*number);
     else
@@ -281,6 +293,30 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(first, last, number);
   if (error != std::errc() || end != last || !std::isfinite(number)) return std::nullopt;
   return number;
+}
+
+std::optional<double> written_number(std::string_view text) {
+  const std::size_t at = text.find("pi");
+  if (at == std::string_view::npos) return parse_number(text);
+  std::string_view before = text.substr(0, at), after = text.substr(at + 2);
+  double number = std::numbers::pi;
+  if (before.starts_with('-')) number = -number;
+  if (before.starts_with('-') || before.starts_with('+')) before.remove_prefix(1);
+  if (!before.empty()) {
+    before = without_blanks(before);
+    if (!before.ends_with('*')) return std::nullopt;
+    const auto factor = plain_number(without_blanks(before.substr(0, before.size() - 1)));
+    if (!factor) return std::nullopt;
+    number *= *factor;
+  }
+  if (!after.empty()) {
+    after = without_blanks(after);
+    if (!after.starts_with('/')) return std::nullopt;
+    const auto divisor = plain_number(without_blanks(after.substr(1)));
+    if (!divisor) return std::nullopt;
+    number /= *divisor;
+  }
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 std::string format_number(double number) {

@@ -105,6 +105,10 @@ class Fields {
 /// The whole of `text` as a finite number, else nothing.
 std::optional<double> parse_number(std::string_view text);
 
+/// A number as a person writes it: one that parse_number reads, or a part of pi, [sign] [NUMBER *]
+/// pi [/ NUMBER] with blanks around * and / at will: pi, -pi/2, 3*pi/4. Else nothing.
+std::optional<double> written_number(std::string_view text);
+
 /// Shortest decimal text that reads back as exactly `number`.
 std::string format_number(double number);
 

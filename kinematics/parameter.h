@@ -27,7 +27,8 @@ struct Parameter {
   double nominal = 0;           ///< centre of the prior: the maker's figure
   double tolerance = 0;         ///< 1 sigma of the prior
   bool free = true;             ///< gear ratios are held unless their tolerance is given
-  bool link_length = false;     ///< a nonzero d or r of the moving links: carries the scale
+  bool link_length = false;     ///< a nonzero length of the moving links: carries the scale
+  bool of_whole_pose = false;   ///< of a frame that its file gives as a whole pose
   std::string other_unit = {};  ///< of a quantity of another kind
 
   std::string_view unit() const {

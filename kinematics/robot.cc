@@ -110,6 +110,11 @@ Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::Vect
   return X.at(0);
 }
 
+std::string full_name(const Parameter& parameter) {
+  const std::string in_frame = parameter.frame + "." + parameter.field;
+  return parameter.name == in_frame ? in_frame : parameter.name + " " + in_frame;
+}
+
 std::vector<int> match_parameters(const Robot& robot, std::string_view pattern) {
   std::vector<int> found;
   const std::vector<Parameter>& list = robot.parameters();

@@ -143,6 +143,9 @@ ConfigurationBlock block_of(const Eigen::VectorXd& q);
 Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
                 Body body = Body::endpoint);
 
+/// "theta2 j2.theta", or the one where both are the same.
+std::string full_name(const Parameter& parameter);
+
 /// Index of the parameter called `name` (its name or FRAME.FIELD), or -1.
 int find_parameter(const Robot& robot, std::string_view name);
 /// Indices of all parameters whose name or FRAME.FIELD matches `pattern`, in which * stands for any

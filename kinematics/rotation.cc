@@ -34,4 +34,21 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() - 0.5 * S + c * S * S;
 }
 
+Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
+  // Where the pitch is a quarter turn, yaw and roll turn about one axis and each alone is rounding;
+  // the roll is therefore that of Rot(z, -yaw) R, for whatever yaw was taken.
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  const double pitch = std::atan2(-R(2, 0), c * R(0, 0) + s * R(1, 0));
+  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
+  return {roll, pitch, yaw};
+}
+
 }  // namespace selfcal

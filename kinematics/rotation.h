@@ -15,4 +15,9 @@ Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R);
 /// Inverse of the left Jacobian of SO(3) at phi, |phi| < 2 pi.
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
 
+/// Rot(z, yaw) Rot(y, pitch) Rot(x, roll) of [roll, pitch, yaw], in URDF's order.
+Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy);
+/// Angles that give R, |pitch| <= pi / 2; to rounding at a pitch of a quarter turn, too.
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R);
+
 }  // namespace selfcal

@@ -18,7 +18,7 @@ namespace {
 /// Radius of the probe by which the set is touched; 0 for a point.
 double probe_radius(const SetScenario& set) {
   const Node* node = set.entry.find("probe_radius");
-  return node ? parse_number(node->text).value_or(0) : 0;
+  return node ? written_number(node->text).value_or(0) : 0;
 }
 
 /// Configurations that `rows` rows come from when a share of them is repeated.

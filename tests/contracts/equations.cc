@@ -56,6 +56,12 @@ TEST(Equations, HaveTheProductOfTheDenseSystem) {
   expect_dense_system(made);
 }
 
+TEST(Equations, HaveTheProductOfTheDenseSystemOfWholePoses) {
+  EquationsCase made(8, arm_of_whole_poses());
+  made.weighting.soft_quantile = 1 - 1e-12;
+  expect_dense_system(made);
+}
+
 TEST(Equations, WeighDownFarRowsAndLeaveOutThosePutAside) {
   EquationsCase made(2);
   made.weighting.soft_quantile = 0.5;  // about half of the rows are beyond
@@ -117,20 +123,25 @@ TEST(Equations, StepGroupsToWhereTheDenseSystemPutsThem) {
   }
 }
 
-TEST(Equations, MoveTheWorldAsTheBaseFramesDo) {
-  EquationsCase made(6);
+/// `motions`: shifts along x, y, z and turns about them.
+void expect_motions(EquationsCase made, const std::vector<std::string>& motions) {
   made.state.xi = values(*made.robot);  // base frames as in the file: along the world's axes
   const Equations equations(*made.robot, made.data, Use::fit);
   const Eigen::MatrixXd R = equations.linearise(made.state, made.weighting, true).R;
   const int global = equations.columns();
   ASSERT_EQ(R.cols(), global + 6 + equations.known_lengths() + 1);
-  // Shifts along x, y, z, turns about them: see arm.h. Rounding of columns of length 1000.
-  const char* const kMotions[] = {"d0", "r1", "r0", "alpha0", "beta0", "theta0"};
   for (int i = 0; i < 6; ++i) {
-    const int p = find_parameter(*made.robot, kMotions[i]);
-    EXPECT_GT(R.col(p).norm(), 1) << kMotions[i];
-    EXPECT_LT((R.col(global + i) - R.col(p)).norm(), 1e-10) << kMotions[i];
+    const int p = find_parameter(*made.robot, motions[i]);
+    EXPECT_GT(R.col(p).norm(), 1) << motions[i];
+    // Rounding of columns of length 1000.
+    EXPECT_LT((R.col(global + i) - R.col(p)).norm(), 1e-10) << motions[i];
   }
+}
+
+TEST(Equations, MoveTheWorldAsTheBaseFramesDo) {
+  expect_motions(EquationsCase(6), {"d0", "r1", "r0", "alpha0", "beta0", "theta0"});
+  expect_motions(EquationsCase(9, arm_of_whole_poses()),
+                 {"base.x", "base.y", "base.z", "base.rx", "base.ry", "base.rz"});
 }
 
 TEST(Equations, HaveAColumnForEachLengthThatAnEntryGives) {

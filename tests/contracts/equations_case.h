@@ -12,12 +12,13 @@
 namespace selfcal {
 
 struct EquationsCase {
-  std::unique_ptr<Robot> robot = six_axis_arm();
+  std::unique_ptr<Robot> robot;
   DataSet data;
   State state;  ///< near the truth
   Weighting weighting;
 
-  explicit EquationsCase(unsigned long long seed) {
+  explicit EquationsCase(unsigned long long seed, std::unique_ptr<Robot> arm = six_axis_arm())
+      : robot(std::move(arm)) {
     data.sets = make_sets(
         "tracker: {method: location, frame: unknown}\n"
         "point: {method: position, frame: unknown, point: unknown}\n"

@@ -134,6 +134,17 @@ TEST_P(Gauge, DoesNotKeepOwnValuesFromBeingFoundFromRowsThatHold) {
   EXPECT_LT(misfit(at), kHolds);
 }
 
+TEST_P(Gauge, SaysWhetherARowTellsHowTheEndpointIsTurned) {
+  Random random(85);
+  const Instance at = random_instance(GetParam(), random);
+  const MethodOutput out = at.evaluate();
+  bool angular = false;
+  for (int a = 0; a < at.equations(); ++a)
+    for (const MethodOutput::Block* G : {&out.G_now, &out.G_before})
+      angular = angular || (G->middleCols(6 * a + 3, 3) != 0).any();
+  EXPECT_EQ(at.method().sees_orientation(), angular && at.method().body() == Body::endpoint);
+}
+
 TEST(GaugeOfAllCases, IsDeclaredByNoMethodThatNeverHoldsForARobotOfAnySize) {
   std::map<std::string, bool> declared, holds;
   Random random(84);

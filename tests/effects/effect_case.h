@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "kinematics/corrected_robot.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/kinematics/random_robot.h"
@@ -112,7 +114,11 @@ inline std::shared_ptr<const Robot> heavy_robot(std::mt19937_64& random) {
 inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& random) {
   EffectInstance made{heavy_robot(random), random_site(random), {}, {}, {}};
   const std::vector<Joint>& joints = made.geometry->joints();
-  const auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
+  auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
+  // Lumps need a joint that turns at or behind the one picked.
+  const auto turns = [](const Joint& joint) { return joint.quantity == Quantity::angle; };
+  while (pick > 0 && std::none_of(joints.begin() + static_cast<long>(pick), joints.end(), turns))
+    --pick;
   const std::string text = entry_text(each, joints[pick].name, joints[pick + 1].name);
   Problems problems;
   made.robot = correct(made.geometry, {parsed("{" + text + "}")}, made.site, problems);

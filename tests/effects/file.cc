@@ -202,5 +202,22 @@ TEST(JointCompliance, OfARobotWithoutMassesComesBackAsItWasLoadedOrLumped) {
   }
 }
 
+TEST(EffectOfABase, HasItsOwnNamesBesideABaseThatIsAWholePose) {
+  const std::string frames =
+      "robot: arm\nkind: serial\nframes:\n"
+      "  - {name: base, joint: fixed, xyz: [0, 0, 0.5]}\n  - {name: j1, joint: revolute}\n";
+  const auto robot = robot_of(
+      parsed(frames + "effects:\n  - {effect: base_drift, rx: 1.0e-4, begin: 0, end: 9}\n"));
+  ASSERT_NE(robot, nullptr);
+  EXPECT_EQ(robot->parameters()[find_parameter(*robot, "base.rx")].part, Part::base);
+  const int drift = find_parameter(*robot, "base_drift.rx");
+  ASSERT_GE(drift, 0);
+  EXPECT_EQ(robot->parameters()[drift].part, Part::effect);
+  EXPECT_EQ(values(*robot)[drift], 1e-4);
+  const auto back = robot_of(robot->describe(values(*robot)));
+  ASSERT_NE(back, nullptr);
+  EXPECT_EQ(values(*back), values(*robot));
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <utility>
 
 namespace selfcal {
 namespace {
@@ -62,6 +64,32 @@ TEST(Numbers, AcceptAPlusAndRefuseEverythingThatIsNoFiniteNumber) {
                            "NaN", "inf", "-inf", "infinity", "1e400", "0x10", "1_000"}) {
     EXPECT_FALSE(parse_number(text).has_value()) << text;
   }
+}
+
+TEST(WrittenNumbers, MayBePartsOfPi) {
+  constexpr double pi = std::numbers::pi;
+  const std::pair<const char*, double> cases[] = {{"pi", pi},
+                                                  {"-pi", -pi},
+                                                  {"+pi", pi},
+                                                  {"pi/2", pi / 2},
+                                                  {"-pi/2", -pi / 2},
+                                                  {"3*pi/4", 3 * pi / 4},
+                                                  {"-2*pi", -2 * pi},
+                                                  {"0.5*pi", 0.5 * pi},
+                                                  {"2 * pi / 3", 2 * pi / 3},
+                                                  {"pi / 1e2", pi / 100},
+                                                  {"1.5", 1.5},
+                                                  {"-2e3", -2000.0}};
+  for (const auto& [text, number] : cases) EXPECT_EQ(written_number(text), number) << text;
+}
+
+TEST(WrittenNumbers, AreNothingElse) {
+  for (const char* text : {"",     "2pi",   "pi2",      "pi*2",   "pi/",    "*pi",    "2*",
+                           "pi/0", "pi/-2", "-2*-pi",   "--pi",   "- pi",   "pi ",    " pi",
+                           "Pi",   "PI",    "pipi",     "pi/2/2", "2*3*pi", "pi+1",   "pi/pi",
+                           "x*pi", "pi/x",  "1e400*pi", "2/3*pi", "nan*pi", "1,5*pi", "sin(pi)"})
+    EXPECT_FALSE(written_number(text).has_value()) << text;
+  EXPECT_FALSE(parse_number("pi").has_value());  // rows of measurements have plain numbers
 }
 
 TEST(Fields, NameTheFileTheLineTheMappingAndTheKeyOfAWrongNumber) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,11 +14,12 @@
 
 namespace selfcal {
 
-/// One frame in numbers: alpha d theta r beta (rad, m).
+/// One frame in numbers: alpha d theta r beta (rad, m), or a whole pose.
 struct FrameNumbers {
   std::string joint = "fixed";
   std::array<double, 5> v{};
   double gear = 1;
+  std::optional<std::array<double, 6>> whole = {};  ///< x y z roll pitch yaw, in place of v
   bool moves() const { return joint != "fixed"; }
 };
 
@@ -59,7 +61,12 @@ inline Node robot_node(const std::vector<FrameNumbers>& frames, const Eigen::Mat
     Node frame = Node::map();
     frame.set("name", text_node("f" + std::to_string(f)));
     frame.set("joint", text_node(frames[f].joint));
-    for (size_t i = 0; i < 5; ++i) frame.set(kFields[i], Node::of(frames[f].v[i]));
+    if (const auto& whole = frames[f].whole) {
+      frame.set("xyz", Node::of(std::vector<double>(whole->begin(), whole->begin() + 3)));
+      frame.set("rpy", Node::of(std::vector<double>(whole->begin() + 3, whole->end())));
+    }
+    for (size_t i = 0; !frames[f].whole && i < 5; ++i)
+      frame.set(kFields[i], Node::of(frames[f].v[i]));
     if (frames[f].moves()) frame.set("gear", Node::of(frames[f].gear));
     list.items.push_back(std::move(frame));
   }
@@ -76,11 +83,15 @@ inline FrameNumbers random_frame(const std::string& joint, std::mt19937_64& rand
   frame.v = {uniform(random, -3, 3), uniform(random, -0.6, 0.6), uniform(random, -3, 3),
              uniform(random, -0.6, 0.6), uniform(random, -0.8, 0.8)};
   if (frame.moves()) frame.gear = uniform(random, 0.95, 1.05);
+  if (frame.moves() || uniform(random, 0, 1) < 0.5) return frame;
+  frame.whole.emplace();
+  for (size_t i = 0; i < 6; ++i)
+    (*frame.whole)[i] = i < 3 ? uniform(random, -0.6, 0.6) : uniform(random, -3, 3);
   return frame;
 }
 
 /// 3 to 9 joints, one to three base and tool frames, fixed frames in between, gears near 1; every
-/// second robot has a coupling matrix.
+/// second fixed frame is a whole pose, every second robot has a coupling matrix.
 inline RandomRobot random_robot(std::mt19937_64& random) {
   const auto whole = [&](int least, int most) {
     return std::uniform_int_distribution<int>(least, most)(random);
@@ -102,6 +113,16 @@ inline RandomRobot random_robot(std::mt19937_64& random) {
   made.robot = make_robot(robot_node(made.frames, made.coupling), problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   return made;
+}
+
+/// Values of `robot`'s parameters with its whole poses turned by up to half a radian from what the
+/// file says: their rotations are about axes that move.
+inline Eigen::VectorXd turned_values(const Robot& robot, std::mt19937_64& random) {
+  Eigen::VectorXd xi = values(robot);
+  for (Eigen::Index i = 0; i < xi.size(); ++i)
+    if (robot.parameters()[i].field.starts_with("r") && robot.parameters()[i].field.size() == 2)
+      xi[i] += uniform(random, -0.5, 0.5);
+  return xi;
 }
 
 /// A block of kLanes different readings within half a turn (half a metre for prismatic joints).

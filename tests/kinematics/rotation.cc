@@ -96,5 +96,27 @@ TEST(LeftJacobianInverse, IsExactAtHalfATurnAndBeyond) {
   EXPECT_LT((left_jacobian_inverse(phi) * phi - phi).norm(), 1e-13);
 }
 
+TEST(RollPitchYaw, ComeBackFromTheirRotationAtEveryPitch) {
+  std::mt19937_64 random(35);
+  std::uniform_real_distribution<double> turn(-3.1, 3.1);
+  const double quarter = std::numbers::pi / 2;
+  for (const double pitch : {0.0, 0.4, -1.5, quarter, -quarter, quarter - 1e-8, 1e-9 - quarter}) {
+    const Eigen::Vector3d rpy(turn(random), pitch, turn(random));
+    const Eigen::Matrix3d R = rpy_rotation(rpy);
+    // A few epsilon, at a quarter turn too, where the angles themselves are not determined.
+    EXPECT_LT((rpy_rotation(rpy_of(R)) - R).norm(), 2e-15) << pitch;
+    if (std::abs(pitch) < 1) {
+      EXPECT_LT((rpy_of(R) - rpy).norm(), 1e-15) << pitch;
+    }
+  }
+}
+
+TEST(RollPitchYaw, TurnAboutTheAxesInTheirOrder) {
+  const double quarter = std::numbers::pi / 2;
+  Eigen::Matrix3d expected;  // the pitch takes x to -z and z to x; the yaw then x to y, y to -x
+  expected << 0, -1, 0, 0, 0, 1, -1, 0, 0;
+  EXPECT_LT((rpy_rotation({0, quarter, quarter}) - expected).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -47,7 +47,7 @@ struct Drawn {
 Drawn drawn(std::mt19937_64& random, Body body) {
   Drawn d{random_robot(random), {}, {}, {}, {}};
   d.block = random_block(*d.made.robot, random);
-  d.xi = values(*d.made.robot);
+  d.xi = turned_values(*d.made.robot, random);
   d.made.robot->locate(d.block, d.xi, body, d.X, &d.psi);
   return d;
 }

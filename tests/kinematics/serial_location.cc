@@ -16,10 +16,27 @@ namespace {
 constexpr double kRounding = 1e-12;  // 20 frames, metres and radians: a few hundred epsilon
 
 #ifdef SELFCAL_HAVE_KDL
-/// Two segments a frame: what stands before the joint, then the joint with theta and r.
-KDL::Chain chain_of(const RandomRobot& made) {
+/// A whole pose turned further by the parameters rx ry rz, in KDL's words.
+KDL::Frame whole_pose(const std::array<double, 6>& v, const KDL::Vector& turn) {
+  const KDL::Rotation R = KDL::Rotation::RPY(v[3], v[4], v[5]);
+  return {turn.Norm() > 0 ? R * KDL::Rotation::Rot(turn, turn.Norm()) : R,
+          KDL::Vector(v[0], v[1], v[2])};
+}
+
+/// Two segments a frame: what stands before the joint, then the joint with theta and r. Of a whole
+/// pose the second is nothing.
+KDL::Chain chain_of(const RandomRobot& made, const Eigen::VectorXd& xi) {
   KDL::Chain chain;
-  for (const FrameNumbers& frame : made.frames) {
+  for (size_t f = 0; f < made.frames.size(); ++f) {
+    const FrameNumbers& frame = made.frames[f];
+    if (frame.whole) {
+      const int at = find_parameter(*made.robot, "f" + std::to_string(f) + ".rx");
+      chain.addSegment(
+          KDL::Segment(KDL::Joint(KDL::Joint::None),
+                       whole_pose(*frame.whole, KDL::Vector(xi[at], xi[at + 1], xi[at + 2]))));
+      chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None)));
+      continue;
+    }
     const auto& [alpha, d, theta, r, beta] = frame.v;
     const KDL::Frame before = KDL::Frame(KDL::Rotation::RotY(beta)) *
                               KDL::Frame(KDL::Rotation::RotX(alpha)) *
@@ -53,11 +70,12 @@ TEST(SerialLocation, AgreesWithKdlForRandomRobots) {
   for (int i = 0; i < 50; ++i) {
     const RandomRobot made = random_robot(random);
     const ConfigurationBlock block = random_block(*made.robot, random);
-    const KDL::Chain chain = chain_of(made);
+    const Eigen::VectorXd xi = turned_values(*made.robot, random);
+    const KDL::Chain chain = chain_of(made, xi);
     KDL::ChainFkSolverPos_recursive solver(chain);
     Locations end, link;
-    made.robot->locate(block, values(*made.robot), Body::endpoint, end, nullptr);
-    made.robot->locate(block, values(*made.robot), Body::last_link, link, nullptr);
+    made.robot->locate(block, xi, Body::endpoint, end, nullptr);
+    made.robot->locate(block, xi, Body::last_link, link, nullptr);
     KDL::JntArray joints(static_cast<unsigned>(made.joints()));
     for (int lane = 0; lane < kLanes; ++lane) {
       joints.data = made.variables(block.q.row(lane).matrix().transpose());

@@ -7,16 +7,26 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
+#include <map>
+#include <string>
+
 #include "kinematics/robot.h"
 
 namespace selfcal::recovery {
 
-/// Takes names and limits from `model`; parameters are alpha d theta r beta of each frame, then K,
-/// and the frames' motions are read off the joints' names and quantities. Psi is zero: only
-/// joint_jacobian is used.
+/// Takes names and limits from `model`; parameters are alpha d theta r beta of each frame, or x y z
+/// rx ry rz of a whole pose, then K, and the frames' motions are read off the joints' names and
+/// quantities. Psi is zero: only joint_jacobian is used.
 class KdlRobot final : public Robot {
  public:
-  explicit KdlRobot(const Robot& model) : model_(model) {}
+  explicit KdlRobot(const Robot& model) : model_(model) {
+    const Node written = model.describe(nominal_values(model));
+    for (const Node& frame : written.find("frames")->items)
+      if (const Node* rpy = frame.find("rpy"))
+        turned_[frame.find("name")->text] =
+            KDL::Rotation::RPY(*parse_number(rpy->items[0].text), *parse_number(rpy->items[1].text),
+                               *parse_number(rpy->items[2].text));
+  }
   std::string_view kind() const override { return "kdl"; }
   const std::string& name() const override { return model_.name(); }
   const std::vector<Joint>& joints() const override { return model_.joints(); }
@@ -68,18 +78,30 @@ class KdlRobot final : public Robot {
     return array;
   }
 
+  /// A whole pose: what its maker says, turned by rx ry rz.
+  KDL::Frame whole_pose(const std::string& frame, const Eigen::VectorXd& v) const {
+    const KDL::Vector turn(v[3], v[4], v[5]);
+    return {turned_.at(frame) * KDL::Rotation::Rot(turn, turn.Norm()),
+            KDL::Vector(v[0], v[1], v[2])};
+  }
+
   KDL::Chain make_chain(const Eigen::VectorXd& xi, Body body) const {
     KDL::Chain chain;
-    const auto frames = static_cast<Eigen::Index>(parameters().size() - joints().size()) / 5;
+    const auto end = static_cast<Eigen::Index>(parameters().size() - joints().size());
     size_t joint = 0;
-    for (Eigen::Index f = 0; f < frames; ++f) {
-      const Eigen::VectorXd v = xi.segment(5 * f, 5);  // alpha d theta r beta
+    for (Eigen::Index first = 0, fields = 0; first < end; first += fields) {
+      const Parameter& one = parameters()[static_cast<size_t>(first)];
+      fields = one.of_whole_pose ? 6 : 5;
+      const Eigen::VectorXd v = xi.segment(first, fields);  // alpha d theta r beta
+      if (one.of_whole_pose) {
+        chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), whole_pose(one.frame, v)));
+        continue;
+      }
       KDL::Frame before(KDL::Rotation::RotY(v[4]) * KDL::Rotation::RotX(v[0]));
       before = before * KDL::Frame(KDL::Vector(v[1], 0, 0));
       chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), before));
       const KDL::Frame after = KDL::Frame(KDL::Rotation::RotZ(v[2]), KDL::Vector(0, 0, v[3]));
-      const bool moves = joint < joints().size() &&
-                         parameters()[static_cast<size_t>(5 * f)].frame == joints()[joint].name;
+      const bool moves = joint < joints().size() && one.frame == joints()[joint].name;
       KDL::Joint motion(KDL::Joint::None);
       if (moves)
         motion = KDL::Joint(joints()[joint].quantity == Quantity::angle ? KDL::Joint::RotZ
@@ -93,6 +115,7 @@ class KdlRobot final : public Robot {
   }
 
   const Robot& model_;
+  std::map<std::string, KDL::Rotation> turned_;  ///< by whole pose, as its maker says
   mutable Eigen::ArrayXXd last_q_;
   mutable Body last_body_ = Body::endpoint;
 };

@@ -31,7 +31,21 @@ inline Node frame(const std::string& name, const std::string& joint, double alph
   return node;
 }
 
-/// Six joints (now and then five or seven, now and then one prismatic) with links of 0.1 to 0.6 m.
+/// A base or tool frame as a whole pose.
+inline Node whole_frame(const std::string& name, const Eigen::Vector3d& xyz,
+                        const Eigen::Vector3d& rpy) {
+  Node tolerance = Node::map();
+  for (const char* field : {"x", "y", "z"}) tolerance.set(field, Node::of(kPlacedLength));
+  for (const char* field : {"rx", "ry", "rz"}) tolerance.set(field, Node::of(kPlacedAngle));
+  Node node = Node::map();
+  node.set("name", Node::of(name)).set("joint", Node::of(std::string("fixed")));
+  node.set("xyz", Node::of(Eigen::VectorXd(xyz))).set("rpy", Node::of(Eigen::VectorXd(rpy)));
+  node.set("tolerance", std::move(tolerance));
+  return node;
+}
+
+/// Six joints (now and then five or seven, now and then one prismatic) with links of 0.1 to 0.6 m;
+/// of every second robot the base and the tool are whole poses.
 inline std::unique_ptr<Robot> random_robot(std::mt19937_64& random) {
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -39,8 +53,12 @@ inline std::unique_ptr<Robot> random_robot(std::mt19937_64& random) {
   const double quarter = std::numbers::pi / 2;
   const int joints = 5 + static_cast<int>(uniform(0, 3));
   const int prismatic = uniform(0, 1) < 0.2 ? 2 : -1;
+  const bool whole = uniform(0, 1) < 0.5;
   Node frames = Node::list();
-  frames.items.push_back(frame("base", "fixed", 0, 0, uniform(-3, 3), uniform(0, 0.5), true));
+  frames.items.push_back(
+      whole ? whole_frame("base", {uniform(-1, 1), uniform(-1, 1), uniform(0, 0.5)},
+                          {uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(-3, 3)})
+            : frame("base", "fixed", 0, 0, uniform(-3, 3), uniform(0, 0.5), true));
   for (int j = 0; j < joints; ++j) {
     const bool turns = uniform(0, 1) < 0.7;
     const double alpha = j == 0 ? 0.1 : turns ? (uniform(0, 1) < 0.5 ? quarter : -quarter) : 0;
@@ -53,7 +71,10 @@ inline std::unique_ptr<Robot> random_robot(std::mt19937_64& random) {
     frames.items.push_back(std::move(node));
   }
   frames.items.push_back(
-      frame("tool", "fixed", uniform(0.3, 1.3), uniform(0.05, 0.2), uniform(-2, 2), 0.1, true));
+      whole ? whole_frame("tool", {uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(0.05, 0.2)},
+                          {uniform(-3, 3), uniform(-1, 1), uniform(-3, 3)})
+            : frame("tool", "fixed", uniform(0.3, 1.3), uniform(0.05, 0.2), uniform(-2, 2), 0.1,
+                    true));
   Node robot = Node::map();
   robot.set("robot", Node::of(std::string("random"))).set("kind", Node::of(std::string("serial")));
   robot.set("frames", std::move(frames));
