@@ -78,7 +78,7 @@ Result<Answered> of_data_set(const Arguments& arguments) {
   if (!loaded) return tl::unexpected(loaded.error());
   print_notices(*loaded);
   Options options;
-  options.free = {"K*"};
+  options.gears = true;
   Solution solution;
   {
     ProgressLine line;

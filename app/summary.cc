@@ -194,7 +194,9 @@ std::string summary(const DataSet& data, const Solution& solution) {
   list(text, "Not excited by these rows", solution.unexcited,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Rows beyond the noise", solution.rejected, [](const Rejected& r) {
-    return print("row %d (%s): %.3g mm, ", r.row, r.set.c_str(), 1e3 * r.residual) + r.why;
+    const std::string of_row = print("row %d (%s): ", r.row, r.set.c_str());
+    return std::isfinite(r.residual) ? of_row + print("%.3g mm, ", 1e3 * r.residual) + r.why
+                                     : of_row + r.why;
   });
   list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
   list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });

@@ -100,7 +100,8 @@ int make_trials(const SealArguments& arguments) {
   if (!arguments.robot.empty()) {
     auto robot = load_robot(arguments.robot);
     if (!robot) return tell(robot.error());
-    if (!(*robot)->mechanics().masses_known())
+    const Statics* statics = (*robot)->statics();
+    if (!statics || !statics->mechanics().masses_known())
       return wrong_usage(arguments.robot + ": trials need the masses of the links");
     request.robot = std::move(*robot);
   }

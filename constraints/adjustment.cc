@@ -50,7 +50,8 @@ class Adjustment {
   const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
 
   void choose_free() {
-    for (const Parameter& p : parameters()) adjusted_.prior.free.push_back(p.free);
+    for (const Parameter& p : parameters())
+      adjusted_.prior.free.push_back(p.free || (options_.gears && p.part == Part::gear));
     for (const std::string& name : options_.free)
       for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 1;
     for (const std::string& name : options_.fix)

@@ -68,9 +68,9 @@ class Sampler {
   Location anywhere(const Method& method, const Patch& patch) {
     Locations X;
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      robot_.locate(starts(), xi_, method.body(), X, nullptr);
+      const Closure closure = robot_.locate(starts(), xi_, method.body(), X, nullptr);
       for (int lane = 0; lane < kLanes; ++lane)
-        if (patch.contains(X.p(lane))) return X.at(lane);
+        if (closure.closes(lane) && patch.contains(X.p(lane))) return X.at(lane);
     }
     return X.at(0);
   }
@@ -175,9 +175,10 @@ class Sampler {
   }
 
   std::vector<int> everywhere(const Method& method, const ConfigurationBlock& block, Locations& X) {
-    robot_.locate(block, xi_, method.body(), X, nullptr);
-    std::vector<int> lanes(kLanes);
-    for (int lane = 0; lane < kLanes; ++lane) lanes[lane] = lane;
+    const Closure closure = robot_.locate(block, xi_, method.body(), X, nullptr);
+    std::vector<int> lanes;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (closure.closes(lane)) lanes.push_back(lane);
     return lanes;
   }
 
@@ -198,7 +199,8 @@ class Sampler {
       newton.evaluate(block);
       for (int lane = 0; lane < kLanes; ++lane) {
         const Eigen::VectorXd miss = newton.miss(lane, wanted);
-        left[lane] = miss.norm();
+        left[lane] = newton.closes(lane) ? miss.norm() : HUGE_VAL;
+        if (!newton.closes(lane)) continue;  // lost
         if (left[lane] < kExact / 10) continue;
         Eigen::VectorXd dq = newton.step(lane, miss);
         if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
@@ -209,6 +211,10 @@ class Sampler {
     std::vector<int> reached;
     for (int lane = 0; lane < kLanes; ++lane)
       if (left[lane] < kExact) reached.push_back(lane);
+    // Once more: down to rounding, by which a structural rank is judged.
+    newton.evaluate(block);
+    for (const int lane : reached)
+      block.q.row(lane) += newton.step(lane, newton.miss(lane, wanted)).transpose().array();
     robot_.locate(block, xi_, method.body(), X, nullptr);
     return reached;
   }

@@ -15,10 +15,13 @@ bool move_to_residual(const Robot& robot, const DataSet& data, const State& trut
                       const Eigen::VectorXd& wanted, Eigen::VectorXd& q) {
   ConfigurationBlock block = block_of(q);
   Locations before;
-  robot.locate(block, truth.xi, data.sets[data.rows.set[row]].method->body(), before, nullptr);
+  if (!robot.locate(block, truth.xi, data.sets[data.rows.set[row]].method->body(), before, nullptr)
+           .closes())
+    return false;
   NewtonStep newton(robot, data, truth, row, before);
   for (int step = 0; step < kSteps; ++step) {
     newton.evaluate(block);
+    if (!newton.closes(0)) return false;
     const Eigen::VectorXd miss = newton.miss(0, wanted);
     const Eigen::VectorXd there = block.q.row(0).matrix().transpose();
     if (!((there - q).norm() < kFarthest)) return false;

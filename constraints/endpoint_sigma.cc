@@ -24,18 +24,17 @@ Eigen::MatrixXd random_poses(const Robot& robot, const Observations* data, int c
   std::mt19937_64 random(seed);
   const auto& joints = robot.joints();
   Eigen::MatrixXd q(count, joints.size());
-  for (int i = 0; i < count; ++i)
-    for (size_t j = 0; j < joints.size(); ++j) {
-      double lower = joints[j].lower, upper = joints[j].upper;
-      if (!joints[j].limited()) {
-        const auto column = static_cast<Eigen::Index>(j);
-        const double reach = joints[j].range() / 2;
-        lower = data ? data->q.col(column).minCoeff() : -reach;
-        upper = data ? data->q.col(column).maxCoeff() : reach;
-      }
-      q(i, static_cast<Eigen::Index>(j)) =
-          lower + (upper - lower) * std::generate_canonical<double, 53>(random);
-    }
+  Eigen::MatrixX2d span(q.cols(), 2);
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    span.row(column) << joints[j].lower, joints[j].upper;
+    if (joints[j].limited()) continue;
+    const double reach = joints[j].range() / 2;
+    span(column, 0) = data ? data->q.col(column).minCoeff() : -reach;
+    span(column, 1) = data ? data->q.col(column).maxCoeff() : reach;
+  }
+  const auto uniform = [&] { return std::generate_canonical<double, 53>(random); };
+  for (int i = 0; i < count; ++i) q.row(i) = robot.draw(span, uniform).transpose();
   return q;
 }
 
@@ -53,6 +52,7 @@ EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
     block.q.resize(kLanes, q.cols());
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) = q.row(std::min(first + lane, question.poses - 1)).array();
+    // A lane that does not close with the values found has no derivative, and adds nothing.
     robot.locate(block, question.xi, Body::endpoint, X, &psi);
     robot.locate(block, question.xi, Body::last_link, link, nullptr);
     for (int lane = 0; lane < block.count; ++lane) {

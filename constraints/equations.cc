@@ -102,12 +102,12 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   block.rows.resize(count);
   for (int lane = 0; lane < count; ++lane) block.rows[lane] = plans_[set].items[first + lane].row;
   load(block.now, false);
-  robot_.locate(block.now, state.xi, method.body(), block.X_now,
-                jacobian ? &block.psi_now : nullptr);
+  block.closure = robot_.locate(block.now, state.xi, method.body(), block.X_now,
+                                jacobian ? &block.psi_now : nullptr);
   if (method.paired()) {
     load(block.before, true);
-    robot_.locate(block.before, state.xi, method.body(), block.X_before,
-                  jacobian ? &block.psi_before : nullptr);
+    block.closure.add(robot_.locate(block.before, state.xi, method.body(), block.X_before,
+                                    jacobian ? &block.psi_before : nullptr));
   }
   block.quantities = method.equations();
   block.out.resize(static_cast<int>(block.quantities.size()), method.own_freedom(),
@@ -123,6 +123,8 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   in.reference = s.reference < 0 ? nullptr : &state.own[s.reference];
   in.groups = &state.groups[set];
   method.evaluate(in, block.out);
+  for (int lane = 0; !block.closure.closes() && lane < kLanes; ++lane)
+    if (!block.closure.closes(lane)) block.out.clear(lane);
   block.G_axes.resize(kLanes, 0);
   if (!method.vectors()) return;
   robot_.locate(block.now, state.xi, Body::first_link, block.X_axes,
@@ -147,8 +149,8 @@ void Equations::into_axes(Block& block) const {
   }
 }
 
-RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
-                         int row, int set, double factor) {
+RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities,
+                         const Closure& closure, int lane, int row, int set, double factor) {
   RowResidual r{row, set};
   r.factor = factor;
   for (size_t a = 0; a < quantities.size(); ++a) {
@@ -160,6 +162,7 @@ RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& q
   }
   r.length = std::sqrt(r.length);
   r.angle = std::sqrt(r.angle);
+  if (!closure.closes(lane)) r.length = HUGE_VAL;
   return r;
 }
 
@@ -172,8 +175,8 @@ std::vector<RowResidual> Equations::residuals(const State& state) const {
       const int count = std::min(kLanes, items - first);
       evaluate(s, first, count, state, block, false);
       for (int lane = 0; lane < count; ++lane)
-        list.push_back(row_residual(block.out, block.quantities, lane, block.rows[lane], s,
-                                    data_.rows.factor(block.rows[lane])));
+        list.push_back(row_residual(block.out, block.quantities, block.closure, lane,
+                                    block.rows[lane], s, data_.rows.factor(block.rows[lane])));
     }
   }
   return list;

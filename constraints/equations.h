@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "constraints/data_set.h"
@@ -32,7 +33,8 @@ struct Scale {
   double of(Quantity quantity) const { return quantity == Quantity::angle ? angle : length; }
 };
 
-/// Residual of one row: the length of its length and angle parts and the scalars of each.
+/// Residual of one row: the length of its length and angle parts and the scalars of each. Infinite
+/// where the robot, as it is, cannot take the row's configuration.
 struct RowResidual {
   int row = 0, set = 0;
   double length = 0, angle = 0;  ///< norms (m, rad)
@@ -53,6 +55,12 @@ struct Weighting {
 };
 
 enum class Use { fit, check, align };
+
+/// A row whose configuration the robot cannot take, as far as its maker's figures go: no equation.
+struct OpenRow {
+  int row = 0, set = 0;
+  std::string why;
+};
 
 /// The factor of one cluster of groups: enough to get its unknowns back from the global step.
 struct ClusterFactor {
@@ -103,6 +111,10 @@ class Equations {
   const Robot& robot() const { return robot_; }
   const DataSet& data() const { return data_; }
   const SetPlan& plan(int set) const { return plans_[set]; }
+  /// Rows of the use that are left out.
+  const std::vector<OpenRow>& open_rows() const { return open_rows_; }
+  /// Whether the robot can take the configurations of up to kLanes rows with parameters `xi`.
+  Closure closure_at(const std::vector<int>& rows, Body body, const Eigen::VectorXd& xi) const;
 
   int robot_columns() const { return static_cast<int>(robot_.parameters().size()); }
   int own_columns() const { return own_end_ - robot_columns(); }
@@ -144,6 +156,8 @@ class Equations {
   class Gatherer;
 
   void make_plan(int set, Use use);
+  /// By item, why the robot cannot take it with its maker's figures; empty where it can.
+  std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;
   void evaluate(int set, int first, int count, const State& state, Block& block,
                 bool jacobian) const;
   /// Takes the vectors of a method that has such in the axes of the first moving link.
@@ -175,6 +189,7 @@ class Equations {
   const DataSet& data_;
   bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
   std::vector<SetPlan> plans_;
+  std::vector<OpenRow> open_rows_;
   std::vector<int> own_at_, own_count_, known_at_;
   int own_end_ = 0, known_end_ = 0;
 };

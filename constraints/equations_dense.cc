@@ -53,7 +53,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
       evaluate(s, first, count, state, block, true);
       chain_rule(block, s, true, W);
       for (int lane = 0; lane < count; ++lane) {
-        if (put_aside[block.rows[lane]]) continue;
+        if (put_aside[block.rows[lane]] || !block.closure.closes(lane)) continue;
         for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
           Eigen::RowVectorXd& row = collector.add(block.rows[lane]);
           row.head(columns()) = W.row(a * kLanes + lane).head(columns());

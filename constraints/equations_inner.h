@@ -11,6 +11,7 @@ inline constexpr int kMotions = 6;  ///< columns of the world's motions
 struct Equations::Block {
   ConfigurationBlock now, before;
   Locations X_now, X_before, X_axes;
+  Closure closure;  ///< of a lane that it leaves open all else is zero
   PsiBlock psi_now, psi_before, psi_axes;
   MethodOutput out;
   MethodOutput::Block G_axes;  ///< as G, to the axes of vectors; without columns: there are none
@@ -24,7 +25,8 @@ struct Equations::Bend {
   State ahead, middle, behind;
 };
 
-RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities, int lane,
-                         int row, int set, double factor);
+/// Of a lane that `closure` leaves open it is infinite.
+RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities,
+                         const Closure& closure, int lane, int row, int set, double factor);
 
 }  // namespace selfcal

@@ -86,20 +86,64 @@ void make_clusters(const DataSet& data, const std::vector<GroupLink>& links, Set
 
 }  // namespace
 
+Closure Equations::closure_at(const std::vector<int>& rows, Body body,
+                              const Eigen::VectorXd& xi) const {
+  ConfigurationBlock block{Eigen::ArrayXXd(kLanes, data_.rows.q.cols()),
+                           static_cast<int>(rows.size())};
+  for (size_t lane = 0; lane < kLanes; ++lane)
+    block.q.row(static_cast<Eigen::Index>(lane)) =
+        data_.rows.q.row(rows[std::min(lane, rows.size() - 1)]).array();
+  if (conditions_matter_) {
+    std::vector<int> lanes(rows);
+    lanes.resize(kLanes, rows.back());
+    block.conditions = conditions(data_.rows, lanes);
+  }
+  Locations X;
+  return robot_.locate(block, xi, body, X, nullptr);
+}
+
+std::vector<std::string> Equations::why_open(int set,
+                                             const std::vector<SetPlan::Item>& items) const {
+  std::vector<std::string> why(items.size());
+  const Body body = data_.sets[set].method->body();
+  const Eigen::VectorXd xi = nominal_values(robot_);
+  for (size_t first = 0; robot_.has_loops() && first < items.size(); first += kLanes) {
+    const size_t count = std::min<size_t>(kLanes, items.size() - first);
+    std::vector<int> now, before;
+    for (size_t i = first; i < first + count; ++i) {
+      now.push_back(items[i].row);
+      before.push_back(items[i].previous < 0 ? items[i].row : items[i].previous);
+    }
+    Closure closure = closure_at(now, body, xi);
+    closure.add(closure_at(before, body, xi));
+    for (size_t lane = 0; lane < count; ++lane)
+      if (!closure.closes(static_cast<int>(lane))) why[first + lane] = closure.why[lane];
+  }
+  return why;
+}
+
 void Equations::make_plan(int set, Use use) {
   const Method& method = *data_.sets[set].method;
   SetPlan& plan = plans_[set];
-  const std::vector<Item> items = all_items(data_, set);
+  const std::vector<Item> all = all_items(data_, set);
+  const std::vector<std::string> open = why_open(set, all);
+  std::vector<Item> items;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (open[i].empty()) items.push_back(all[i]);
   const std::vector<char> fitted = fitted_groups(data_, set, items);
   const bool any_fit = std::any_of(items.begin(), items.end(),
                                    [&](const Item& item) { return !is_check(data_, item); });
   const bool grouped = method.group_freedom() > 0;
-  for (const Item& item : items) {
+  for (size_t i = 0; i < all.size(); ++i) {
+    const Item& item = all[i];
     const bool check = is_check(data_, item);
     bool take = use == Use::fit ? !check : check;
     if (use == Use::align)
       take = check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
-    if (take) plan.items.push_back(item);
+    if (take && open[i].empty())
+      plan.items.push_back(item);
+    else if (take)
+      open_rows_.push_back({item.row, set, open[i]});
   }
   if (plan.items.empty()) return;
   if (!grouped || use == Use::check) {

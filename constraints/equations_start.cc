@@ -33,6 +33,21 @@ class Locator {
     return list;
   }
 
+  /// Those of the rows that the robot can take with these parameters; all when it can take none,
+  /// for then the start is worth nothing anyway.
+  std::vector<int> closing(std::vector<int> rows, Body body) const {
+    if (!equations_.robot().has_loops()) return rows;
+    std::vector<int> closed;
+    for (size_t first = 0; first < rows.size(); first += kLanes) {
+      const auto at = rows.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::vector<int> some(at, at + std::min<std::ptrdiff_t>(kLanes, rows.end() - at));
+      const Closure closure = equations_.closure_at(some, body, xi_);
+      for (size_t lane = 0; lane < some.size(); ++lane)
+        if (closure.closes(static_cast<int>(lane))) closed.push_back(some[lane]);
+    }
+    return closed.empty() ? rows : closed;
+  }
+
   /// The endpoint in the last moving link.
   Location tool(int row) const {
     const Location end = at({row}, Body::endpoint)[0], link = at({row}, Body::last_link)[0];
@@ -62,7 +77,8 @@ void Equations::start(State& state) const {
       const Set& set = data_.sets[s];
       const SetPlan& plan = plans_[s];
       if ((set.reference >= 0) != referring || plan.items.empty()) continue;
-      const std::vector<int> rows = thinned(plan.items, 0, static_cast<int>(plan.items.size()));
+      const std::vector<int> rows = locator.closing(
+          thinned(plan.items, 0, static_cast<int>(plan.items.size())), set.method->body());
       state.own[s] = set.method->start(locator.at(rows, set.method->body()), rows, data_.rows,
                                        referring ? &state.own[set.reference] : nullptr,
                                        locator.tool(rows.front()));
@@ -72,6 +88,7 @@ void Equations::start(State& state) const {
         by_group[data_.rows.group[item.row]].push_back(item.row);
       for (auto& [group, members] : by_group) {
         if (members.size() > kMostRows) members.resize(kMostRows);
+        members = locator.closing(std::move(members), set.method->body());
         const Eigen::VectorXd values =
             set.method->start_group(locator.at(members, set.method->body()));
         if (state.groups[s].rows() != values.size())

@@ -90,8 +90,13 @@ void Equations::weigh(int set, const Weighting& weighting, Block& block, Eigen::
   for (int lane = 0; lane < count; ++lane) {
     const int row = block.rows[lane];
     const double own = data_.rows.factor(row);
-    out.residuals.push_back(row_residual(block.out, block.quantities, lane, row, set, own));
+    out.residuals.push_back(
+        row_residual(block.out, block.quantities, block.closure, lane, row, set, own));
     if (weighting.put_aside[row]) continue;
+    if (!block.closure.closes(lane)) {  // a step that leads here is none to take
+      out.cost = HUGE_VAL;
+      continue;
+    }
     const double t = out.residuals.back().sigmas(scale);
     root_weight[lane] = (t > soft ? std::sqrt(soft / t) : 1) / own;  // Huber
     out.cost += t > soft ? soft * (2 * t - soft) : t * t;

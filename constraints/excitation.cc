@@ -29,11 +29,13 @@ Movement movement(const Robot& robot, const DataSet& data, size_t j) {
 /// The joint whose movement parameter `p` needs most: of its own frame and the ones around it, the
 /// one that moved least of what it could.
 size_t missing_joint(const Robot& robot, const DataSet& data, const Parameter& p) {
-  size_t at = 0;
-  for (const Link& link : robot.mechanics().links) {
-    if (link.frame == p.frame) break;
-    if (link.joint >= 0) ++at;
-  }
+  const int own = find_joint(robot, p.frame);
+  size_t at = own < 0 ? 0 : static_cast<size_t>(own);
+  if (const Statics* statics = robot.statics(); statics && own < 0)
+    for (const Link& link : statics->mechanics().links) {
+      if (link.frame == p.frame) break;
+      if (link.joint >= 0) ++at;
+    }
   size_t best = std::min(at, robot.joints().size() - 1);
   for (size_t j = at > 0 ? at - 1 : 0; j <= at + 1 && j < robot.joints().size(); ++j)
     if (movement(robot, data, j).share() < movement(robot, data, best).share()) best = j;

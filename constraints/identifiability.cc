@@ -40,6 +40,12 @@ class Basis {
   Eigen::VectorXd combination(const Projection& p) const {
     return R_.topLeftCorner(count_, count_).triangularView<Eigen::Upper>().solve(p.coefficients);
   }
+  /// Summed lengths of the multiples of the taken columns that make it up.
+  double parts(const Projection& p) const {
+    if (count_ == 0) return 0;
+    return combination(p).cwiseAbs().dot(
+        R_.topLeftCorner(count_, count_).colwise().norm().transpose());
+  }
 
  private:
   Eigen::MatrixXd Q_, R_;
@@ -47,23 +53,24 @@ class Basis {
 };
 
 /// Length beyond the columns before it that a column must exceed. Structural: tau of 11.28, with
-/// the largest column for max |R_ii|, as no diagonal element is larger.
+/// the largest column for max |R_ii|, as no diagonal element is larger; where the columns before it
+/// make it up of parts that nearly cancel, the rounding of those parts.
 class Threshold {
  public:
   Threshold(const Eigen::MatrixXd& R, const std::vector<int>& order, const RankRule& rule)
       : rule_(rule) {
-    double largest = 0;
-    for (const int c : order) largest = std::max(largest, R.col(c).norm());
-    tau_ = rule.rows * std::numeric_limits<double>::epsilon() * largest;
+    for (const int c : order) largest_ = std::max(largest_, R.col(c).norm());
   }
-  double of(int column) const {
-    if (rule_.rows > 0) return tau_;
+  double of(int column, const Basis& before, const Basis::Projection& p) const {
+    if (rule_.rows > 0)
+      return rule_.rows * std::numeric_limits<double>::epsilon() *
+             std::max(largest_, before.parts(p));
     return 1 / (rule_.least.empty() ? rule_.least_sigma : rule_.least[column]);
   }
 
  private:
   const RankRule& rule_;
-  double tau_ = 0;
+  double largest_ = 0;
 };
 
 /// Coefficients smaller than this say nothing (structural: rounding; real data: noise).
@@ -103,7 +110,7 @@ std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector
   for (int i = 0; i < static_cast<int>(order.size()); ++i) {
     const Eigen::VectorXd column = R.col(order[i]);
     const Basis::Projection p = basis.project(column);
-    const double tau = threshold.of(order[i]);
+    const double tau = threshold.of(order[i], basis, p);
     const bool independent = p.rest.norm() > tau;
     if (i >= leading) ranks.emplace_back();
     if (independent) {

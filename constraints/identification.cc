@@ -175,9 +175,15 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   return solution;
 }
 
-Solution without_rows(const Robot& robot) {
+/// `open`: the rows that there would have been.
+Solution without_rows(const Robot& robot, const DataSet& data,
+                      const std::vector<OpenRow>& open = {}) {
   Solution solution;
   solution.stop_reason = "no rows to identify from";
+  if (!open.empty()) solution.stop_reason += ": " + open.front().why;
+  Judged judged;
+  judged.open = open;
+  solution.rejected = rejected_rows(data, judged, {});
   solution.verdict.why = solution.stop_reason;
   solution.values = values(robot);
   const std::vector<char> none(robot.parameters().size(), 0);
@@ -218,8 +224,12 @@ std::string_view to_string(Answer answer) {
 Solution identify(const Robot& robot, const DataSet& data, const Options& options,
                   const Progress& progress) {
   const auto& check = data.rows.check;
-  if (std::count(check.begin(), check.end(), char{0}) == 0) return without_rows(robot);
+  if (std::count(check.begin(), check.end(), char{0}) == 0) return without_rows(robot, data);
   const Equations equations(robot, data, Use::fit);
+  bool any = false;
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
+    any = any || !equations.plan(s).items.empty();
+  if (!any) return without_rows(robot, data, equations.open_rows());
   return assemble(equations, adjust(equations, options, progress), options, progress);
 }
 

@@ -53,7 +53,7 @@ struct SetResult {
 struct Rejected {
   int row = 0;  ///< from 1
   std::string set;
-  double residual = 0;  ///< m
+  double residual = 0;  ///< m; infinite of a row that the robot cannot take
   bool check = false;
   std::string why;
 };
@@ -160,6 +160,7 @@ struct Solution {
 struct Options {
   std::vector<std::string> fix;   ///< names or patterns held at the model's value
   std::vector<std::string> free;  ///< names or patterns freed (gear ratios)
+  bool gears = false;             ///< every transmission ratio is free, whatever it is called
   bool priors = true;  ///< false: the rows alone (tests); needs every direction determined
   double most_rejected =
       0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it, 0 to 0.5

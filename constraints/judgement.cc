@@ -101,7 +101,10 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
     if (fit_equations.plan(static_cast<int>(s)).items.empty())
       judged.check_scale[s] = aligned.noise.used[s];
   }
-  judged.check = Equations(robot, data, Use::check).residuals(judged.state);
+  const Equations check(robot, data, Use::check);
+  judged.check = check.residuals(judged.state);
+  judged.open = fit_equations.open_rows();
+  judged.open_check = check.open_rows();
   return judged;
 }
 
@@ -141,6 +144,10 @@ std::vector<Rejected> rejected_rows(const DataSet& data, const Judged& after,
     if (put_aside[r.row]) add(r, false);
   for (const RowResidual& r : after.check)
     if (is_far(r, after)) add(r, true);
+  for (const std::vector<OpenRow>* rows : {&after.open, &after.open_check})
+    for (const OpenRow& open : *rows)
+      list.push_back(
+          {open.row + 1, data.sets[open.set].name, HUGE_VAL, rows == &after.open_check, open.why});
   std::sort(list.begin(), list.end(),
             [](const Rejected& a, const Rejected& b) { return a.row < b.row; });
   return list;

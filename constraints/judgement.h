@@ -13,9 +13,10 @@ namespace selfcal {
 /// Residuals of one model (before or after) on every row that counts.
 struct Judged {
   std::vector<RowResidual> fit, check;
-  std::vector<Scale> check_scale;  ///< by set: the noise that a check row is compared with
-  std::vector<char> aligned;       ///< by set: own unknowns were fitted to the check rows
-  State state;                     ///< with the aligned unknowns filled in
+  std::vector<OpenRow> open, open_check;  ///< rows that gave no equation
+  std::vector<Scale> check_scale;         ///< by set: the noise that a check row is compared with
+  std::vector<char> aligned;              ///< by set: own unknowns were fitted to the check rows
+  State state;                            ///< with the aligned unknowns filled in
   Noise align_noise;
 };
 

@@ -14,6 +14,11 @@ void MethodOutput::resize(int equations, int own, int reference, int group) {
   D_group.setZero(kLanes, equations * group);
 }
 
+void MethodOutput::clear(int lane) {
+  for (Block* block : {&r, &G_now, &G_before, &D_own, &D_reference, &D_group})
+    block->row(lane).setZero();
+}
+
 bool Method::has_angles() const {
   const std::vector<Quantity> all = equations();
   return std::find(all.begin(), all.end(), Quantity::angle) != all.end();

@@ -54,6 +54,7 @@ struct MethodOutput {
   Block D_reference;  ///< column a m + k, m the own freedom of the set referred to
   Block D_group;      ///< column a g + k, g the group freedom
 
+  void clear(int lane);  ///< sets all of a lane to zero
   /// Makes room and sets everything to zero.
   void resize(int equations, int own, int reference, int group);
 };

@@ -16,8 +16,8 @@ NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& tru
 void NewtonStep::evaluate(const ConfigurationBlock& block) {
   const Method& method = *data_.sets[set_].method;
   const int reference = data_.sets[set_].reference;
-  robot_.locate(block, truth_.xi, method.body(), X_, &psi_);
-  robot_.joint_jacobian(truth_.xi, psi_, J_);
+  closure_ = robot_.locate(block, truth_.xi, method.body(), X_, &psi_);
+  robot_.joint_jacobian(block, truth_.xi, method.body(), psi_, J_);
   out_.resize(static_cast<int>(method.equations().size()), method.own_freedom(),
               reference < 0 ? 0 : data_.sets[reference].method->own_freedom(),
               method.group_freedom());

@@ -21,6 +21,7 @@ class NewtonStep {
   void evaluate(const ConfigurationBlock& block);
 
   const Locations& X() const { return X_; }  ///< of the method's body
+  bool closes(int lane) const { return closure_.closes(lane); }
   /// wanted - r of a lane (one entry for each equation; m, rad).
   Eigen::VectorXd miss(int lane, const Eigen::VectorXd& wanted) const;
   /// dq of a lane (rad or m).
@@ -34,6 +35,7 @@ class NewtonStep {
   int set_;
   std::vector<int> rows_;
   Locations X_;
+  Closure closure_;
   PsiBlock psi_;
   Eigen::MatrixXd J_;
   MethodOutput out_;

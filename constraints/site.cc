@@ -14,7 +14,7 @@ std::vector<Eigen::Vector3d> tips(const Robot& robot, const DataSet& data, int s
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < data.rows.rows(); ++row)
     if (data.rows.set[row] == set)
-      points.push_back(robot.link_poses(data.rows.q.row(row).transpose()).back().translation());
+      points.push_back(seen_poses(robot, data.rows.q.row(row).transpose()).back().translation());
   return points;
 }
 

@@ -78,7 +78,7 @@ class Candidates {
   bool enter(const TouchTarget& target, int obstacle, const DataSet& data, const State& truth,
              int row, PlannedTouch& touch) const {
     const Location X = locate(robot_, xi_, touch.touch);
-    if (X.R.col(2).dot(-target.outward) < std::cos(options_.tilt)) return false;
+    if ((X.R * robot_.tool_axis()).dot(-target.outward) < std::cos(options_.tilt)) return false;
     touch.start = touch.end = touch.touch;
     if (!move_out(target, data, truth, row, options_.clearance, touch.start)) return false;
     if (!target.places.empty())
@@ -191,7 +191,7 @@ bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::Ve
       const double s = (part * kLanes + lane) / (kPathBlocks * kLanes - 1.0);
       block.q.row(lane) = (from + s * (to - from)).transpose().array();
     }
-    robot.locate(block, xi, Body::endpoint, X, nullptr);
+    if (!robot.locate(block, xi, Body::endpoint, X, nullptr).closes()) return false;
     for (int lane = 0; lane < kLanes; ++lane)
       if (blocked(X.p(lane))) return false;
   }

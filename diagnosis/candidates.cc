@@ -89,8 +89,13 @@ class Maker {
 
   void of_joint(const Joint& joint) {
     const std::string& at = joint.name;
-    const bool loads = robot_.mechanics().gravity.norm() > 0 || site_.loads;
-    if (loads && (robot_.mechanics().masses_known() || site_.loads)) {
+    const Statics* statics = robot_.statics();
+    const bool masses = statics && statics->mechanics().masses_known();
+    const bool loads = statics && (statics->mechanics().gravity.norm() > 0 || site_.loads);
+    if (!statics)
+      for (const char* effect : {"joint_compliance", "link_compliance"})
+        cannot(effect, at, std::string(kNoStatics));
+    if (loads && (masses || site_.loads)) {
       const Node stiff = entry("joint_compliance", at);
       add({stiff});
       add({stiff, with(entry("joint_compliance", at), "lumps", std::string("true"))});
@@ -104,7 +109,7 @@ class Maker {
       add({entry("backlash", at)});
     else
       cannot("backlash", at, "the rows carry no dq: the side of approach is not known");
-    if (robot_.mechanics().masses_known() || site_.loads)
+    if (statics && (masses || site_.loads))
       add({with(entry("backlash", at), "by", std::string("load"))});
     for (const Joint& other : robot_.joints())
       if (other.name != at) add({with(entry("joint_coupling", at), "from", other.name)});
@@ -143,6 +148,7 @@ class Maker {
     } else {
       cannot("base_drift", "base", "the rows carry no time");
     }
+    if (!robot_.statics()) return cannot("thermal_expansion", "", std::string(kNoStatics));
     if (data_.rows.temperature.size() == 0 || !spreads(data_.rows.temperature, 0.2))
       return cannot("thermal_expansion", "", "the rows carry no temperatures that change");
     add({entry("thermal_expansion", "")});

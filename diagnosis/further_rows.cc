@@ -89,7 +89,8 @@ class Further {
   }
 
   void with_payload() {
-    const Mechanics& mechanics = robot_.mechanics();
+    if (!robot_.statics()) return;
+    const Mechanics& mechanics = robot_.statics()->mechanics();
     double mass = 0;
     for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
     const double payload =
@@ -155,7 +156,7 @@ class Further {
     PsiBlock psi;
     Eigen::MatrixXd lanes;
     robot_.locate(block_of(q), xi_, Body::endpoint, X, &psi);
-    robot_.joint_jacobian(xi_, psi, lanes);
+    robot_.joint_jacobian(block_of(q), xi_, Body::endpoint, psi, lanes);
     Endpoint there{X.at(0), Eigen::MatrixXd(6, lanes.cols())};
     for (int c = 0; c < 6; ++c) there.J.row(c) = lanes.row(c * kLanes);
     return there;

@@ -112,7 +112,7 @@ std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& res
 std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows) {
   std::vector<Eigen::Isometry3d> list;
   for (int row = 0; row < rows.rows(); ++row)
-    list.push_back(robot.link_poses(rows.q.row(row).transpose()).back());
+    list.push_back(seen_poses(robot, rows.q.row(row).transpose()).back());
   return list;
 }
 

@@ -15,7 +15,7 @@ Options geometry_options(const DiagnosisOptions& options) {
   Options geometry;
   geometry.most_rejected = options.most_rejected;
   geometry.seed = options.seed;
-  geometry.free = {"K*"};  // a ratio that is off is geometry: it must not be taken for a cause
+  geometry.gears = true;  // a ratio that is off is geometry: it must not be taken for a cause
   return geometry;
 }
 

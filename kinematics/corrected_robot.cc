@@ -48,16 +48,19 @@ class CorrectedRobot final : public Robot {
   const std::vector<Joint>& joints() const override { return geometry_->joints(); }
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
-  const Mechanics& mechanics() const override { return geometry_->mechanics(); }
-  std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
-    return geometry_->link_poses(q);
+  const Statics* statics() const override { return geometry_->statics(); }
+  bool has_loops() const override { return geometry_->has_loops(); }
+  Eigen::Vector3d tool_axis() const override { return geometry_->tool_axis(); }
+  Eigen::VectorXd draw(const Eigen::MatrixX2d& span,
+                       const std::function<double()>& uniform) const override {
+    return geometry_->draw(span, uniform);
   }
   int variable_parameter(int j) const override { return geometry_->variable_parameter(j); }
   std::string identity() const override { return geometry_->identity(); }
   std::vector<std::string> remarks() const override { return geometry_->remarks(); }
 
-  void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
-              PsiBlock* psi) const override {
+  Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                 Locations& X, PsiBlock* psi) const override {
     const std::vector<Deviation> deviations = deviations_of(block, body);
     const Eigen::VectorXd own = xi.head(geometry_parameters());
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
@@ -66,7 +69,7 @@ class CorrectedRobot final : public Robot {
     for (int lane = 0; lane < kLanes; ++lane)
       moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();
     PsiBlock inner;
-    geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
+    Closure closure = geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
     if (psi) fill(deviations, v, inner, *psi);
     for (int lane = 0; lane < kLanes; ++lane) {
       const Eigen::Matrix<double, 6, 1> twist = deviations[lane].by.tip * v;
@@ -77,12 +80,13 @@ class CorrectedRobot final : public Robot {
           (twist.head<3>() + turn.cross(deviations[lane].arm)).transpose().array();
       X.rotation.row(lane) = R.reshaped().transpose().array();
     }
+    return closure;
   }
 
-  void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
-                      Eigen::MatrixXd& J) const override {
-    geometry_->joint_jacobian(xi.head(geometry_parameters()), psi.leftCols(geometry_parameters()),
-                              J);
+  void joint_jacobian(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                      const PsiBlock& psi, Eigen::MatrixXd& J) const override {
+    geometry_->joint_jacobian(block, xi.head(geometry_parameters()), body,
+                              psi.leftCols(geometry_parameters()), J);
   }
 
   Node describe(const Eigen::VectorXd& xi) const override {
@@ -113,17 +117,18 @@ class CorrectedRobot final : public Robot {
     const Conditions& c = block.conditions;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     Circumstances at;
-    at.mechanics = &mechanics();
+    at.mechanics = statics() ? &statics()->mechanics() : nullptr;
     at.q = block.q.row(lane).matrix().transpose();
-    at.poses = link_poses(at.q);
+    at.poses = seen_poses(*geometry_, at.q);
     if (c.wrench.rows() > 0 && c.wrench.row(lane).allFinite()) {
       const Eigen::Matrix3d R = at.poses.back().linear();
       at.wrench.force = R * c.wrench.row(lane).head<3>().transpose();
       at.wrench.moment = R * c.wrench.row(lane).tail<3>().transpose();
     }
     const auto n = static_cast<int>(joints().size());
-    at.torque.resize(n);
-    for (int j = 0; j < n; ++j) at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
+    at.torque.setConstant(n, unknown);
+    for (int j = 0; at.mechanics && j < n; ++j)
+      at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
     at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
                                         : Eigen::VectorXd::Constant(n, unknown);
     at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;
@@ -134,14 +139,19 @@ class CorrectedRobot final : public Robot {
     return at;
   }
 
+  /// Origin of the last moving link.
+  Eigen::Vector3d last_link(const Circumstances& at) const {
+    if (!at.mechanics)
+      return selfcal::locate(*geometry_, values(*geometry_), at.q, Body::last_link).p;
+    return at.poses[at.mechanics->link_of(static_cast<int>(joints().size()) - 1)].translation();
+  }
+
   Deviation deviation(const Circumstances& at, Body body) const {
     const auto n = static_cast<Eigen::Index>(joints().size());
     const auto count = static_cast<Eigen::Index>(parameters_.size()) - geometry_parameters();
     Deviation all{{Eigen::MatrixXd::Zero(n, count), Eigen::MatrixXd::Zero(6, count)},
                   Eigen::Vector3d::Zero()};
-    if (body == Body::last_link)
-      all.arm = at.poses[mechanics().link_of(static_cast<int>(n) - 1)].translation() -
-                at.poses.back().translation();
+    if (body == Body::last_link) all.arm = last_link(at) - at.poses.back().translation();
     Eigen::Index column = 0;
     for (const auto& effect : effects_) {
       const auto own = static_cast<Eigen::Index>(effect->parameters().size());

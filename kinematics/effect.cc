@@ -64,6 +64,12 @@ int EffectPlan::set() const {
   return set;
 }
 
+const Mechanics* EffectPlan::mechanics() const {
+  if (const Statics* statics = robot.statics()) return &statics->mechanics();
+  fields.fail("effect", "an effect without load or links: " + std::string(kNoStatics));
+  return nullptr;
+}
+
 void EffectPlan::expect_place(std::string_view only) const {
   if (fields.text("at", std::string(only)) != only)
     fields.fail("at", only.empty() ? "nothing: it acts on the whole robot" : std::string(only));

@@ -25,9 +25,10 @@ class Robot;
 
 /// One configuration and what else held when its row was taken. What is not known is NaN.
 struct Circumstances {
-  const Mechanics* mechanics = nullptr;
+  const Mechanics* mechanics = nullptr;  ///< null of a robot without statics
   Eigen::VectorXd q;                     ///< readings (rad or m)
-  std::vector<Eigen::Isometry3d> poses;  ///< of the links, world, as the file has them
+  /// Of the links, world, as the file has them; of a robot without statics the tool's alone.
+  std::vector<Eigen::Isometry3d> poses;
   Load wrench;                       ///< on the tool, world axes, at the tip; zero when not known
   Eigen::VectorXd torque;            ///< by joint, of gravity and wrench (N m, N)
   Eigen::VectorXd velocity;          ///< by joint, just before the reading (rad/s, m/s)
@@ -103,6 +104,9 @@ class Effect {
   std::optional<bool> named_;
 };
 
+/// Why an effect of load or of links says nothing of a robot without statics.
+inline constexpr std::string_view kNoStatics = "this kind of robot has no statics model";
+
 /// What an effect is made from.
 struct EffectPlan {
   Fields& fields;
@@ -114,6 +118,9 @@ struct EffectPlan {
   int joint() const;
   /// Index of the set called `at`; -1 outside a data set. Notes a problem when the site lacks it.
   int set() const;
+  /// Masses and links, for an effect that cannot do without; null of a robot that has none,
+  /// after noting a problem: the effect is not made.
+  const Mechanics* mechanics() const;
   /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
   void expect_place(std::string_view only) const;
 };

@@ -27,6 +27,16 @@ struct Mechanics {
   int link_of(int j) const;
 };
 
+/// The capability of a robot to say what loads it: masses and links.
+class Statics {
+ public:
+  virtual ~Statics() = default;
+  /// As the maker gives them.
+  virtual const Mechanics& mechanics() const = 0;
+  /// Poses of mechanics().links in the world at readings `q`, with the file's own values.
+  virtual std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const = 0;
+};
+
 /// Force and moment (N, N m; world axes) that gravity on every link from `first` on and a wrench at
 /// the tip exert about `point`. `poses` are those of the links.
 struct Load {

@@ -99,6 +99,35 @@ bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) 
   return true;
 }
 
+void Closure::leave_open(int lane, std::string reason) {
+  if (!closes(lane)) return;
+  open |= 1U << lane;
+  why.resize(kLanes);
+  why[static_cast<size_t>(lane)] = std::move(reason);
+}
+
+void Closure::add(const Closure& other) {
+  for (int lane = 0; other.open != 0 && lane < kLanes; ++lane)
+    if (!other.closes(lane)) leave_open(lane, other.why[static_cast<size_t>(lane)]);
+}
+
+Eigen::VectorXd Robot::draw(const Eigen::MatrixX2d& span,
+                            const std::function<double()>& uniform) const {
+  Eigen::VectorXd q(span.rows());
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    q[j] = span(j, 0) + (span(j, 1) - span(j, 0)) * uniform();
+  return q;
+}
+
+std::vector<Eigen::Isometry3d> seen_poses(const Robot& robot, const Eigen::VectorXd& q) {
+  if (const Statics* statics = robot.statics()) return statics->link_poses(q);
+  const Location tool = locate(robot, values(robot), q);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = tool.R;
+  pose.translation() = tool.p;
+  return {pose};
+}
+
 ConfigurationBlock block_of(const Eigen::VectorXd& q) {
   return {q.transpose().replicate(kLanes, 1).array(), 1};
 }

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -65,8 +67,21 @@ struct Locations {
 /// body's origin, then the rotation vector, both in the world frame) of configuration `lane`.
 using PsiBlock = Eigen::MatrixXd;
 
+/// The lanes of a block that have no location, for the loops of the machine do not close there, and
+/// why. What was written of such a lane is finite and means nothing.
+struct Closure {
+  std::uint32_t open = 0;             ///< bit `lane`
+  std::vector<std::string> why = {};  ///< by lane; empty when every lane closes
+  bool closes() const { return open == 0; }
+  bool closes(int lane) const { return ((open >> lane) & 1U) == 0; }
+  void leave_open(int lane, std::string reason);
+  void add(const Closure& other);  ///< the first reason of a lane stays
+};
+static_assert(kLanes == 32, "a bit for each lane");
+
 /// The body whose location is asked for: the tool's frame, or the first or last moving link (whose
-/// location the parameters of frames behind it do not change).
+/// location the parameters of frames behind it do not change). Of a machine with loops the last
+/// link is the platform, and the first its base: what turns with the machine as a whole.
 enum class Body { endpoint, last_link, first_link };
 
 struct Joint {
@@ -100,21 +115,29 @@ class Robot {
   virtual const std::vector<int>& preference() const = 0;
 
   /// Location of `body` at each configuration and, unless null, its derivatives to every parameter
-  /// (`psi` is resized). `xi` has parameters().size() entries.
-  virtual void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
-                      Locations& X, PsiBlock* psi) const = 0;
+  /// (`psi` is resized; zero where a lane stays open). `xi` has parameters().size() entries.
+  virtual Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                         Locations& X, PsiBlock* psi) const = 0;
+  /// Has loops, so that locate may leave lanes open.
+  virtual bool has_loops() const { return false; }
 
   /// dX of `body` per joint reading, (6 kLanes) x joints, laid out as Psi; `psi` is that of the
-  /// block.
-  virtual void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
-                              Eigen::MatrixXd& J) const = 0;
-
-  /// Masses and links, as the maker gives them.
-  virtual const Mechanics& mechanics() const = 0;
-  /// Poses of mechanics().links in the world at readings `q`, with the file's own values.
-  virtual std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const = 0;
-  /// Index of the parameter that the variable of joint `j` is added to.
+  /// block and the body.
+  virtual void joint_jacobian(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                              const PsiBlock& psi, Eigen::MatrixXd& J) const = 0;
+  /// Index of the parameter that the variable of joint `j` is added to, so that it is the joint's
+  /// zero.
   virtual int variable_parameter(int j) const = 0;
+
+  /// Readings that the machine can take, drawn within `span` (joints x lower, upper) by `uniform`
+  /// numbers from 0 to 1.
+  virtual Eigen::VectorXd draw(const Eigen::MatrixX2d& span,
+                               const std::function<double()>& uniform) const;
+
+  /// Masses and links; null where the kind has no model of them.
+  virtual const Statics* statics() const { return nullptr; }
+  /// Where the tool points, in its own frame.
+  virtual Eigen::Vector3d tool_axis() const { return Eigen::Vector3d::UnitZ(); }
 
   /// The robot file's content with parameter values `xi`; the prior's centre is kept as `nominal`.
   virtual Node describe(const Eigen::VectorXd& xi) const = 0;
@@ -139,12 +162,16 @@ bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin =
 
 /// Readings `q` alone, in every lane.
 ConfigurationBlock block_of(const Eigen::VectorXd& q);
-/// Location of `body` at readings `q`.
+/// Location of `body` at readings `q`, at which the loops of the machine must close.
 Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
                 Body body = Body::endpoint);
 
 /// "theta2 j2.theta", or the one where both are the same.
 std::string full_name(const Parameter& parameter);
+
+/// What an effect that bears no load sees of a robot at `q`, with the file's own values: the poses
+/// of its links, or the tool's alone where the kind has no model of them.
+std::vector<Eigen::Isometry3d> seen_poses(const Robot& robot, const Eigen::VectorXd& q);
 
 /// Index of the parameter called `name` (its name or FRAME.FIELD), or -1.
 int find_parameter(const Robot& robot, std::string_view name);

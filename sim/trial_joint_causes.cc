@@ -42,7 +42,7 @@ std::vector<int> beams(const TrialWorld& world) {
   std::vector<int> found;
   const auto& poses = world.rows.front().poses;
   for (int j = 0; j < world.joints(); ++j) {
-    const auto k = static_cast<size_t>(world.robot->mechanics().link_of(j));
+    const auto k = static_cast<size_t>(world.robot->statics()->mechanics().link_of(j));
     if (k + 1 < poses.size() && (poses[k + 1].translation() - poses[k].translation()).norm() > 0.08)
       found.push_back(j);
   }
@@ -54,7 +54,7 @@ TrialCause link_compliance(const TrialWorld& world, Random& random) {
   if (long_ones.empty()) return {};
   const int joint =
       long_ones[static_cast<size_t>(pick(random, static_cast<int>(long_ones.size())))];
-  const auto link = static_cast<size_t>(world.robot->mechanics().link_of(joint));
+  const auto link = static_cast<size_t>(world.robot->statics()->mechanics().link_of(joint));
   const Eigen::Vector3d give(1, uniform(random, 0.6, 1.5), uniform(random, 0.3, 1.2));
   return {.where = {world.links()[link].frame, world.links()[link + 1].frame},
           .physics = "a beam under the moment along it",

@@ -179,7 +179,7 @@ class TrialMaker {
       if (std::abs(miss) < kMet) break;
       const Eigen::VectorXd along = J.transpose() * surface.normal;
       at.q += along * (miss / along.squaredNorm());
-      at.poses = robot.link_poses(at.q);
+      at.poses = robot.statics()->link_poses(at.q);
     }
     session_.data.rows.q.row(at.row) = at.q.transpose();
   }

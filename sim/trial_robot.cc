@@ -87,7 +87,7 @@ Eigen::VectorXd draw_geometry(const Robot& robot, Random& random) {
 
 Weights draw_weights(const Robot& robot, Random& random) {
   Weights weights;
-  for (const Link& link : robot.mechanics().links) {
+  for (const Link& link : robot.statics()->mechanics().links) {
     const double off = uniform(random, 0.1, 0.2) * (chance(random, 0.5) ? 1 : -1);
     weights.mass.push_back(link.mass.value_or(0) * (1 + off));
     weights.com.push_back(link.com +

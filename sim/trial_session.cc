@@ -156,7 +156,7 @@ class SessionMaker {
     at.configuration = configuration;
     at.set = sampled.set[static_cast<size_t>(from)];
     at.q = sampled.q.row(from).transpose();
-    at.poses = robot_.link_poses(at.q);
+    at.poses = robot_.statics()->link_poses(at.q);
     at.velocity = Eigen::VectorXd::NullaryExpr(at.q.size(), [&] { return normal(random_); });
     if (!plan_.touches) {
       at.velocity *= log_uniform(random_, 0.008, 0.032) / at.velocity.norm();

@@ -38,14 +38,14 @@ void TrialWorld::load(const Instant& at, int first, const Eigen::Vector3d& point
   force = at.force;
   moment = at.moment + (at.poses.back().translation() - point).cross(at.force);
   for (size_t k = static_cast<size_t>(first); k < mass.size(); ++k) {
-    const Eigen::Vector3d weight = mass[k] * robot->mechanics().gravity;
+    const Eigen::Vector3d weight = mass[k] * robot->statics()->mechanics().gravity;
     force += weight;
     moment += (at.poses[k] * com[k] - point).cross(weight);
   }
 }
 
 double TrialWorld::torque(const Instant& at, int joint) const {
-  const int link = robot->mechanics().link_of(joint);
+  const int link = robot->statics()->mechanics().link_of(joint);
   const Eigen::Isometry3d& pose = at.poses[static_cast<size_t>(link)];
   Eigen::Vector3d force, moment;
   load(at, link, pose.translation(), force, moment);
@@ -66,7 +66,7 @@ Eigen::Vector3d tip_of(const Robot& robot, const Eigen::VectorXd& xi, const Eige
   robot.locate(block_of(q), xi, Body::endpoint, X, J ? &psi : nullptr);
   if (J) {
     Eigen::MatrixXd all;
-    robot.joint_jacobian(xi, psi, all);
+    robot.joint_jacobian(block_of(q), xi, Body::endpoint, psi, all);
     J->resize(3, q.size());
     for (int c = 0; c < 3; ++c) J->row(c) = all.row(c * kLanes);
   }

@@ -64,7 +64,7 @@ struct TrialWorld {
   double duration = 0;  ///< s
 
   bool touches() const { return !surfaces.empty(); }
-  const std::vector<Link>& links() const { return robot->mechanics().links; }
+  const std::vector<Link>& links() const { return robot->statics()->mechanics().links; }
   int joints() const { return static_cast<int>(robot->joints().size()); }
   /// Force and moment about `point` (world) of all weights from link `first` on and of the tool's
   /// load.

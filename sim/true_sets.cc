@@ -25,9 +25,9 @@ Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, cons
   for (int attempt = 0; attempt < kTries; ++attempt) {
     block.q = random_poses(robot, nullptr, kLanes, random()).array();
     block.count = kLanes;
-    robot.locate(block, xi, body, X, nullptr);
+    const Closure closure = robot.locate(block, xi, body, X, nullptr);
     for (int lane = 0; lane < kLanes; ++lane)
-      if (patch.contains(X.p(lane))) return X.at(lane);
+      if (closure.closes(lane) && patch.contains(X.p(lane))) return X.at(lane);
   }
   return {Eigen::Matrix3d::Identity(), patch.centre};
 }

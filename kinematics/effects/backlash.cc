@@ -20,6 +20,7 @@ class Backlash final : public Effect {
     const std::string by = plan.fields.text("by", "motion");
     by_load_ = by == "load";
     if (!by_load_ && by != "motion") plan.fields.fail("by", "motion or load");
+    if (by_load_) plan.mechanics();
   }
 
   std::string needs() const override {

@@ -13,8 +13,7 @@ namespace {
 
 class JointCompliance final : public Effect {
  public:
-  JointCompliance(const EffectPlan& plan, int joint) : joint_(joint) {
-    const Mechanics& mechanics = plan.robot.mechanics();
+  JointCompliance(const EffectPlan& plan, const Mechanics& mechanics, int joint) : joint_(joint) {
     const bool turns = mechanics.links[mechanics.link_of(joint)].turns;
     silent_ = !mechanics.masses_known();
     lumps_ = plan.fields.flag("lumps", silent_ && !plan.site.loads);
@@ -59,7 +58,9 @@ class JointCompliance final : public Effect {
 }  // namespace
 
 std::unique_ptr<Effect> make_joint_compliance(const EffectPlan& plan) {
-  return std::make_unique<JointCompliance>(plan, plan.joint());
+  const Mechanics* mechanics = plan.mechanics();
+  if (!mechanics) return nullptr;
+  return std::make_unique<JointCompliance>(plan, *mechanics, plan.joint());
 }
 
 }  // namespace selfcal

@@ -49,7 +49,9 @@ class LinkCompliance final : public Effect {
 }  // namespace
 
 std::unique_ptr<Effect> make_link_compliance(const EffectPlan& plan) {
-  return std::make_unique<LinkCompliance>(plan.robot.mechanics(), plan.joint());
+  const Mechanics* mechanics = plan.mechanics();
+  if (!mechanics) return nullptr;
+  return std::make_unique<LinkCompliance>(*mechanics, plan.joint());
 }
 
 }  // namespace selfcal

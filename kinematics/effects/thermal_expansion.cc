@@ -28,6 +28,7 @@ class ThermalExpansion final : public Effect {
  public:
   explicit ThermalExpansion(const EffectPlan& plan) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
+    plan.mechanics();
     lag_ = plan.fields.number("lag", 0.0);
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.site.times;

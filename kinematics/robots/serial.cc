@@ -23,7 +23,7 @@ Eigen::VectorXd figures(const Frame& frame) {
   return (Eigen::VectorXd(6) << frame.nominal.head<3>(), frame.rpy_nominal).finished();
 }
 
-class SerialRobot final : public Robot {
+class SerialRobot final : public Robot, public Statics {
  public:
   explicit SerialRobot(Model model)
       : model_(std::move(model)),
@@ -50,8 +50,8 @@ class SerialRobot final : public Robot {
   const std::vector<int>& preference() const override { return preference_; }
   std::vector<std::string> remarks() const override { return serial::remarks(model_); }
 
-  void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
-              PsiBlock* psi) const override {
+  Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                 Locations& X, PsiBlock* psi) const override {
     const int last = last_frame(body);
     std::vector<Axes> axes(psi ? frame_count() : 0);
     LanePose pose = serial::lane_world();
@@ -62,10 +62,11 @@ class SerialRobot final : public Robot {
     }
     store(pose, X);
     if (psi) fill(axes, pose.p, block, xi, last, *psi);
+    return {};
   }
 
-  void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock& psi,
-                      Eigen::MatrixXd& J) const override {
+  void joint_jacobian(const ConfigurationBlock&, const Eigen::VectorXd& xi, Body,
+                      const PsiBlock& psi, Eigen::MatrixXd& J) const override {
     J.setZero(psi.rows(), joint_count());
     for (int j = 0; j < joint_count(); ++j)
       for (int k = 0; k < joint_count(); ++k)
@@ -73,6 +74,7 @@ class SerialRobot final : public Robot {
           J.col(j) += coupling_(k, j) * xi[gear_index(j)] * psi.col(variable_parameter(k));
   }
 
+  const Statics* statics() const override { return this; }
   const Mechanics& mechanics() const override { return mechanics_; }
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
     return serial::frame_poses(model_, q);

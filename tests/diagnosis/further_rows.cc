@@ -35,7 +35,7 @@ class Arm {
   }
 
   Eigen::Isometry3d tip(const Eigen::VectorXd& q) const {
-    return robot_with_values()->link_poses(q).back();
+    return robot_with_values()->statics()->link_poses(q).back();
   }
 
   /// The geometry as it was fitted.

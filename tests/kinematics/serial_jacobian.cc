@@ -88,7 +88,7 @@ TEST_P(SerialJacobian, HasForEveryReadingTheColumnThatDifferencesGive) {
     const Drawn d = drawn(random, GetParam());
     const Robot& robot = *d.made.robot;
     Eigen::MatrixXd J;
-    robot.joint_jacobian(d.xi, d.psi, J);
+    robot.joint_jacobian(d.block, d.xi, GetParam(), d.psi, J);
     ASSERT_EQ(J.cols(), d.made.joints());
     const auto moved = [&](Eigen::Index j, double step) {
       ConfigurationBlock block = d.block;

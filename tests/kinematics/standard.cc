@@ -95,14 +95,14 @@ TEST(StandardTable, PutsEveryBodyWhereTheProductOfItsRowsDoes) {
     const auto robot = robot_of(node_of(table));
     ASSERT_NE(robot, nullptr);
     const Eigen::VectorXd q = random_block(*robot, random).q.row(0).matrix().transpose();
-    const auto poses = robot->link_poses(q);
+    const auto poses = robot->statics()->link_poses(q);
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     Eigen::Index joint = 0;
     size_t link = 0;
     for (const Row& row : table) {
       T = T * of_row(row, row.joint == "fixed" ? 0 : row.gear * q[joint++]);
-      while (robot->mechanics().links[link].frame != row.name) ++link;
-      const Eigen::Vector3d com = poses[link] * robot->mechanics().links[link].com;
+      while (robot->statics()->mechanics().links[link].frame != row.name) ++link;
+      const Eigen::Vector3d com = poses[link] * robot->statics()->mechanics().links[link].com;
       EXPECT_LT((com - T * row.com).norm(), kRounding) << row.name;
     }
     const Location end = locate(*robot, values(*robot), q);
@@ -154,7 +154,7 @@ std::vector<std::string> frames_of(const std::string& frames) {
   const auto robot = robot_of("robot: arm\nkind: serial\nconvention: standard\nframes:\n" + frames);
   std::vector<std::string> names;
   if (robot)
-    for (const Link& link : robot->mechanics().links) names.push_back(link.frame);
+    for (const Link& link : robot->statics()->mechanics().links) names.push_back(link.frame);
   return names;
 }
 

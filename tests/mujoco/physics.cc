@@ -50,9 +50,9 @@ TEST(MujocoArm, GivesWayByTheComplianceTimesTheTorqueOfItsWeight) {
     const auto touch = approach ? bench.cell->touch(*approach) : std::nullopt;
     if (!touch) continue;
     ++touches;
-    const auto poses = bench.robot->link_poses(touch->q);
+    const auto poses = bench.robot->statics()->link_poses(touch->q);
     for (const int j : {1, 2}) {
-      const double torque = joint_torque(bench.robot->mechanics(), poses, {}, j);
+      const double torque = joint_torque(bench.robot->statics()->mechanics(), poses, {}, j);
       // The torque is taken at the readings: 1 mrad of give turns up to 250 N m by 0.25 N m. The
       // rest is what swings on from the start of the motion.
       EXPECT_NEAR(touch->give[j], kCompliance * torque, 3e-6) << touch->q.transpose();

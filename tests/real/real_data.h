@@ -22,7 +22,7 @@ inline constexpr Known kKnown[] = {
     {"ipa-ur10-random", 0.98, 0.495}, {"ipa-ur10-joint", 1.08, 0.445},
     {"motoman-tracker", 2.17, 1.60},  {"motoman-selfcontact", 1.33, 0.084},
     {"motoman-planes", 1.0, 0.317},   {"talos-contact", 5.3, 0.89},
-    {"ur10-mocap", 3.985, 4.049},
+    {"ur10-mocap", 3.985, 4.049},     {"delta-bed", 1.62, 0.044},
 };
 
 inline LoadedDataSet load(const std::string& name) {

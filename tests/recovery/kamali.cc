@@ -128,12 +128,12 @@ Eigen::VectorXd Kamali::joint_angles(const Robot& real, Eigen::Index row,
                                      std::mt19937_64& random) const {
   std::normal_distribution<double> normal;
   Eigen::VectorXd q = q_.row(row / kWrenches).transpose();
-  const std::vector<Eigen::Isometry3d> links = real.link_poses(q);
+  const std::vector<Eigen::Isometry3d> links = real.statics()->link_poses(q);
   const Eigen::Matrix3d R = links.back().linear();
   const Load load{R * wrench_.row(row).head<3>().transpose(),
                   R * wrench_.row(row).tail<3>().transpose()};
   for (int j = 0; j < 6; ++j) {
-    const double torque = joint_torque(real.mechanics(), links, load, j);
+    const double torque = joint_torque(real.statics()->mechanics(), links, load, j);
     const double c = truth_[find_parameter(*robot_, "j" + std::to_string(j + 1) + ".c")];
     const double largest = j < 3 ? 400 : 30;  // N m, about what the shoulder and the wrist carry
     q[j] += disturbance.repeat * normal(random) +

@@ -39,7 +39,7 @@ Eigen::VectorXd inverse(const Robot& robot, const Eigen::Matrix3d& R, const Eige
     Eigen::VectorXd error(6);
     error << p - X.p(0), log_rotation(R * X.R(0).transpose());
     if (error.norm() < 1e-10) break;
-    robot.joint_jacobian(values(robot), psi, J);
+    robot.joint_jacobian(block_of(q), values(robot), Body::endpoint, psi, J);
     Eigen::MatrixXd J0(6, q.size());
     for (int c = 0; c < 6; ++c) J0.row(c) = J.row(c * kLanes);
     const Eigen::VectorXd full = least_squares(J0, error);
@@ -55,8 +55,8 @@ Eigen::VectorXd inverse(const Robot& robot, const Eigen::Matrix3d& R, const Eige
 }  // namespace
 
 Eigen::MatrixXd poses_in_the_cube(const Robot& robot, std::mt19937_64& random) {
-  const Eigen::Isometry3d base =
-      robot.link_poses(Eigen::VectorXd::Zero(6))[3];  // w4: the robot's base in the tracker's frame
+  const Eigen::Isometry3d base = robot.statics()->link_poses(
+      Eigen::VectorXd::Zero(6))[3];  // w4: the robot's base in the tracker's frame
   const Eigen::Vector3d centre(0.95, 0, 0.75);
   // The tool's z along x and 45 degrees down.
   const Eigen::Matrix3d ahead =

@@ -35,18 +35,13 @@ class KdlRobot final : public Robot {
   Node describe(const Eigen::VectorXd& xi) const override { return model_.describe(xi); }
   std::string identity() const override { return model_.identity(); }
   std::vector<std::string> remarks() const override { return {}; }
-  const Mechanics& mechanics() const override { return model_.mechanics(); }
-  std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
-    return model_.link_poses(q);
-  }
+  const Statics* statics() const override { return model_.statics(); }
   int variable_parameter(int j) const override { return model_.variable_parameter(j); }
 
-  void locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body, Locations& X,
-              PsiBlock* psi) const override {
+  Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                 Locations& X, PsiBlock* psi) const override {
     const KDL::Chain chain = make_chain(xi, body);
     KDL::ChainFkSolverPos_recursive forward(chain);
-    last_q_ = block.q;
-    last_body_ = body;
     for (int lane = 0; lane < kLanes; ++lane) {
       KDL::Frame pose;
       forward.JntToCart(readings(block.q, lane), pose);
@@ -56,17 +51,17 @@ class KdlRobot final : public Robot {
       }
     }
     if (psi) psi->setZero(6 * kLanes, xi.size());
+    return {};
   }
 
-  /// Of the block that locate was last called with.
-  void joint_jacobian(const Eigen::VectorXd& xi, const PsiBlock&,
-                      Eigen::MatrixXd& J) const override {
-    const KDL::Chain chain = make_chain(xi, last_body_);
+  void joint_jacobian(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
+                      const PsiBlock&, Eigen::MatrixXd& J) const override {
+    const KDL::Chain chain = make_chain(xi, body);
     KDL::ChainJntToJacSolver solver(chain);
     J.setZero(6 * kLanes, static_cast<Eigen::Index>(joints().size()));
     for (int lane = 0; lane < kLanes; ++lane) {
       KDL::Jacobian jacobian(static_cast<unsigned>(joints().size()));
-      solver.JntToJac(readings(last_q_, lane), jacobian);
+      solver.JntToJac(readings(block.q, lane), jacobian);
       for (int c = 0; c < 6; ++c) J.row(c * kLanes + lane) = jacobian.data.row(c);
     }
   }
@@ -116,8 +111,6 @@ class KdlRobot final : public Robot {
 
   const Robot& model_;
   std::map<std::string, KDL::Rotation> turned_;  ///< by whole pose, as its maker says
-  mutable Eigen::ArrayXXd last_q_;
-  mutable Body last_body_ = Body::endpoint;
 };
 
 }  // namespace selfcal::recovery

@@ -1,0 +1,175 @@
+// The file of a linear delta, read and written (app/selfcal-data.5: towers, effector, tool).
+#include <cmath>
+
+#include "kinematics/robots/linear_delta.h"
+
+namespace selfcal::linear_delta {
+namespace {
+
+/// A number of the file by the place that it has among the figures.
+struct Named {
+  const char* name;
+  int at;
+};
+
+std::vector<Named> tower_names(int t) {
+  return {{"radius", index(t, kRadius)}, {"angle", index(t, kAngle)},
+          {"rod", index(t, kRod)},       {"endstop", index(t, kEndstop)},
+          {"tilt_x", index(t, kTiltX)},  {"tilt_y", index(t, kTiltY)},
+          {"scale", index(t, kScale)}};
+}
+const std::vector<Named>& effector_names() {
+  static const std::vector<Named> names = {{"rx", kEffector}, {"ry", kEffector + 1}};
+  return names;
+}
+const std::vector<Named>& tool_names() {
+  static const std::vector<Named> names = {{"x", kTool}, {"y", kTool + 1}, {"z", kTool + 2}};
+  return names;
+}
+
+/// `tolerance` and `nominal`: mappings from the figures' names to numbers.
+void read_beside(Fields& of, const std::vector<Named>& names, Problems& problems, Delta& model) {
+  for (const Named& each : names) model.nominal[each.at] = model.value[each.at];
+  const auto read = [&](const char* key, Numbers& into) {
+    const Node* node = of.node(key);
+    if (!node) return;
+    Fields fields(*node, of.what() + " " + key, problems);
+    for (const Named& each : names)
+      if (const auto value = fields.optional_number(each.name)) into[each.at] = *value;
+    fields.refuse_unknown();
+  };
+  read("tolerance", model.tolerance);
+  read("nominal", model.nominal);
+}
+
+void read_tower(const Node& node, int t, Problems& problems, Delta& model) {
+  Fields fields(node, tower_name(t), problems);
+  const auto at = [&](int field) -> double& { return model.value[index(t, field)]; };
+  const auto length = [&](const char* key, int field) {
+    if (!fields.has(key)) fields.fail(key, "metres");
+    at(field) = fields.length(key, 1);
+    if (at(field) <= 0) fields.fail(key, "a positive number of metres");
+  };
+  length("radius", kRadius);
+  length("rod", kRod);
+  if (!fields.has("angle")) fields.fail("angle", "radians");
+  at(kAngle) = fields.angle("angle", 0);
+  if (!fields.has("endstop")) fields.fail("endstop", "metres");
+  at(kEndstop) = fields.length("endstop", 0);
+  if (const auto tilt = fields.numbers("tilt", 2)) {
+    at(kTiltX) = (*tilt)[0];
+    at(kTiltY) = (*tilt)[1];
+    if (!(tilt->norm() < 1)) fields.fail("tilt", "two small angles in radians (degrees?)");
+  }
+  at(kScale) = fields.number("scale", 1.0);
+  if (at(kScale) == 0) fields.fail("scale", "a ratio other than 0");
+  if (const auto limits = fields.numbers("limits", 2)) {
+    model.lower[static_cast<size_t>(t)] = (*limits)[0];
+    model.upper[static_cast<size_t>(t)] = (*limits)[1];
+    if (!((*limits)[0] < (*limits)[1])) fields.fail("limits", "a lower and a higher reading");
+  }
+  read_beside(fields, tower_names(t), problems, model);
+  fields.refuse_unknown();
+}
+
+void read_effector(const Node& node, Problems& problems, Delta& model) {
+  Fields fields(node, "effector", problems);
+  for (const Named& each : effector_names()) model.value[each.at] = fields.angle(each.name, 0);
+  read_beside(fields, effector_names(), problems, model);
+  fields.refuse_unknown();
+}
+
+/// [x, y, z], or with what stands beside them {x, y, z, tolerance, nominal}.
+void read_tool(Fields& robot, const Node& node, Problems& problems, Delta& model) {
+  if (node.kind != Node::Kind::map) {
+    if (const auto tool = robot.numbers("tool", 3)) {
+      model.value.segment<3>(kTool) = *tool;
+      if (!(tool->cwiseAbs().maxCoeff() <= kLongestPart))
+        robot.fail("tool", "metres (millimetres?)");
+    }
+    model.nominal.segment<3>(kTool) = model.value.segment<3>(kTool);
+    return;
+  }
+  Fields fields(node, "tool", problems);
+  for (const Named& each : tool_names()) model.value[each.at] = fields.length(each.name, 0);
+  read_beside(fields, tool_names(), problems, model);
+  fields.refuse_unknown();
+}
+
+/// Adds `tolerance` and `nominal` to a mapping; false when there is nothing to add.
+bool write_beside(const Delta& model, const std::vector<Named>& names, Node& into) {
+  Node tolerance = Node::map(), nominal = Node::map();
+  for (const Named& each : names) {
+    if (model.tolerance[each.at] > 0) tolerance.set(each.name, Node::of(model.tolerance[each.at]));
+    if (model.nominal[each.at] != model.value[each.at])
+      nominal.set(each.name, Node::of(model.nominal[each.at]));
+  }
+  const bool any = !tolerance.items.empty() || !nominal.items.empty();
+  if (!tolerance.items.empty()) into.set("tolerance", std::move(tolerance));
+  if (!nominal.items.empty()) into.set("nominal", std::move(nominal));
+  return any;
+}
+
+Node write_tower(const Delta& model, int t) {
+  Node node = Node::map();
+  for (const Named& each : tower_names(t))
+    if (each.at < index(t, kTiltX)) node.set(each.name, Node::of(model.value[each.at]));
+  const Eigen::VectorXd tilt = model.value.segment<2>(index(t, kTiltX));
+  if (!tilt.isZero(0)) node.set("tilt", Node::of(tilt));
+  const double scale = model.value[index(t, kScale)];
+  if (scale != 1) node.set("scale", Node::of(scale));
+  const auto i = static_cast<size_t>(t);
+  if (model.lower[i] < model.upper[i])
+    node.set("limits", Node::of(std::vector<double>{model.lower[i], model.upper[i]}));
+  write_beside(model, tower_names(t), node);
+  return node;
+}
+
+Node write_named(const Delta& model, const std::vector<Named>& names) {
+  Node node = Node::map();
+  for (const Named& each : names)
+    if (model.value[each.at] != 0) node.set(each.name, Node::of(model.value[each.at]));
+  write_beside(model, names, node);
+  return node;
+}
+
+}  // namespace
+
+std::string tower_name(int tower) { return "tower" + std::to_string(tower + 1); }
+
+Delta read(const Node& node, Problems& problems) {
+  Fields fields(node, "robot", problems);
+  Delta model;
+  model.name = fields.text("robot");
+  fields.text("kind");
+  const Node* towers = fields.node("towers");
+  if (!towers || towers->kind != Node::Kind::list || towers->items.size() != kTowers) {
+    fields.fail("towers", "a list of three towers");
+    return model;
+  }
+  for (int t = 0; t < kTowers; ++t)
+    read_tower(towers->items[static_cast<size_t>(t)], t, problems, model);
+  if (const Node* effector = fields.node("effector")) read_effector(*effector, problems, model);
+  if (const Node* tool = fields.node("tool")) read_tool(fields, *tool, problems, model);
+  fields.refuse_unknown();
+  return model;
+}
+
+Node write(const Delta& model) {
+  Node node = Node::map();
+  node.set("robot", Node::of(model.name));
+  node.set("kind", Node::of(std::string("linear-delta")));
+  Node towers = Node::list();
+  for (int t = 0; t < kTowers; ++t) towers.items.push_back(write_tower(model, t));
+  node.set("towers", std::move(towers));
+  Node effector = write_named(model, effector_names());
+  if (!effector.items.empty()) node.set("effector", std::move(effector));
+  Node beside = Node::map();
+  if (write_beside(model, tool_names(), beside))
+    node.set("tool", write_named(model, tool_names()));
+  else if (const Eigen::VectorXd tool = model.value.segment<3>(kTool); !tool.isZero(0))
+    node.set("tool", Node::of(tool));
+  return node;
+}
+
+}  // namespace selfcal::linear_delta
