@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "constraints/figures.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {
@@ -26,12 +26,6 @@ constexpr double kLeast =
     10e-3;  ///< rad: less is no slip, where no noise is stated and links are exact
 constexpr size_t kMostTurns = 200;
 constexpr double kCollapse = 0.2;  ///< a slip explains the angles that it makes so much smaller
-
-std::string print(const char* format, double a, double b = 0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 /// About one axis (rad), of a robot as its maker says.
 double within_tolerance(const Robot& robot) {
@@ -161,9 +155,9 @@ std::vector<std::string> gross_angles(const Robot& robot, const DataSet& data, c
     if (!(left > limit)) continue;
     list.push_back(
         "the angles of set " + set.name +
-        print(" are left %.3g mrad off about each axis, where noise and tolerances leave "
-              "less than %.2g: ",
-              1e3 * left, 1e3 * limit) +
+        with_figures(" are left %.3g mrad off about each axis, where noise and tolerances leave "
+                     "less than %.2g: ",
+                     1e3 * left, 1e3 * limit) +
         slip_of(robot, data, s, before.state.xi, limit));
   }
   return list;

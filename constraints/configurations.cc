@@ -10,7 +10,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kSteps = 40;
+constexpr int kNewtonSteps = 40;
 constexpr double kLongestStep = 0.5;  // rad or m
 constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
 constexpr int kEnough = 8;            // lanes that reach it before the others are given up
@@ -195,7 +195,7 @@ class Sampler {
                     nullptr);
     NewtonStep newton(robot_, data_, sampled_.truth, row, before);
     Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kNewtonSteps; ++step) {
       newton.evaluate(block);
       for (int lane = 0; lane < kLanes; ++lane) {
         const Eigen::VectorXd miss = newton.miss(lane, wanted);

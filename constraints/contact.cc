@@ -5,7 +5,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kSteps = 30;
+constexpr int kContactSteps = 30;
 constexpr double kMet = 1e-12;     // what is left of the wanted residual (m, rad)
 constexpr double kFarthest = 0.3;  // rad or m: farther away it is another place, not a little off
 
@@ -19,7 +19,7 @@ bool move_to_residual(const Robot& robot, const DataSet& data, const State& trut
            .closes())
     return false;
   NewtonStep newton(robot, data, truth, row, before);
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kContactSteps; ++step) {
     newton.evaluate(block);
     if (!newton.closes(0)) return false;
     const Eigen::VectorXd miss = newton.miss(0, wanted);

@@ -13,12 +13,12 @@ namespace selfcal {
 
 namespace {
 
-struct Kind {
+struct MethodKind {
   std::string_view name;
   MethodPtr (*make)(SetEntry&);
 };
 
-constexpr Kind kKinds[] = {
+constexpr MethodKind kMethodKinds[] = {
 #define X(identifier, text) {text, make_##identifier},
 #include "constraints/methods.def"
 #undef X
@@ -88,11 +88,12 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
   Fields fields(node, "set " + name, problems);
   const std::string method = fields.text("method");
   SetEntry entry{name, fields, problems, set.groups};
-  for (const Kind& kind : kKinds)
+  for (const MethodKind& kind : kMethodKinds)
     if (kind.name == method) set.method = kind.make(entry);
   if (!set.method) {
     std::string known;
-    for (const Kind& kind : kKinds) known += (known.empty() ? "" : ", ") + std::string(kind.name);
+    for (const MethodKind& kind : kMethodKinds)
+      known += (known.empty() ? "" : ", ") + std::string(kind.name);
     fields.fail("method", "one of " + known);
     return set;
   }
@@ -164,7 +165,7 @@ DataSet merged(const DataSet& before, const DataSet& after) {
 
 std::vector<std::string_view> method_names() {
   std::vector<std::string_view> names;
-  for (const Kind& kind : kKinds) names.push_back(kind.name);
+  for (const MethodKind& kind : kMethodKinds) names.push_back(kind.name);
   return names;
 }
 

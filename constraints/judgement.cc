@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "constraints/figures.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {
@@ -68,12 +68,6 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
 
 bool is_far(const RowResidual& r, const Judged& judged) {
   return r.sigmas(judged.check_scale[r.set]) > chi_quantile(r.lengths + r.angles, kFar);
-}
-
-std::string print(const char* format, double a, double b = 0, double c = 0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b, c);
-  return text;
 }
 
 }  // namespace
@@ -201,12 +195,12 @@ bool angles_rise(const Judged& before, const Judged& after) {
 /// What became of the check rows, and how well the end position is known.
 std::string change(const Figures& check, double p_value, const EndpointSigma& endpoint) {
   std::string text =
-      print("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
+      with_figures("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
   if (check.angle.rows > 0)
-    text += print(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
-                  1e3 * check.angle.rms_after);
-  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : print("= %.2g", p_value)) +
-         "); end position known to " + print("%.3g mm", 1e3 * endpoint.rms);
+    text += with_figures(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
+                         1e3 * check.angle.rms_after);
+  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : with_figures("= %.2g", p_value)) +
+         "); end position known to " + with_figures("%.3g mm", 1e3 * endpoint.rms);
 }
 
 }  // namespace
@@ -233,7 +227,7 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
     v.answer = better ? Answer::improved : Answer::not_improved;
     if (worse_turned) v.why += "; the angles are met worse than before";
   } else {
-    v.why += print(", %.3g mm wanted", 1e3 * grounds.target);
+    v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
     if (better || !grounds.nominal_explains) return v;
     v.answer = Answer::not_improved;
     v.why += "; the rows ask for no other robot than the maker's";

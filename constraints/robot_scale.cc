@@ -10,8 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "constraints/figures.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
@@ -22,12 +22,6 @@ namespace {
 constexpr double kFalseAlarm = 0.01;
 /// A length of N that carries less of the scale than this over N is no matter of it.
 constexpr double kLeastShare = 0.05;
-
-std::string print(const char* format, double a, double b = 0, double c = 0, double d = 0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b, c, d);
-  return text;
-}
 
 /// [W | K | Delta Y] and the priors' rows, triangular: the unknowns' part and what it leaves.
 struct Eliminated {
@@ -210,13 +204,14 @@ class ScaleTest {
     const RobotScale& scale = result_.scale;
     const auto m = static_cast<double>(lengths().size());
     const ScaleLength& one = lengths().front();
-    return (m == 1
-                ? one.what + " of set " + one.set + print(" is given as %.6g mm, ", 1e3 * one.value)
-                : print("the %.0f lengths given are ", m)) +
-           print("%.2g %%", 100 * std::abs(scale.excess)) + (scale.excess > 0 ? " more" : " less") +
-           " than the maker's lengths " + (reads_lengths() ? "and the other rows " : "") +
-           print("say, which tell the scale to %.2g %% (%.2g sigma): ", 100 * scale.excess_sigma,
-                 sigmas) +
+    return (m == 1 ? one.what + " of set " + one.set +
+                         with_figures(" is given as %.6g mm, ", 1e3 * one.value)
+                   : with_figures("the %.0f lengths given are ", m)) +
+           with_figures("%.2g %%", 100 * std::abs(scale.excess)) +
+           (scale.excess > 0 ? " more" : " less") + " than the maker's lengths " +
+           (reads_lengths() ? "and the other rows " : "") +
+           with_figures("say, which tell the scale to %.2g %% (%.2g sigma): ",
+                        100 * scale.excess_sigma, sigmas) +
            "check the length given and the lengths in the robot's file";
   }
 
@@ -250,10 +245,11 @@ class ScaleTest {
     odd.odd = true;
     result_.scale.contradictions.push_back(
         odd.what + " of set " + odd.set +
-        print(" is given as %.6g mm, where the other lengths given and the maker's say %.6g mm "
-              "(%.2g sigma); the maker's alone say %.6g",
-              1e3 * odd.value, 1e3 * odd.by_others, worst_sigmas, 1e3 * odd.expected) +
-        print(" +- %.2g mm", 1e3 * odd.expected_sigma));
+        with_figures(
+            " is given as %.6g mm, where the other lengths given and the maker's say %.6g mm "
+            "(%.2g sigma); the maker's alone say %.6g",
+            1e3 * odd.value, 1e3 * odd.by_others, worst_sigmas, 1e3 * odd.expected) +
+        with_figures(" +- %.2g mm", 1e3 * odd.expected_sigma));
     result_.doubts.emplace_back((odd.value - odd.by_others) * follows_[worst]);
   }
 

@@ -28,7 +28,7 @@ Eigen::Vector3d thin_direction(const std::vector<Eigen::Vector3d>& points,
   return n.dot(centre) > 0 ? Eigen::Vector3d(-n) : n;  // towards the robot
 }
 
-SiteSet describe(const Robot& robot, const DataSet& data, int set) {
+SiteSet site_of_set(const Robot& robot, const DataSet& data, int set) {
   SiteSet site;
   site.name = data.sets[set].name;
   site.touch = data.sets[set].method->touches() == TouchedSurface::plane;
@@ -67,7 +67,7 @@ void take_record(const Observations& rows, Site& site) {
 Site site_of(const Robot& robot, const DataSet& data) {
   Site site;
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
-    site.sets.push_back(describe(robot, data, s));
+    site.sets.push_back(site_of_set(robot, data, s));
   take_record(data.rows, site);
   site.loads = data.rows.wrench.size() > 0 && !data.rows.wrench.array().isNaN().all();
   site.velocities = data.rows.velocity.size() > 0 && !data.rows.velocity.array().isNaN().all();

@@ -12,7 +12,7 @@ constexpr double kNoise = 2e-5;       // m, where a set does not say its own
 constexpr double kPlaceVariance = 1;  // m^2, rad^2: where a surface or socket lies is not known
 
 /// What is unknown of a surface or a socket.
-struct Place {
+struct PlaceUnknowns {
   int column = 0;          ///< first of three
   Eigen::Vector3d normal;  ///< that the plane's unknowns belong to
 };
@@ -24,11 +24,11 @@ class Columns {
 
   /// That of the candidate's surface or socket; two faces that are a known distance apart are one
   /// place, and have one normal though their ways out are opposite.
-  const Place& of(const PossibleTouch& candidate) {
+  const PlaceUnknowns& of(const PossibleTouch& candidate) {
     const int reference = sets_[candidate.set].reference;
     const auto [found, added] =
         at_.try_emplace({reference < 0 ? candidate.set : reference, candidate.group},
-                        Place{next_, candidate.outward});
+                        PlaceUnknowns{next_, candidate.outward});
     if (added) next_ += 3;
     return found->second;
   }
@@ -37,7 +37,7 @@ class Columns {
  private:
   int next_;
   const std::vector<Set>& sets_;
-  std::map<std::pair<int, int>, Place> at_;
+  std::map<std::pair<int, int>, PlaceUnknowns> at_;
 };
 
 /// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket).
@@ -60,7 +60,7 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
       const PossibleTouch& each = candidates[first + lane];
       Eigen::MatrixXd moves(3, parameters);
       for (int c = 0; c < 3; ++c) moves.row(c) = psi.row(c * kLanes + lane);
-      const Place& own = columns.of(each);
+      const PlaceUnknowns& own = columns.of(each);
       const bool socket = each.group >= 0;
       Eigen::MatrixXd W = Eigen::MatrixXd::Zero(socket ? 3 : 1, columns.end());
       W.leftCols(parameters) = socket ? moves : Eigen::MatrixXd(own.normal.transpose() * moves);

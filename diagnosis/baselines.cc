@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSignificance = 0.05;
 constexpr size_t kMostCauses = 3;
-constexpr double kAbsorbed =
+constexpr double kLeastLeft =
     1e-3;  // share of a column that geometry leaves, below which it is none
 
 /// What geometry leaves of the rows and of each candidate's columns.
@@ -33,7 +33,7 @@ class Regression {
     C_ = rest.leftCols(rows.C.cols());
     y_ = rest.col(rows.C.cols());
     for (Eigen::Index c = 0; c < C_.cols(); ++c)
-      if (C_.col(c).norm() < kAbsorbed * rows.C.col(c).norm()) C_.col(c).setZero();
+      if (C_.col(c).norm() < kLeastLeft * rows.C.col(c).norm()) C_.col(c).setZero();
     // Each prior determines the share of its parameter that the rows do not.
     freedom_ = static_cast<double>(n) - orthogonal_columns(onto).Q.topRows(n).squaredNorm();
     equations_ = static_cast<double>(n);
@@ -80,7 +80,7 @@ class Regression {
   double freedom_ = 0, equations_ = 0, squares_ = 0;
 };
 
-TrialCauseNamed named(const Candidate& candidate, double probability) {
+TrialCauseNamed baseline_cause(const Candidate& candidate, double probability) {
   TrialCauseNamed cause{candidate.effect};
   if (!candidate.at.empty()) cause.where = {candidate.at};
   cause.probability = probability;
@@ -114,7 +114,7 @@ TrialAnswer stepwise(const std::shared_ptr<const Robot>& robot, const DataSet& d
     }
     const double corrected = least * static_cast<double>(regression.candidates());
     if (corrected > kSignificance) break;
-    causes.push_back(named(regression.candidate(best), 1 - corrected));
+    causes.push_back(baseline_cause(regression.candidate(best), 1 - corrected));
     regression.take(best);
   }
   return answer(std::move(causes),
@@ -144,7 +144,7 @@ TrialAnswer bic(const std::shared_ptr<const Robot>& robot, const DataSet& data) 
     if (causes.empty()) none = 1 / sum;
     if (least >= 0) break;
     const double weight = std::isfinite(sum) ? std::exp(-least / 2) / sum : 1;
-    causes.push_back(named(regression.candidate(best), weight));
+    causes.push_back(baseline_cause(regression.candidate(best), weight));
     regression.take(best);
   }
   return answer(std::move(causes), none);

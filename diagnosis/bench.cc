@@ -8,7 +8,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kAbsorbed = 1e-3;  ///< share that survives below which a candidate says nothing
+constexpr double kLeastSeen = 1e-3;  ///< share that survives below which a candidate says nothing
 constexpr int kAgreements = 3;
 constexpr double kWorthwhile = 5;  ///< log evidence that a cause must bring to be reckoned with
 constexpr double kSlack = 0.25;    ///< of slack columns, over the main ones
@@ -64,7 +64,7 @@ void Bench::make_blocks(const std::vector<EffectParameter>& parameters) {
       largest = std::max(largest, u / parameters[static_cast<size_t>(k)].usual_most);
     }
     survival_.push_back(whole > 0 ? std::sqrt(std::max(visible, 0.0) / whole) : 0);
-    seen_.push_back(survival_.back() > kAbsorbed);
+    seen_.push_back(survival_.back() > kLeastSeen);
     const double scale = seen_.back() ? std::sqrt(n / visible) : 0;
     amplitude_.push_back(scale * largest);
     for (const int k : candidate.main) {

@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kListed = 0.005;     ///< least probability that is told
+constexpr double kLeastTold = 0.005;  ///< least probability that is told
 constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
 constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
 constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
@@ -42,7 +42,7 @@ class Teller {
   std::vector<CauseResult> causes() const {
     std::vector<CauseResult> list;
     for (const auto& [family, probability] : posterior_.family) {
-      if (probability < kListed) continue;
+      if (probability < kLeastTold) continue;
       CauseResult cause;
       cause.effect = family;
       cause.probability = std::min(probability, 1.0);

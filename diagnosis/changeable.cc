@@ -9,7 +9,7 @@ namespace {
 constexpr double kAlike = 1 - 1e-6;  ///< cosine of columns that no row tells apart
 
 /// What is usual of a length (m), an angle (rad) or a ratio.
-EffectParameter named(const std::string& name, std::string unit) {
+EffectParameter usual_parameter(const std::string& name, std::string unit) {
   return {name, std::move(unit), 5e-6, 5e-3, 0};
 }
 
@@ -76,10 +76,10 @@ class Builder {
       const int c = columns[k];
       candidate.main.push_back(static_cast<int>(all_.columns.size()));
       all_.columns.push_back(c);
-      all_.parameters.push_back(
-          c < equations_.robot_columns()
-              ? named(robot_.parameters()[c].name, std::string(robot_.parameters()[c].unit()))
-              : named("own" + std::to_string(k + 1), "m or rad"));
+      all_.parameters.push_back(c < equations_.robot_columns()
+                                    ? usual_parameter(robot_.parameters()[c].name,
+                                                      std::string(robot_.parameters()[c].unit()))
+                                    : usual_parameter("own" + std::to_string(k + 1), "m or rad"));
     }
     all_.candidates.list.push_back(std::move(candidate));
   }

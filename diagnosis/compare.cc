@@ -10,14 +10,14 @@
 namespace selfcal {
 namespace {
 
-constexpr double kListed = 0.02;
-constexpr int kPasses = 2;       ///< false rows are seen once the changes are known
-constexpr size_t kSearched = 3;  ///< candidates that the search puts together
+constexpr double kListedChange = 0.02;
+constexpr int kComparePasses = 2;  ///< false rows are seen once the changes are known
+constexpr size_t kSearched = 3;    ///< candidates that the search puts together
 constexpr size_t kMostDifferences = 60;
 
 /// The candidate's values, as the hypothesis that holds it has them.
-std::vector<NamedValue> values(const Bench& bench, const Changeable& changeable,
-                               const Hypothesis& h, int candidate) {
+std::vector<NamedValue> values_held(const Bench& bench, const Changeable& changeable,
+                                    const Hypothesis& h, int candidate) {
   const Workbench::Estimate estimate = bench.workbench(h.structure).estimate(bench.terms(h));
   std::vector<NamedValue> list;
   Eigen::Index at = 0;
@@ -43,12 +43,12 @@ void list_searched(const Bench& bench, const Changeable& changeable, const Poste
   const std::vector<Candidate>& list = changeable.candidates.list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
     const auto found = posterior.cause.find({list[c].effect, list[c].at});
-    if (found == posterior.cause.end() || found->second < kListed) continue;
+    if (found == posterior.cause.end() || found->second < kListedChange) continue;
     const auto h = std::ranges::find_if(posterior.hypotheses, [&](const Hypothesis& each) {
       return std::ranges::count(each.candidates, c) > 0;
     });
     result.changes.push_back({list[c].effect, list[c].at, std::min(found->second, 1.0),
-                              values(bench, changeable, *h, c)});
+                              values_held(bench, changeable, *h, c)});
   }
 }
 
@@ -75,9 +75,9 @@ void list_grown(const Bench& bench, const Changeable& changeable, Hypothesis all
     less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
     const Candidate& each = changeable.candidates.list[static_cast<size_t>(all.candidates[i])];
     const double probability = 1 / (1 + std::exp(weight(less, all.structure) - best));
-    if (probability >= kListed)
-      result.changes.push_back(
-          {each.effect, each.at, probability, values(bench, changeable, all, all.candidates[i])});
+    if (probability >= kListedChange)
+      result.changes.push_back({each.effect, each.at, probability,
+                                values_held(bench, changeable, all, all.candidates[i])});
   }
 }
 
@@ -101,7 +101,7 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
   return best;
 }
 
-std::string in_words(const Comparison& result) {
+std::string changes_in_words(const Comparison& result) {
   std::string text;
   for (const Change& each : result.changes)
     if (each.probability > 0.5)
@@ -133,7 +133,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
   if (progress) progress("weighing what changed", 0.5);
   Comparison result;
   std::vector<char> put_aside = pair.put_aside();
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kComparePasses; ++pass) {
     const DenseEquations rows = pair.weighed(put_aside);
     result = {};
     const Hypothesis best = weigh(pair, rows, options.search, result);
@@ -142,7 +142,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
     put_aside = std::move(far);
   }
   std::ranges::stable_sort(result.changes, std::greater(), &Change::probability);
-  result.why = in_words(result);
+  result.why = changes_in_words(result);
   return result;
 }
 

@@ -8,7 +8,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kAbsorbed = 0.02;  ///< share that survives below which nothing can be said
+constexpr double kLeastSurvival = 0.02;  ///< share that survives below which nothing can be said
 
 bool moves_nothing(const View& view, const Candidate& candidate) {
   const auto first = static_cast<Eigen::Index>(view.geometry().parameters().size());
@@ -16,7 +16,7 @@ bool moves_nothing(const View& view, const Candidate& candidate) {
                              [&](int k) { return view.all().W.col(first + k).isZero(1e-12); });
 }
 
-std::string why_not(const View& view, const Candidate& candidate) {
+std::string why_untestable(const View& view, const Candidate& candidate) {
   if (!moves_nothing(view, candidate)) return "absorbed by calibration on these rows";
   return "it moves nothing in these rows: it needs " + candidate.needs;
 }
@@ -28,7 +28,7 @@ void list_detectable(const View& view, const Bench& bench, const DiagnosisOption
   std::map<Cause, Detectable> best;
   const std::vector<Candidate>& list = view.candidates().list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
-    if (bench.survival(c) < kAbsorbed) continue;
+    if (bench.survival(c) < kLeastSurvival) continue;
     const double needed = -std::log(options.name_below_none) -
                           std::log(options.search.family_odds) - list[c].log_prior;
     const Detectable each{list[c].effect, list[c].at, view.parameters()[list[c].main.front()].unit,
@@ -39,7 +39,7 @@ void list_detectable(const View& view, const Bench& bench, const DiagnosisOption
   for (auto& [cause, each] : best) into.detectable.push_back(std::move(each));
   for (const Candidate& each : list)
     if (best.try_emplace({each.effect, each.at}).second)
-      into.untestable.push_back({each.effect, each.at, why_not(view, each)});
+      into.untestable.push_back({each.effect, each.at, why_untestable(view, each)});
 }
 
 }  // namespace selfcal

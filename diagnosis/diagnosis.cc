@@ -21,7 +21,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kPasses = 4;
+constexpr int kDiagnosisPasses = 4;
 constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
 constexpr size_t kMostEffects = 60;
 constexpr double kMostGrown = 2100;  ///< equations
@@ -64,7 +64,7 @@ class Diagnostician {
  private:
   /// Every cause on rows without the false ones, until neither these nor the noise change.
   void weigh() {
-    for (int pass = 0; pass < kPasses; ++pass) {
+    for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       const DenseEquations rows = view_.kept();
       bench_ = std::make_unique<Bench>(
@@ -85,7 +85,8 @@ class Diagnostician {
           bench_->workbench(best.structure).estimate(bench_->terms(best)).variance *
           bench_->noise_variance(best.structure);
       // The bench and the view must end up with the same rows.
-      if (pass + 1 == kPasses || !view_.refine(view_.residuals(columns, sigma), variance)) break;
+      if (pass + 1 == kDiagnosisPasses || !view_.refine(view_.residuals(columns, sigma), variance))
+        break;
     }
   }
 
@@ -105,7 +106,7 @@ class Diagnostician {
     SearchRule rule = options_.search;
     rule.noise_is_known = true;  // each pass takes it from what the one before leaves
     Correction correction;
-    for (int pass = 0; pass < kPasses; ++pass) {
+    for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       const DenseEquations rows = view_.kept();
       const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
                         view_.parameters(), rule);
@@ -116,7 +117,7 @@ class Diagnostician {
       const double variance =
           bench.workbench(0).estimate(bench.terms(best)).variance * bench.noise_variance(0);
       const bool again = view_.refine(view_.residuals(columns, sigma), variance);
-      if (again && pass + 1 < kPasses) continue;
+      if (again && pass + 1 < kDiagnosisPasses) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
         const Candidate& each = all.list[best.candidates[i]];
         correction.push_back({each.entries.front(), {}, names(result_.verdict, each)});

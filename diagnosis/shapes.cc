@@ -25,7 +25,7 @@ std::string known_names() {
 }
 
 /// Why none of the candidates is `asked`.
-std::string why_not(const View& view, const std::string& asked) {
+std::string why_none(const View& view, const std::string& asked) {
   const std::string effect = asked.substr(0, asked.find('@'));
   const std::vector<std::string_view> names = effect_names();
   if (std::find(names.begin(), names.end(), effect) == names.end())
@@ -56,7 +56,7 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
           best.try_emplace(candidate.at, -std::numeric_limits<double>::infinity(), -1);
       if (slot->second.second < 0 || evidence > slot->second.first) slot->second = {evidence, c};
     }
-    if (best.empty()) chosen.problem = why_not(view, each);
+    if (best.empty()) chosen.problem = why_none(view, each);
     for (const auto& [place, found] : best)
       chosen.entries.push_back(all.list[found.second].entries.front());
   }

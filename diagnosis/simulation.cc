@@ -48,7 +48,7 @@ std::vector<SharedCause> take_shared(std::vector<ShownCause>& robot,
   return both;
 }
 
-std::string in_words(const std::string& effect, const std::string& where) {
+std::string cause_in_words(const std::string& effect, const std::string& where) {
   if (effect == kUnknown) return "structure that no known effect explains";
   std::string text = effect + (where.empty() ? "" : " at " + where);
   std::ranges::replace(text, '_', ' ');
@@ -58,7 +58,7 @@ std::string in_words(const std::string& effect, const std::string& where) {
 std::string list_of(const char* opening, const std::vector<ShownCause>& causes) {
   std::string text;
   for (const ShownCause& each : causes)
-    text += (text.empty() ? opening : ", ") + in_words(each.effect, each.where);
+    text += (text.empty() ? opening : ", ") + cause_in_words(each.effect, each.where);
   return text;
 }
 
@@ -72,7 +72,7 @@ std::string apart_in_words(const SharedCause& cause) {
                   each.simulation.value);
     text += (text.empty() ? "" : ", ") + std::string(part);
   }
-  return text.empty() ? "" : in_words(cause.effect, cause.where) + " is in both, but " + text;
+  return text.empty() ? "" : cause_in_words(cause.effect, cause.where) + " is in both, but " + text;
 }
 
 std::string geometry_in_words(const Comparison& geometry) {
@@ -81,7 +81,7 @@ std::string geometry_in_words(const Comparison& geometry) {
     if (each.probability <= kShown) continue;
     const bool plain = each.effect == "geometry_differs";
     text += (text.empty() ? "the geometry differs: " : ", ") +
-            (plain ? each.where : in_words(each.effect, each.where));
+            (plain ? each.where : cause_in_words(each.effect, each.where));
     if (each.values.size() != 1) continue;
     char value[100];
     std::snprintf(value, sizeof value, " by %.3g ± %.1g %s", each.values[0].value,

@@ -10,7 +10,7 @@
 namespace selfcal {
 namespace {
 
-bool names(const TrialCauseNamed& cause, const std::string& effect) {
+bool names_or_confounds(const TrialCauseNamed& cause, const std::string& effect) {
   if (cause.effect == effect) return true;
   return cause.probability <= kMostWhenConfounded &&
          std::any_of(
@@ -161,8 +161,8 @@ void add_absences(Table& table) {
 }  // namespace
 
 bool right_cause(const TrialTruth& truth, const TrialAnswer& answer) {
-  return names(answer.verdict, truth.effect) ||
-         (!truth.second.empty() && names(answer.verdict, truth.second));
+  return names_or_confounds(answer.verdict, truth.effect) ||
+         (!truth.second.empty() && names_or_confounds(answer.verdict, truth.second));
 }
 
 bool right_place(const TrialTruth& truth, const TrialAnswer& answer) {
@@ -187,10 +187,10 @@ bool right_place(const TrialTruth& truth, const TrialAnswer& answer) {
 
 bool both_causes(const TrialTruth& truth, const TrialAnswer& answer) {
   const auto named = [&](const std::string& effect) {
-    return names(answer.verdict, effect) ||
+    return names_or_confounds(answer.verdict, effect) ||
            std::any_of(answer.candidates.begin(), answer.candidates.end(),
                        [&](const TrialCauseNamed& each) {
-                         return each.probability >= kConfident && names(each, effect);
+                         return each.probability >= kConfident && names_or_confounds(each, effect);
                        });
   };
   return named(truth.effect) && named(truth.second);

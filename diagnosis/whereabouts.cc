@@ -8,7 +8,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kRegions = 6, kTimes = 6;
-constexpr double kAbsorbed = 0.02;  ///< share that survives below which an effect takes no part
+constexpr double kTakesNoPart = 0.02;  ///< share that survives below which an effect takes no part
 
 /// What each joint's own effects take of the residual when all effects there are share it.
 std::vector<Share> by_joint(const View& view, const Bench& bench) {
@@ -17,7 +17,7 @@ std::vector<Share> by_joint(const View& view, const Bench& bench) {
   const std::vector<Joint>& joints = view.geometry().joints();
   const std::vector<Candidate>& all = view.candidates().list;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (bench.survival(static_cast<int>(c)) <= kAbsorbed) continue;
+    if (bench.survival(static_cast<int>(c)) <= kTakesNoPart) continue;
     terms.push_back({&bench.block(static_cast<int>(c)), 1});
     joint.push_back(all[c].joint);
   }

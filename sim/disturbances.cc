@@ -16,7 +16,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kTries = 20;  // draws before a touch is given up
+constexpr int kTouchTries = 20;  // draws before a touch is given up
 
 class Disturber {
  public:
@@ -93,7 +93,7 @@ class Disturber {
   }
 
   void disturb_touch(int row, bool is_false) {
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    for (int attempt = 0; attempt < kTouchTries; ++attempt) {
       Eigen::VectorXd wanted = drawn_residual(row);
       if (is_false) wanted += false_residual(row);
       Eigen::VectorXd q = made_.data.rows.q.row(row).transpose();

@@ -29,7 +29,7 @@ void read_false_triggers(Fields& fields, FalseTriggers& triggers) {
     fields.fail("size", "[LEAST, MOST] in metres, above 0 and at most 0.1");
 }
 
-void read_sets(Fields& fields, Scenario& scenario, Problems& problems) {
+void read_set_scenarios(Fields& fields, Scenario& scenario, Problems& problems) {
   const Node* sets = fields.node("sets");
   if (!sets || sets->kind != Node::Kind::map || sets->items.empty())
     return fields.fail("sets", "one set or more, each as `name: {method: ...}`");
@@ -72,7 +72,7 @@ Scenario read_scenario(const Node& node, Problems& problems) {
   scenario.compliance = named_numbers(fields, "compliance", problems);
   if (const Node* machine = fields.node("machine"))
     scenario.machine = read_machine_scenario(*machine, problems);
-  read_sets(fields, scenario, problems);
+  read_set_scenarios(fields, scenario, problems);
   fields.refuse_unknown();
   return scenario;
 }

@@ -14,10 +14,10 @@ namespace selfcal {
 namespace {
 
 constexpr double kLeastSurvival = 0.12;  // below this the honest answer is "absorbed"
-constexpr int kTries = 40;               // of one effect
+constexpr int kEffectTries = 40;         // of one effect
 constexpr int kMixtures = 10;            // of effects
-constexpr int kSteps = 12;               // Newton steps of a touch
-constexpr double kMet = 1e-12;           // m
+constexpr int kTouchSteps = 12;          // Newton steps of a touch
+constexpr double kTouchMet = 1e-12;      // m
 
 class TrialMaker {
  public:
@@ -116,7 +116,7 @@ class TrialMaker {
   }
 
   bool draw(const std::string& name, double r, const TrialCalibration& calibration) {
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    for (int attempt = 0; attempt < kEffectTries; ++attempt) {
       TrialCause cause = draw_cause(name, session_.world, random_);
       if (!cause.act) continue;
       const TrialCalibration::Size size = calibration.size(calibration.seen(shifts({cause})));
@@ -171,12 +171,12 @@ class TrialMaker {
   void touch(Instant& at, double wanted) {
     const Robot& robot = *session_.robot;
     const TrialSurface& surface = session_.world.surfaces[static_cast<size_t>(at.set)];
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kTouchSteps; ++step) {
       const Deviation d = deviation(causes_, at);
       Eigen::MatrixXd J;
       const Eigen::Vector3d tip = tip_of(robot, session_.truth.xi, at.q + d.joints, &J) + d.tip;
       const double miss = wanted + surface.distance - surface.normal.dot(tip);
-      if (std::abs(miss) < kMet) break;
+      if (std::abs(miss) < kTouchMet) break;
       const Eigen::VectorXd along = J.transpose() * surface.normal;
       at.q += along * (miss / along.squaredNorm());
       at.poses = robot.statics()->link_poses(at.q);

@@ -12,9 +12,9 @@
 namespace selfcal {
 namespace {
 
-constexpr int kTries = 60;     // blocks of random configurations
-constexpr int kSteps = 100;    // Newton steps
-constexpr double kMet = 1e-9;  // what is left of the wanted values (m, rad)
+constexpr int kBlockTries = 60;      // blocks of random configurations
+constexpr int kValueSteps = 100;     // Newton steps
+constexpr double kValuesMet = 1e-9;  // what is left of the wanted values (m, rad)
 
 /// A random location of the set's body within the patch, or the patch's centre if it is out of
 /// reach.
@@ -22,7 +22,7 @@ Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, cons
                   Random& random) {
   ConfigurationBlock block;
   Locations X;
-  for (int attempt = 0; attempt < kTries; ++attempt) {
+  for (int attempt = 0; attempt < kBlockTries; ++attempt) {
     block.q = random_poses(robot, nullptr, kLanes, random()).array();
     block.count = kLanes;
     const Closure closure = robot.locate(block, xi, body, X, nullptr);
@@ -58,7 +58,7 @@ void bring_to_truth(const SetScenario& wanted, const Method& method,
   const auto count = static_cast<Eigen::Index>(wanted.truth.size());
   Eigen::MatrixXd A(count, method.own_freedom());
   Eigen::VectorXd miss(count);
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kValueSteps; ++step) {
     const std::vector<OwnReport> reports = method.report(own, reference);
     for (Eigen::Index i = 0; i < count; ++i) {
       const OwnReport* report = find(reports, wanted.truth[i].name);
@@ -66,7 +66,7 @@ void bring_to_truth(const SetScenario& wanted, const Method& method,
       A.row(i) = report->D_own.transpose();
       miss[i] = wanted.truth[i].value - report->value;
     }
-    if (miss.norm() < kMet) return;
+    if (miss.norm() < kValuesMet) return;
     method.retract(own, least_squares(A, miss));
   }
   problems.add(wanted.truth.front().place,
