@@ -14,7 +14,7 @@
 namespace selfcal {
 namespace {
 
-struct Arguments {
+struct CommandArguments {
   std::string verb;
   Whom whom;
 };
@@ -28,7 +28,7 @@ std::string user_at_host() {
   return name + "@" + host.data();
 }
 
-void print(const CommandReplyMessage& reply, const std::string& robot, bool json) {
+void print_reply(const CommandReplyMessage& reply, const std::string& robot, bool json) {
   if (json) {
     const auto object = nlohmann::ordered_json::object(
         {{"robot", robot}, {"verb", reply.verb}, {"accepted", reply.accepted}, {"why", reply.why}});
@@ -40,7 +40,7 @@ void print(const CommandReplyMessage& reply, const std::string& robot, bool json
   std::printf("%s\n", text.c_str());
 }
 
-int ask_command(const Arguments& arguments) {
+int ask_command(const CommandArguments& arguments) {
   const auto participant =
       DdsParticipant::open(static_cast<std::uint32_t>(arguments.whom.domain), "selfcal command");
   if (!participant) return tell(participant.error());
@@ -54,14 +54,14 @@ int ask_command(const Arguments& arguments) {
           ->send({.id = DdsCommander::new_id(), .verb = arguments.verb, .from = user_at_host()},
                  nanoseconds(arguments.whom.wait));
   if (!reply) return tell(reply.error());
-  print(*reply, **robot, arguments.whom.json);
+  print_reply(*reply, **robot, arguments.whom.json);
   return reply->accepted ? kDone : kAnswerIsNo;
 }
 
 }  // namespace
 
 void add_command(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CommandArguments>();
   CLI::App* command =
       app.add_subcommand("command", "Ask the service; exit 1 when it refuses, with its reason");
   command

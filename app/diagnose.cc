@@ -17,7 +17,7 @@
 namespace selfcal {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   std::string data_set, since, simulated, next, out;
   bool json = false;
 };
@@ -43,7 +43,7 @@ Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const R
 }
 
 /// All of them, before anything that takes long.
-Result<Inputs> load(const Arguments& arguments) {
+Result<Inputs> load(const DiagnoseArguments& arguments) {
   auto measured = load_data_set(arguments.data_set);
   if (!measured) return tl::unexpected(measured.error());
   print_notices(*measured);
@@ -55,7 +55,7 @@ Result<Inputs> load(const Arguments& arguments) {
   return Inputs{*std::move(measured), robot, *std::move(before), *std::move(simulated)};
 }
 
-Result<Findings> find(const Arguments& arguments, const Inputs& inputs) {
+Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) {
   const DataSet& data = inputs.measured.data;
   ProgressLine line;
   Findings found{inputs.measured.name, diagnose(inputs.robot, data, {}, shown_on(line)), {}, {}};
@@ -104,7 +104,8 @@ Result<void> write_folder(const std::filesystem::path& out, const Findings& find
 }
 
 /// Writes what is asked for to be kept.
-Result<void> write(const Arguments& arguments, const Inputs& inputs, const Findings& findings) {
+Result<void> write_findings(const DiagnoseArguments& arguments, const Inputs& inputs,
+                            const Findings& findings) {
   if (!arguments.out.empty())
     if (auto done = write_folder(arguments.out, findings); !done) return done;
   if (arguments.next.empty()) return {};
@@ -112,13 +113,13 @@ Result<void> write(const Arguments& arguments, const Inputs& inputs, const Findi
                                next_json(findings.diagnosis, inputs.measured.data).dump(1) + "\n");
 }
 
-int diagnose_command(const Arguments& arguments) {
+int diagnose_command(const DiagnoseArguments& arguments) {
   const auto inputs = load(arguments);
   if (!inputs) return tell(inputs.error());
   const auto findings = find(arguments, *inputs);
   if (!findings) return tell(findings.error());
   std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
-  if (const auto written = write(arguments, *inputs, *findings); !written)
+  if (const auto written = write_findings(arguments, *inputs, *findings); !written)
     return tell(written.error());
   return findings->diagnosis.converged ? kDone : kAnswerIsNo;
 }
@@ -126,7 +127,7 @@ int diagnose_command(const Arguments& arguments) {
 }  // namespace
 
 void add_diagnose(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command = app.add_subcommand(
       "diagnose",
       "Where the gap between model and machine lies, what causes it, how far it closes");

@@ -29,7 +29,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& list) {
+std::string escaped_list(const std::vector<std::string>& list) {
   std::string text;
   for (const std::string& each : list) text += (text.empty() ? "" : ", ") + each;
   return escaped(text);
@@ -72,16 +72,16 @@ std::string cause_table(const std::vector<CauseResult>& causes) {
   std::string text = "<table><tr><th>cause<th>where<th>probability<th>size<th>cannot be told from";
   for (const CauseResult& each : causes) {
     if (each.probability < 0.01) continue;
-    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + joined(each.where) +
+    text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped_list(each.where) +
             (each.shape.empty() ? "" : " " + each.shape) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) + "<td>";
     if (each.visible > 0) text += printed("%.2g &times; noise", each.visible);
-    text += "<td class=muted>" + joined(each.confounded_with);
+    text += "<td class=muted>" + escaped_list(each.confounded_with);
   }
   return text + "</table>";
 }
 
-std::string parameter_table(const std::vector<CauseResult>& causes) {
+std::string cause_parameter_table(const std::vector<CauseResult>& causes) {
   std::string rows;
   for (const CauseResult& each : causes)
     for (const NamedValue& p : each.parameters) {
@@ -140,7 +140,7 @@ std::string next(const Diagnosis& diagnosis) {
   for (const NextStep& step : diagnosis.next)
     text += "<li>" + escaped(step.what) +
             printed(": then %.0f %% sure, of ", 100 * step.probability_after) +
-            joined(step.separates);
+            escaped_list(step.separates);
   return text + "</ul>";
 }
 
@@ -178,7 +178,7 @@ std::string shown_table(const char* title, const std::vector<ShownCause>& causes
     text += "<tr><td>" + effect_in_words(each.effect) + "<td>" + escaped(each.where) +
             printed("<td class=num>%.2f ", each.probability) + bar(each.probability, 6) +
             "<td class=num>" + sizes(each.parameters) + "<td class=muted>" +
-            joined(each.confounded_with);
+            escaped_list(each.confounded_with);
   return text + "</table>";
 }
 
@@ -218,7 +218,7 @@ std::string html_report(const Findings& findings) {
   text += "<h1>" + escaped(name) + "</h1><p class=why>" + escaped(diagnosis.why) + "</p>";
   text += "<h2>How far the gap closes</h2>" + gap_table(diagnosis);
   text += "<h2>What causes it</h2>" + cause_table(diagnosis.candidates);
-  text += parameter_table(diagnosis.candidates) + next(diagnosis);
+  text += cause_parameter_table(diagnosis.candidates) + next(diagnosis);
   if (findings.since) text += changed(*findings.since);
   if (findings.sim) text += differs(*findings.sim);
   text += "<h2>Where what calibration leaves lies</h2>" + where(diagnosis.where);

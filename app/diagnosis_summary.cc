@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-constexpr size_t kMostListed = 6;
+constexpr size_t kMostListedCauses = 6;
 
 std::string gap_lines(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
@@ -29,7 +29,7 @@ std::string gap_lines(const Diagnosis& diagnosis) {
 
 std::string cause_lines(const std::vector<CauseResult>& causes) {
   std::string text = "\n  probability  cause\n";
-  for (size_t i = 0; i < causes.size() && i < kMostListed; ++i) {
+  for (size_t i = 0; i < causes.size() && i < kMostListedCauses; ++i) {
     const CauseResult& each = causes[i];
     if (i > 2 && each.probability < 0.02) break;
     text += printed("  %9.3f    ", each.probability) + effect_in_words(each.effect) +
@@ -37,8 +37,8 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     if (!each.shape.empty()) text += " " + each.shape;
     if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
     text += "\n";
-    for (size_t p = 0; p < each.parameters.size() && each.probability > 0.5 && p < kMostListed;
-         ++p) {
+    for (size_t p = 0;
+         p < each.parameters.size() && each.probability > 0.5 && p < kMostListedCauses; ++p) {
       const NamedValue& v = each.parameters[p];
       text += printed("                 %s = %.3g ± %.1g %s (usual %.1g to %.1g)\n", v.name.c_str(),
                       v.value, v.sigma, v.unit.c_str(), v.usual_least, v.usual_most);

@@ -10,7 +10,6 @@ namespace {
 
 // Participants answer a newcomer at once; after the first, others have this long.
 constexpr Nanoseconds kOthers = kSecond / 2;
-constexpr Nanoseconds kTurn = kSecond / 10;  // how soon a signal is obeyed
 
 Result<std::optional<std::string>> only_one(const std::vector<std::string>& robots,
                                             const Whom& whom) {
@@ -49,7 +48,7 @@ Result<std::optional<std::string>> find_robot(const DdsParticipant& participant,
   Nanoseconds end = monotonic_now() + nanoseconds(whom.wait);
   std::vector<std::string> robots;
   for (Nanoseconds now = 0; (now = monotonic_now()) < end;) {
-    wakeup.wait(std::min(kTurn, end - now));
+    wakeup.wait(std::min(kSignalWait, end - now));
     if (told_to_stop()) return std::nullopt;
     auto heard = (*discovery)->heard();
     if (!heard) return tl::unexpected(heard.error());

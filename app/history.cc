@@ -11,15 +11,18 @@
 #include "app/session_export.h"
 #include "app/subcommand.h"
 #include "app/words.h"
+#include "io/json_parts.h"
 #include "io/robot_file.h"
 
 namespace selfcal {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::size_t kDrifting = 8;  // parameters shown
 constexpr int kAll = 1'000'000;       // more than any store has
 
-struct Arguments {
+struct HistoryArguments {
   std::string where;
   std::vector<std::string> exported;  // session, folder
   int newest = 20;
@@ -158,10 +161,10 @@ Result<void> print_damage(Store& store, std::FILE* out) {
   return {};
 }
 
-Result<void> print_events(Store& store, const Arguments& arguments) {
+Result<void> print_events(Store& store, const HistoryArguments& arguments) {
   const auto events = store.events(arguments.newest);
   if (!events) return tl::unexpected(events.error());
-  auto list = nlohmann::ordered_json::array();
+  auto list = Json::array();
   for (const EventRecord& event : *events) {
     if (arguments.json)
       list.push_back({{"unix_ms", event.unix_ms}, {"level", event.level}, {"text", event.text}});
@@ -174,8 +177,7 @@ Result<void> print_events(Store& store, const Arguments& arguments) {
   return {};
 }
 
-nlohmann::ordered_json record_of(const Past& past) {
-  using Json = nlohmann::ordered_json;
+Json record_of(const Past& past) {
   const auto ended = past.session.ended_ms > 0 ? Json(past.session.ended_ms) : Json(nullptr);
   Json json = {{"session", past.session.id},
                {"kind", past.session.kind},
@@ -201,11 +203,11 @@ nlohmann::ordered_json record_of(const Past& past) {
   return json;
 }
 
-Result<void> print_history(Store& store, const Arguments& arguments) {
+Result<void> print_history(Store& store, const HistoryArguments& arguments) {
   const auto past = read_past(store, arguments.newest);
   if (!past) return tl::unexpected(past.error());
   if (arguments.json) {
-    auto records = nlohmann::ordered_json::array();
+    auto records = Json::array();
     for (const Past& each : *past) records.push_back(record_of(each));
     std::printf("%s\n", line_of(records).c_str());
     return print_damage(store, stderr);
@@ -225,7 +227,7 @@ Result<void> print_history(Store& store, const Arguments& arguments) {
   return print_damage(store, stdout);
 }
 
-Result<void> print_export(Store& store, const Arguments& arguments, const Source& source) {
+Result<void> print_export(Store& store, const HistoryArguments& arguments, const Source& source) {
   const auto session = std::atoll(arguments.exported[0].c_str());
   const std::string& folder = arguments.exported[1];
   const auto rows = export_session(store, session, source.robot_text, folder);
@@ -242,7 +244,7 @@ Result<void> print_export(Store& store, const Arguments& arguments, const Source
   return {};
 }
 
-int history_command(const Arguments& arguments) {
+int history_command(const HistoryArguments& arguments) {
   if (!arguments.exported.empty()) {
     const std::string& id = arguments.exported[0];
     if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != std::string::npos)
@@ -261,7 +263,7 @@ int history_command(const Arguments& arguments) {
 }  // namespace
 
 void add_history(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<HistoryArguments>();
   CLI::App* command = app.add_subcommand(
       "history", "Show past sessions, drift and slots; a service may be running");
   command->add_option("WHERE", arguments->where,

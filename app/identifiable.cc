@@ -17,7 +17,7 @@
 namespace selfcal {
 namespace {
 
-struct Arguments {
+struct IdentifiableArguments {
   std::string subject, method;
   bool unknown = false, json = false;
   int count = 120;
@@ -35,7 +35,7 @@ struct Answered {
 
 /// The entry of a set of `method`; planes are known, through the endpoint at a random
 /// configuration, unless the user says otherwise.
-Node set_entry(const Robot& robot, const Arguments& arguments) {
+Node set_entry(const Robot& robot, const IdentifiableArguments& arguments) {
   Node node = Node::map();
   node.set("method", Node::of(arguments.method));
   if (arguments.unknown) return node;
@@ -54,7 +54,7 @@ Node set_entry(const Robot& robot, const Arguments& arguments) {
   return node;
 }
 
-Result<Answered> of_robot(const Arguments& arguments) {
+Result<Answered> of_robot(const IdentifiableArguments& arguments) {
   auto robot = load_robot(arguments.subject);
   if (!robot) return tl::unexpected(robot.error());
   Problems problems;
@@ -73,7 +73,7 @@ Result<Answered> of_robot(const Arguments& arguments) {
   return answered;
 }
 
-Result<Answered> of_data_set(const Arguments& arguments) {
+Result<Answered> of_data_set(const IdentifiableArguments& arguments) {
   auto loaded = load_data_set(arguments.subject);
   if (!loaded) return tl::unexpected(loaded.error());
   print_notices(*loaded);
@@ -104,7 +104,7 @@ Result<Answered> of_data_set(const Arguments& arguments) {
   return answered;
 }
 
-nlohmann::ordered_json to_json(const Answered& answered) {
+nlohmann::ordered_json answered_json(const Answered& answered) {
   const Robot& robot = *answered.robot;
   nlohmann::ordered_json json{
       {"robot", robot.name()},          {"method", answered.method},
@@ -128,7 +128,7 @@ nlohmann::ordered_json to_json(const Answered& answered) {
   return json;
 }
 
-void print(const Answered& answered) {
+void print_answered(const Answered& answered) {
   const Robot& robot = *answered.robot;
   std::printf("%s by %s, %d rows: %d of %zu parameters identifiable, %d own unknowns\n",
               robot.name().c_str(), answered.method.c_str(), answered.rows, answered.rank.total(),
@@ -150,7 +150,7 @@ void print(const Answered& answered) {
     std::printf("not excited: %s: %s\n", note.parameter.c_str(), note.text.c_str());
 }
 
-int identifiable_command(const Arguments& arguments) {
+int identifiable_command(const IdentifiableArguments& arguments) {
   const bool is_robot = !arguments.method.empty();
   if (!std::filesystem::exists(arguments.subject))
     return tell({kBadInput, arguments.subject + ": no such file or folder"});
@@ -168,9 +168,9 @@ int identifiable_command(const Arguments& arguments) {
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)
-    std::printf("%s\n", to_json(*answered).dump(1).c_str());
+    std::printf("%s\n", answered_json(*answered).dump(1).c_str());
   else
-    print(*answered);
+    print_answered(*answered);
   return kDone;
 }
 
@@ -182,7 +182,7 @@ std::vector<std::string> method_list() {
 }  // namespace
 
 void add_identifiable(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<IdentifiableArguments>();
   CLI::App* command = app.add_subcommand(
       "identifiable", "Which parameters a method, or the rows of a data set, can tell");
   command->add_option("ROBOT|DATASET", arguments->subject, "Robot file, or folder of a data set")

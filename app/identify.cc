@@ -18,7 +18,7 @@
 namespace selfcal {
 namespace {
 
-struct Arguments {
+struct IdentifyArguments {
   std::string data_set, out;
   Options options;
   std::vector<std::string> effects;
@@ -33,8 +33,8 @@ std::string unknown_name(const Robot& robot, const Options& options) {
   return {};
 }
 
-Result<void> write(const Arguments& arguments, const Robot& robot, const Solution& solution,
-                   const std::string& json) {
+Result<void> write_solution(const IdentifyArguments& arguments, const Robot& robot,
+                            const Solution& solution, const std::string& json) {
   const std::filesystem::path out(arguments.out);
   if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
@@ -50,7 +50,7 @@ bool is_asked(const Node& entry, const std::vector<std::string>& asked) {
 
 /// The robot of a data set with the effects that are asked for beside its own, or why not.
 tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
-    std::shared_ptr<const Robot> robot, const DataSet& data, const Arguments& arguments) {
+    std::shared_ptr<const Robot> robot, const DataSet& data, const IdentifyArguments& arguments) {
   if (arguments.effects.empty()) return robot;
   ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
   if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
@@ -65,7 +65,7 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   return corrected;
 }
 
-int identify_command(const Arguments& arguments) {
+int identify_command(const IdentifyArguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
   print_notices(*loaded);
@@ -93,7 +93,7 @@ int identify_command(const Arguments& arguments) {
   else
     std::fputs(summary(loaded->data, solution).c_str(), stdout);
   if (!arguments.out.empty())
-    if (const auto written = write(arguments, robot, solution, json); !written)
+    if (const auto written = write_solution(arguments, robot, solution, json); !written)
       return tell(written.error());
   return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
 }
@@ -101,7 +101,7 @@ int identify_command(const Arguments& arguments) {
 }  // namespace
 
 void add_identify(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<IdentifyArguments>();
   CLI::App* command =
       app.add_subcommand("identify", "Identify a robot's parameters from a data set");
   command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();

@@ -1,12 +1,10 @@
 #include "app/message_json.h"
 
-#include <cmath>
+#include "io/json_parts.h"
 
 namespace selfcal {
 
 using Json = nlohmann::ordered_json;
-
-Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -20,8 +20,6 @@ nlohmann::ordered_json to_json(const std::string& robot, std::int64_t unix_ms,
 /// "ok", "warn", "error" or "stale".
 std::string_view to_string(Health level);
 
-/// The number, or null when it is none.
-nlohmann::ordered_json finite(double number);
 /// One line of text; bytes that are no UTF-8 are replaced.
 std::string line_of(const nlohmann::ordered_json& json);
 

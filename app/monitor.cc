@@ -20,12 +20,11 @@
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kTurn = kSecond / 10;         // how soon a signal or a new size is obeyed
 constexpr Nanoseconds kRedraw = kSecond / 20;       // at most so often
 constexpr Nanoseconds kRest = 1200 * kMillisecond;  // for what follows a first status: health, once
                                                     // a second, and the last result
 
-struct Arguments {
+struct MonitorArguments {
   Whom whom;
   bool once = false;
 };
@@ -132,7 +131,7 @@ void watch_on_terminal(Listener& listener, Wakeup& wakeup) {
       drawn_for = size;
       news = false;
     }
-    wakeup.wait(news ? kRedraw : kTurn);
+    wakeup.wait(news ? kRedraw : kSignalWait);
   }
 }
 
@@ -149,7 +148,7 @@ void watch_in_lines(Listener& listener, Wakeup& wakeup, bool json) {
     listener.take(add);
     output.add_silence(listener.watched());
     if (!output.flush()) return;
-    wakeup.wait(kTurn);
+    wakeup.wait(kSignalWait);
   }
 }
 
@@ -161,7 +160,7 @@ void listen_once(Listener& listener, Wakeup& wakeup, Nanoseconds end) {
     listener.take([](const auto&) {});
     if (!had_status && watched.status) end = std::min(end, now + kRest);
     if (watched.status && watched.result && !watched.health.empty()) return;
-    wakeup.wait(std::min(kTurn, end - now));
+    wakeup.wait(std::min(kSignalWait, end - now));
   }
 }
 
@@ -190,7 +189,7 @@ int show_once(Listener& listener, Wakeup& wakeup, const Whom& whom) {
   return kDone;
 }
 
-int monitor_command(const Arguments& arguments) {
+int monitor_command(const MonitorArguments& arguments) {
   listen_to_signals();
   const Whom& whom = arguments.whom;
   const auto participant =
@@ -214,7 +213,7 @@ int monitor_command(const Arguments& arguments) {
 }  // namespace
 
 void add_monitor(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MonitorArguments>();
   CLI::App* command = app.add_subcommand("monitor", "Show what a service publishes, live");
   add_whom(*command, arguments->whom, "Most seconds to wait for a service to be found");
   command->add_flag("--once", arguments->once, "Show what there is, and end");

@@ -11,7 +11,7 @@ constexpr Nanoseconds kAwake = 200'000;  // before an edge: a sleep may end so m
 constexpr Nanoseconds kFrame = 200'000;  // the frames of a sample take so long: an edge goes first
 constexpr Nanoseconds kLeisure = 500'000;  // what is done between two frames takes so long
 constexpr Nanoseconds kLongestMark = 5 * kMillisecond;  // waited for a mark in one turn
-constexpr Nanoseconds kStep = 1000;                     // over which a speed is taken
+constexpr Nanoseconds kReadingStep = 1000;              // over which a speed is taken
 constexpr Nanoseconds kLate = 5'000;                    // after its moment an edge counts as missed
 constexpr int kMostPauses = 20;                         // for one edge; then it is driven late
 constexpr std::size_t kMostDriven = 1'000'000;
@@ -123,8 +123,9 @@ Result<void> PacedOutput::drive(const Edge& edge) {
   const Nanoseconds contact = driven.before - began_ - delay_;
   driven.label = machine_.label();
   driven.q = machine_.readings(contact);
-  driven.dq = (machine_.readings(contact + kStep) - machine_.readings(contact - kStep)) /
-              seconds(2 * kStep);
+  driven.dq =
+      (machine_.readings(contact + kReadingStep) - machine_.readings(contact - kReadingStep)) /
+      seconds(2 * kReadingStep);
   driven_.push_back(std::move(driven));
   return sent;
 }

@@ -29,7 +29,7 @@ namespace {
 
 constexpr int kMostSessions = 1'000'000;
 
-struct Arguments {
+struct ServeArguments {
   std::string config, truth, log = "info";
   bool simulate = false, check = false;
   int sessions = 0;  ///< 0: no end
@@ -117,13 +117,13 @@ void set_up_log(const std::string& level) {
   spdlog::set_default_logger(std::move(log));
 }
 
-void run(Service& service, int sessions) {
+void run_sessions(Service& service, int sessions) {
   while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions))
     service.turn();
   service.shut_down();
 }
 
-Result<void> serve(const Arguments& arguments, Config config) {
+Result<void> serve(const ServeArguments& arguments, Config config) {
   if (auto made = make_folder(config.state); !made) return made;
   const auto lock = Lock::take(config.state);
   if (!lock) return tl::unexpected(lock.error());
@@ -160,7 +160,7 @@ Result<void> serve(const Arguments& arguments, Config config) {
   const auto serve_with = [&](const Ports& ports) {
     Service service(config, ports, **messenger, *opened->store, journal, std::move(*models),
                     opened->set_aside);
-    run(service, arguments.sessions);
+    run_sessions(service, arguments.sessions);
     return Result<void>{};
   };
   if (!arguments.simulate) {
@@ -216,7 +216,7 @@ int show_plan(const Config& config) {
   return kDone;
 }
 
-int serve_command(const Arguments& arguments) {
+int serve_command(const ServeArguments& arguments) {
   auto config = load_config(arguments.config);
   if (!config) return tell(config.error());
   if (arguments.simulate && config->simulation.empty())
@@ -235,7 +235,7 @@ int serve_command(const Arguments& arguments) {
 }  // namespace
 
 void add_serve(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ServeArguments>();
   CLI::App* command = app.add_subcommand("serve", "Run the calibration service of one robot");
   command->add_option("CONFIG", arguments->config, "CONFIG.yaml (see man selfcal-config)")
       ->required();

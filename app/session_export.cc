@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string name_of(std::int64_t session) { return "session " + std::to_string(session); }
+std::string session_name(std::int64_t session) { return "session " + std::to_string(session); }
 
 Result<void> make_empty_folder(const fs::path& folder) {
   std::error_code error;
@@ -33,19 +33,19 @@ Result<std::string> nominal_text(Store& store, const SessionRecord& record,
   if (!result && given.empty()) return tl::unexpected(result.error());
   const bool stored = result && *result && !(*result)->robot_text.empty();
   if (!stored && given.empty())
-    return bad_input(name_of(record.id) +
+    return bad_input(session_name(record.id) +
                      ": no robot is stored with it (it is a check, or came to no result): give "
                      "CONFIG.yaml in place of the state's folder");
-  const auto robot = robot_of(stored ? (*result)->robot_text : given, name_of(record.id));
+  const auto robot = robot_of(stored ? (*result)->robot_text : given, session_name(record.id));
   if (!robot) return tl::unexpected(robot.error());
   if (model_hash(**robot) != record.model_hash)
-    return bad_input(name_of(record.id) + ": measured another robot than this one");
+    return bad_input(session_name(record.id) + ": measured another robot than this one");
   return robot_text(**robot, nominal_values(**robot));
 }
 
 /// dataset.yaml of a stored description.
 Result<std::string> description_text(const SessionRecord& record) {
-  const Result<Node> stored = parse_yaml(record.config, name_of(record.id));
+  const Result<Node> stored = parse_yaml(record.config, session_name(record.id));
   if (!stored) return tl::unexpected(stored.error());
   Node node = Node::map();
   node.set("robot", Node::of(std::string("robot.yaml")));
@@ -64,7 +64,8 @@ Result<Session> stored_session(Store& store, const SessionRecord& record) {
   Session session{record, std::move(*plan), std::move(*touches)};
   for (const StepRecord& step : session.plan)
     if (!good_touches(session, step.index).empty()) return session;
-  return bad_input(name_of(record.id) + ": has no rows (none were taken, or they were pruned)");
+  return bad_input(session_name(record.id) +
+                   ": has no rows (none were taken, or they were pruned)");
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ Result<int> export_session(Store& store, std::int64_t session, const std::string
   if (!meaning) return tl::unexpected(meaning.error());
   const auto robot_file = nominal_text(store, *record, robot_text);
   if (!robot_file) return tl::unexpected(robot_file.error());
-  const auto robot = robot_of(*robot_file, name_of(session));
+  const auto robot = robot_of(*robot_file, session_name(session));
   if (!robot) return tl::unexpected(robot.error());
   const DataSet data = rows_of(**robot, *kept, *meaning);
   const auto description = description_text(*record);

@@ -15,15 +15,15 @@
 namespace selfcal {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::string scenario, out, truth, live, touches;
 };
 
 constexpr std::size_t kMostRobotBytes = 4 << 20;
 
-Result<void> write(const Arguments& arguments, const Scenario& scenario,
-                   const std::filesystem::path& robot_path, const Robot& robot,
-                   const Simulated& made) {
+Result<void> write_simulated(const SimulateArguments& arguments, const Scenario& scenario,
+                             const std::filesystem::path& robot_path, const Robot& robot,
+                             const Simulated& made) {
   const Result<std::string> text = read_file(robot_path, kMostRobotBytes);
   if (!text) return tl::unexpected(text.error());
   const std::string robot_file = robot_path.filename().string();
@@ -36,7 +36,7 @@ Result<void> write(const Arguments& arguments, const Scenario& scenario,
 }
 
 /// Plays the machine until it is told to stop; then says what it was.
-int play_command(const Arguments& arguments) {
+int play_command(const SimulateArguments& arguments) {
   const auto config = load_config(arguments.live);
   if (!config) return tell(config.error());
   if (!arguments.touches.empty() && !paced(*config))
@@ -51,7 +51,7 @@ int play_command(const Arguments& arguments) {
   return written ? kDone : tell(written.error());
 }
 
-int simulate_command(const Arguments& arguments) {
+int simulate_command(const SimulateArguments& arguments) {
   if (arguments.live.empty() == arguments.out.empty())
     return wrong_usage("give --out FOLDER for a data set, or --live CONFIG to play the robot");
   if (arguments.live.empty() && !arguments.touches.empty())
@@ -72,7 +72,7 @@ int simulate_command(const Arguments& arguments) {
     std::fprintf(stderr, "selfcal: %s: %s\n", arguments.scenario.c_str(), made.unreached.c_str());
     return kAnswerIsNo;
   }
-  if (auto done = write(arguments, *scenario, robot_path, **robot, made); !done)
+  if (auto done = write_simulated(arguments, *scenario, robot_path, **robot, made); !done)
     return tell(done.error());
   int check = 0;
   for (const char each : made.data.rows.check) check += each;
@@ -84,7 +84,7 @@ int simulate_command(const Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app, int& status) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand("simulate", "Make a data set with a pretend machine");
   command
       ->add_option("SCENARIO", arguments->scenario,

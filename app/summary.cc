@@ -9,10 +9,10 @@
 namespace selfcal {
 namespace {
 
-constexpr size_t kMostListed = 12;
+constexpr size_t kMostListedItems = 12;
 constexpr double kAlone = 0.9;  ///< share of the scale that one length carries alone
 
-[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
+[[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
   char text[512];
   std::va_list arguments;
   va_start(arguments, format);
@@ -44,18 +44,18 @@ std::string first_line(const DataSet& data, const Solution& solution) {
   for (const SetResult& set : solution.sets)
     if (set.identifies) rows += set.rows;
   std::string text =
-      print("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
+      phrase("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
   const Figures& check = solution.residual.check;
   const Figures& fit = solution.residual.fit;
   if (check.rows > 0) {
-    text += print("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
-                  1e3 * check.rms_after, check.rows);
+    text += phrase("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
+                   1e3 * check.rms_after, check.rows);
     // False rows among those kept aside count; say what is left without them.
     if (check.rms_without_rejected < 0.9 * check.rms_after)
-      text += print(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+      text += phrase(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
   } else {
-    text += print("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
-                  1e3 * fit.rms_before, 1e3 * fit.rms_after);
+    text += phrase("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
+                   1e3 * fit.rms_before, 1e3 * fit.rms_after);
   }
   size_t told = 0;
   const std::vector<Note>& held = solution.gauge;
@@ -98,13 +98,13 @@ std::string parameter_table(const Solution& solution) {
     if (p.status != Status::identified) continue;
     const Shown unit = shown(p.parameter);
     const std::string name = full_name(p.parameter);
-    text += print(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
-                                                   : "  %-18s %9.4f  %9.4f %s\n",
-                  name.c_str(), unit.factor * (p.value - p.parameter.nominal),
-                  unit.factor * p.sigma, unit.unit);
+    text += phrase(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
+                                                    : "  %-18s %9.4f  %9.4f %s\n",
+                   name.c_str(), unit.factor * (p.value - p.parameter.nominal),
+                   unit.factor * p.sigma, unit.unit);
   }
   if (grouped + without_effect > 0)
-    text += print(
+    text += phrase(
         "  and %d grouped with these, %d without effect on these rows (result.json says "
         "which)\n",
         grouped, without_effect);
@@ -115,31 +115,32 @@ template <class Items, class Line>
 void list(std::string& text, const char* title, const Items& items, Line line) {
   if (items.empty()) return;
   text += std::string("\n") + title + "\n";
-  for (size_t i = 0; i < items.size() && i < kMostListed; ++i) text += "  " + line(items[i]) + "\n";
-  if (items.size() > kMostListed)
-    text += print("  and %d more\n", static_cast<int>(items.size() - kMostListed));
+  for (size_t i = 0; i < items.size() && i < kMostListedItems; ++i)
+    text += "  " + line(items[i]) + "\n";
+  if (items.size() > kMostListedItems)
+    text += phrase("  and %d more\n", static_cast<int>(items.size() - kMostListedItems));
 }
 
 std::string set_line(const SetResult& set) {
   std::string text = set.name + " (" + set.method + "): ";
   if (!set.identifies)
-    text += print("%d rows judge%s", set.rows,
-                  set.aligned ? ", own unknowns fitted to them (aligned)" : "");
+    text += phrase("%d rows judge%s", set.rows,
+                   set.aligned ? ", own unknowns fitted to them (aligned)" : "");
   else
-    text += print("%d of %d rows used", set.used, set.rows);
-  if (set.noise_sigma > 0) text += print(", noise %.3g um", 1e6 * set.noise_sigma);
-  if (set.noise_angle_sigma > 0) text += print(" and %.3g urad", 1e6 * set.noise_angle_sigma);
-  if (set.repeat_sigma >= 0) text += print(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
+    text += phrase("%d of %d rows used", set.used, set.rows);
+  if (set.noise_sigma > 0) text += phrase(", noise %.3g um", 1e6 * set.noise_sigma);
+  if (set.noise_angle_sigma > 0) text += phrase(" and %.3g urad", 1e6 * set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) text += phrase(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
   return text;
 }
 
 /// Of a length given: what hangs on it, and from what size on an error in it is noticed.
 std::string scale_line(const ScaleLength& each, bool alone) {
   std::string text =
-      print("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
-  text += alone ? ", alone" : print(" (%.0f %% of it)", 100 * each.share);
-  text += print(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
-  return text + print(
+      phrase("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
+  text += alone ? ", alone" : phrase(" (%.0f %% of it)", 100 * each.share);
+  text += phrase(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
+  return text + phrase(
                     "; the maker's lengths expect %.6g +- %.2g mm and notice an error from %.2g mm "
                     "on",
                     1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
@@ -163,10 +164,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "too large or too small.");
   else if (solution.endpoint.rms > data.target)
     steps.push_back(
-        print("The end position is known to %.3g mm only. Add rows that move the joints "
-              "named above%s.",
-              1e3 * solution.endpoint.rms,
-              solution.gauge.empty() ? "" : ", and a known length for the scale"));
+        phrase("The end position is known to %.3g mm only. Add rows that move the joints "
+               "named above%s.",
+               1e3 * solution.endpoint.rms,
+               solution.gauge.empty() ? "" : ", and a known length for the scale"));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
   else if (solution.converged)
@@ -194,8 +195,8 @@ std::string summary(const DataSet& data, const Solution& solution) {
   list(text, "Not excited by these rows", solution.unexcited,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Rows beyond the noise", solution.rejected, [](const Rejected& r) {
-    const std::string of_row = print("row %d (%s): ", r.row, r.set.c_str());
-    return std::isfinite(r.residual) ? of_row + print("%.3g mm, ", 1e3 * r.residual) + r.why
+    const std::string of_row = phrase("row %d (%s): ", r.row, r.set.c_str());
+    return std::isfinite(r.residual) ? of_row + phrase("%.3g mm, ", 1e3 * r.residual) + r.why
                                      : of_row + r.why;
   });
   list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });

@@ -34,7 +34,7 @@ Json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json to_json(const TrialCauseNamed& cause) {
+Json cause_json(const TrialCauseNamed& cause) {
   return {{"effect", cause.effect},
           {"where", cause.where},
           {"probability", cause.probability},
@@ -125,8 +125,8 @@ std::string answers_text(const TrialAnswerFile& file) {
   Json all = Json::object();
   for (const auto& [name, answer] : file.answers) {
     Json candidates = Json::array();
-    for (const TrialCauseNamed& each : answer.candidates) candidates.push_back(to_json(each));
-    all[name] = {{"verdict", to_json(answer.verdict)},
+    for (const TrialCauseNamed& each : answer.candidates) candidates.push_back(cause_json(each));
+    all[name] = {{"verdict", cause_json(answer.verdict)},
                  {"candidates", candidates},
                  {"closed_fraction", number_or_null(answer.closed)},
                  {"seconds", answer.seconds}};

@@ -21,7 +21,7 @@ TrialCauseNamed named(const CauseResult& cause) {
   return {cause.effect, cause.where, cause.probability, cause.confounded_with};
 }
 
-TrialAnswer answer_of(const Diagnosis& diagnosis) {
+TrialAnswer trial_answer(const Diagnosis& diagnosis) {
   TrialAnswer answer{named(diagnosis.verdict)};
   for (const CauseResult& each : diagnosis.candidates) answer.candidates.push_back(named(each));
   // A fit that is told the truth is told every cause, the verdict names the largest.
@@ -98,7 +98,7 @@ class Runner {
       return (*baseline)(robot, loaded->data);
     const Diagnosis diagnosis = diagnose(robot, loaded->data);
     if (!diagnosis.problem.empty()) return bad_input(name + ": " + diagnosis.problem);
-    return answer_of(diagnosis);
+    return trial_answer(diagnosis);
   }
 
   const RunArguments& arguments_;

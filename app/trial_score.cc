@@ -48,7 +48,7 @@ std::string value_of(const ScoreLine& line) {
 }
 
 /// The first one's table, with the values of the others in columns of their own.
-void print(const std::vector<Scored>& all) {
+void print_scores(const std::vector<Scored>& all) {
   const std::vector<ScoreLine>& lines = all.front().lines;
   std::printf("%-64s %9s", "", "trials");
   for (const Scored& each : all) std::printf("  %10s", each.by.c_str());
@@ -65,7 +65,7 @@ void print(const std::vector<Scored>& all) {
   }
 }
 
-Json to_json(const std::vector<Scored>& all) {
+Json scores_json(const std::vector<Scored>& all) {
   Json json = Json::object();
   const std::vector<ScoreLine>& lines = all.front().lines;
   for (size_t i = 0; i < lines.size(); ++i) {
@@ -100,9 +100,9 @@ int score_trials(const ScoreArguments& arguments) {
     all.push_back(*std::move(one));
   }
   if (arguments.json)
-    std::printf("%s\n", to_json(all).dump(1).c_str());
+    std::printf("%s\n", scores_json(all).dump(1).c_str());
   else
-    print(all);
+    print_scores(all);
   for (const ScoreLine& line : all.front().lines)
     if (line.value && !line.met()) return kAnswerIsNo;
   return kDone;

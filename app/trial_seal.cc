@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Json truth_json(const TrialLedger& truth) {
+Json ledger_json(const TrialLedger& truth) {
   Json where = Json::object();
   for (const auto& [effect, places] : truth.where) where[effect] = places;
   const auto text = [](const std::string& each) { return each.empty() ? Json() : Json(each); };
@@ -50,7 +50,7 @@ Node description(const MadeTrial& trial) {
   return node;
 }
 
-std::string name_of(int number) {
+std::string trial_name(int number) {
   std::string digits = std::to_string(number);
   if (digits.size() < 3) digits.insert(0, 3 - digits.size(), '0');
   return "t" + digits;
@@ -90,7 +90,7 @@ Result<Json> make_one(const TrialRequest& request, const fs::path& folder) {
   const NewDataSet written{description(trial), "arm.robot.yaml",
                            robot_text(*trial.robot, values(*trial.robot)), &trial.data};
   if (auto done = write_data_set(folder, written); !done) return tl::unexpected(done.error());
-  return truth_json(trial.truth);
+  return ledger_json(trial.truth);
 }
 
 int make_trials(const SealArguments& arguments) {
@@ -112,7 +112,7 @@ int make_trials(const SealArguments& arguments) {
     ProgressLine progress;
     for (request.number = 0; request.number < arguments.make; ++request.number) {
       progress.show("making trials", static_cast<double>(request.number) / arguments.make);
-      const std::string name = name_of(request.number);
+      const std::string name = trial_name(request.number);
       auto truth = make_one(request, out / name);
       if (!truth) return tell(truth.error());
       truths[name] = std::move(*truth);

@@ -24,16 +24,16 @@ std::string count_of_cells(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " cell" : " cells");
 }
 
-class Reader {
+class CsvReader {
  public:
-  Reader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row)
+  CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row)
       : path_(path), take_header_(header), take_row_(row) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
     csv_set_blk_size(&parser_, kBlock);
   }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
-  ~Reader() { csv_free(&parser_); }
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
+  ~CsvReader() { csv_free(&parser_); }
 
   Result<void> read() {
     Result<InputFile> file = InputFile::open(path_);
@@ -72,13 +72,13 @@ class Reader {
   }
 
   static void on_cell(void* cell, std::size_t size, void* self) {
-    Reader& reader = *static_cast<Reader*>(self);
+    CsvReader& reader = *static_cast<CsvReader*>(self);
     reader.buffer_.append(static_cast<const char*>(cell), size);
     reader.ends_.push_back(reader.buffer_.size());
   }
 
   static void on_row(int terminator, void* self) {
-    Reader& reader = *static_cast<Reader*>(self);
+    CsvReader& reader = *static_cast<CsvReader*>(self);
     const int before = std::exchange(reader.terminator_, terminator);
     if (reader.fault_) return;
     if (reader.ends_.empty()) {
@@ -153,7 +153,7 @@ class Reader {
 
 Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
                       const TakeRow& row) {
-  return Reader(path, header, row).read();
+  return CsvReader(path, header, row).read();
 }
 
 }  // namespace selfcal

@@ -12,15 +12,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMark = "# Simulated; `selfcal simulate` may replace this folder.\n";
+constexpr std::string_view kSimulatedMark =
+    "# Simulated; `selfcal simulate` may replace this folder.\n";
 
 /// True when dataset.yaml begins with the mark.
 bool is_marked(const fs::path& file) {
   Result<InputFile> input = InputFile::open(file);
   if (!input) return false;
-  std::string start(kMark.size(), '\0');
+  std::string start(kSimulatedMark.size(), '\0');
   const Result<std::size_t> got = input->read(start);
-  return got && *got == kMark.size() && start == kMark;
+  return got && *got == kSimulatedMark.size() && start == kSimulatedMark;
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ Result<void> check_replaceable(const fs::path& folder) {
 Result<void> write_data_set(const fs::path& folder, const NewDataSet& data_set) {
   if (auto free = check_replaceable(folder); !free) return free;
   if (auto made = make_folder(folder); !made) return made;
-  const std::string mark(kMark);
+  const std::string mark(kSimulatedMark);
   const std::pair<std::string, std::string> files[] = {
       {"dataset.yaml", mark},
       {data_set.robot_file, data_set.robot_text},

@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-struct Column {
+struct TextColumn {
   std::string name;
   std::function<std::string(int row)> cell;
 };
@@ -24,8 +24,8 @@ std::string quoted(const std::string& text) {
 }
 
 /// Adds the columns of `values` (rows x names) unless all of it is NaN or missing.
-void add_numbers(const Eigen::MatrixXd& values, const std::vector<std::string>& names,
-                 std::vector<Column>& columns) {
+void add_columns(const Eigen::MatrixXd& values, const std::vector<std::string>& names,
+                 std::vector<TextColumn>& columns) {
   if (values.size() == 0 || values.array().isNaN().all()) return;
   for (std::size_t i = 0; i < names.size(); ++i)
     columns.push_back({names[i], [&values, i](int row) {
@@ -34,7 +34,7 @@ void add_numbers(const Eigen::MatrixXd& values, const std::vector<std::string>& 
                        }});
 }
 
-void add_labels(const DataSet& data, std::vector<Column>& columns) {
+void add_labels(const DataSet& data, std::vector<TextColumn>& columns) {
   const Observations& rows = data.rows;
   columns.push_back({"set", [&](int row) { return quoted(data.sets[rows.set[row]].name); }});
   if (std::ranges::any_of(rows.group, [](int group) { return group >= 0; }))
@@ -50,10 +50,10 @@ void add_labels(const DataSet& data, std::vector<Column>& columns) {
                        }});
 }
 
-std::string line(const std::vector<Column>& columns,
-                 const std::function<std::string(const Column&)>& text) {
+std::string line(const std::vector<TextColumn>& columns,
+                 const std::function<std::string(const TextColumn&)>& text) {
   std::string line;
-  for (const Column& column : columns) line += (line.empty() ? "" : ",") + text(column);
+  for (const TextColumn& column : columns) line += (line.empty() ? "" : ",") + text(column);
   return line + "\n";
 }
 
@@ -61,28 +61,28 @@ std::string line(const std::vector<Column>& columns,
 
 std::string observations_text(const DataSet& data) {
   const Observations& rows = data.rows;
-  std::vector<Column> columns;
+  std::vector<TextColumn> columns;
   add_labels(data, columns);
   std::vector<std::string> joints;
   for (Eigen::Index j = 1; j <= rows.q.cols(); ++j) joints.push_back("q" + std::to_string(j));
-  add_numbers(rows.q, joints, columns);
-  add_numbers(rows.position, {"x", "y", "z"}, columns);
-  add_numbers(rows.orientation, {"qw", "qx", "qy", "qz"}, columns);
+  add_columns(rows.q, joints, columns);
+  add_columns(rows.position, {"x", "y", "z"}, columns);
+  add_columns(rows.orientation, {"qw", "qx", "qy", "qz"}, columns);
   const Eigen::MatrixXd distance = rows.distance;
-  add_numbers(distance, {"distance"}, columns);
-  add_numbers(rows.normal, {"nx", "ny", "nz"}, columns);
-  add_numbers(rows.wrench, {"fx", "fy", "fz", "tx", "ty", "tz"}, columns);
+  add_columns(distance, {"distance"}, columns);
+  add_columns(rows.normal, {"nx", "ny", "nz"}, columns);
+  add_columns(rows.wrench, {"fx", "fy", "fz", "tx", "ty", "tz"}, columns);
   std::vector<std::string> speeds;
   for (Eigen::Index j = 1; j <= rows.q.cols(); ++j) speeds.push_back("dq" + std::to_string(j));
-  add_numbers(rows.velocity, speeds, columns);
+  add_columns(rows.velocity, speeds, columns);
   const Eigen::MatrixXd temperature = rows.temperature, time = rows.time;
-  add_numbers(temperature, {"temperature"}, columns);
-  add_numbers(time, {"time"}, columns);
+  add_columns(temperature, {"temperature"}, columns);
+  add_columns(time, {"time"}, columns);
   const Eigen::MatrixXd noise_factor = rows.noise_factor;
-  if ((noise_factor.array() != 1).any()) add_numbers(noise_factor, {"noise_factor"}, columns);
-  std::string text = line(columns, [](const Column& column) { return column.name; });
+  if ((noise_factor.array() != 1).any()) add_columns(noise_factor, {"noise_factor"}, columns);
+  std::string text = line(columns, [](const TextColumn& column) { return column.name; });
   for (int row = 0; row < rows.rows(); ++row)
-    text += line(columns, [row](const Column& column) { return column.cell(row); });
+    text += line(columns, [row](const TextColumn& column) { return column.cell(row); });
   return text;
 }
 

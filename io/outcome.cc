@@ -12,7 +12,7 @@ constexpr std::array<std::string_view, 7> kDecisions = {
     "none", "rejected", "candidate", "applying", "applied", "replaced", "rolled-back"};
 
 template <class E, std::size_t n>
-std::optional<E> parse(const std::array<std::string_view, n>& names, std::string_view text) {
+std::optional<E> parse_name(const std::array<std::string_view, n>& names, std::string_view text) {
   for (std::size_t i = 0; i < n; ++i)
     if (names[i] == text) return static_cast<E>(i);
   return std::nullopt;
@@ -29,11 +29,11 @@ std::string_view to_string(ResultDecision decision) {
 }
 
 std::optional<ResultAnswer> parse_answer(std::string_view text) {
-  return parse<ResultAnswer>(kAnswers, text);
+  return parse_name<ResultAnswer>(kAnswers, text);
 }
 
 std::optional<ResultDecision> parse_decision(std::string_view text) {
-  return parse<ResultDecision>(kDecisions, text);
+  return parse_name<ResultDecision>(kDecisions, text);
 }
 
 }  // namespace selfcal

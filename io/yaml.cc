@@ -87,7 +87,7 @@ std::vector<YAML::Node> load(std::string_view text) {
 }
 
 /// May throw, as yaml-cpp does.
-Node parse(std::string_view text, Converter& converter) {
+Node parse_document(std::string_view text, Converter& converter) {
   const std::vector<YAML::Node> documents = load(text);
   Node whole;
   whole.place = converter.place(YAML::Mark::null_mark());
@@ -111,7 +111,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& name) {
   Problems& problems = converter.problems();
   if (!is_text(text)) return bad_input(name + ": expected UTF-8 text, got other bytes");
   try {
-    Node node = parse(text, converter);
+    Node node = parse_document(text, converter);
     if (!problems.any()) return node;
   } catch (const YAML::Exception& exception) {
     problems.add(converter.place(exception.mark), "is not valid YAML: " + exception.msg);

@@ -53,7 +53,7 @@ void write_text(const std::string& text, YAML::Emitter& out) {
 
 /// Writes `node`, whose own lines begin at column `indent` and whose first, if it is to hold all of
 /// it, begins `prefix` characters later. The outermost node (indent 0) is never put on one line.
-void write(const Node& node, std::size_t indent, std::size_t prefix, YAML::Emitter& out) {
+void write_node(const Node& node, std::size_t indent, std::size_t prefix, YAML::Emitter& out) {
   if (node.kind == Node::Kind::none) {
     out << YAML::Null;
     return;
@@ -71,7 +71,7 @@ void write(const Node& node, std::size_t indent, std::size_t prefix, YAML::Emitt
     }
     // Within a line that is short enough, everything is.
     const std::size_t inner = short_enough ? 1 : indent + kIndent;
-    write(node.items[i], inner, short_enough || !map ? 0 : node.keys[i].size() + 2, out);
+    write_node(node.items[i], inner, short_enough || !map ? 0 : node.keys[i].size() + 2, out);
   }
   out << (map ? YAML::EndMap : YAML::EndSeq);
 }
@@ -80,7 +80,7 @@ void write(const Node& node, std::size_t indent, std::size_t prefix, YAML::Emitt
 
 std::string write_yaml(const Node& node) {
   YAML::Emitter out;
-  write(node, 0, 0, out);
+  write_node(node, 0, 0, out);
   if (!out.good()) std::abort();  // an unbalanced tree of our own making
   return std::string(out.c_str(), out.size()) + "\n";
 }

@@ -12,22 +12,23 @@ namespace selfcal {
 namespace {
 
 template <class... Values>
-std::string print(const char* format, Values... values) {
+std::string sentence(const char* format, Values... values) {
   char text[240];
   std::snprintf(text, sizeof text, format, values...);
   return text;
 }
 
-struct Change {
+struct ParameterChange {
   const ParameterResult* parameter = nullptr;
   double change = 0;
 };
 
 /// The parameter that changes most against its limit, and the one that changes most against its
 /// sigma.
-std::pair<Change, Change> largest_changes(const ByPart& limits, const Robot& active,
-                                          const Solution& candidate) {
-  Change against_limit, against_sigma;
+std::pair<ParameterChange, ParameterChange> largest_changes(const ByPart& limits,
+                                                            const Robot& active,
+                                                            const Solution& candidate) {
+  ParameterChange against_limit, against_sigma;
   double most = 0, most_sigmas = 0;
   for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
     const ParameterResult& each = candidate.parameters[i];
@@ -73,8 +74,9 @@ Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solut
     return ruling;
   }
   if (!(ruling.check_after < (1 - accept.margin) * ruling.check_before)) {
-    ruling.why = print("the active parameters explain the check rows as well: %.4g mm against %.4g",
-                       1e3 * ruling.check_before, 1e3 * ruling.check_after);
+    ruling.why =
+        sentence("the active parameters explain the check rows as well: %.4g mm against %.4g",
+                 1e3 * ruling.check_before, 1e3 * ruling.check_after);
     return ruling;
   }
   const auto [limit, sigma] = largest_changes(accept.largest_change, active, candidate);
@@ -82,20 +84,20 @@ Ruling rule_on_result(const Acceptance& accept, const Robot& active, const Solut
     const double most = accept.largest_change.of(limit.parameter->parameter);
     if (std::abs(limit.change) > most) {
       ruling.why =
-          print("%s changes by %.4g m%s, more than the limit of %.4g: look at the robot first",
-                limit.parameter->parameter.name.c_str(), 1e3 * limit.change,
-                std::string(unit(limit.parameter->parameter.quantity)).c_str(), 1e3 * most);
+          sentence("%s changes by %.4g m%s, more than the limit of %.4g: look at the robot first",
+                   limit.parameter->parameter.name.c_str(), 1e3 * limit.change,
+                   std::string(unit(limit.parameter->parameter.quantity)).c_str(), 1e3 * most);
       return ruling;
     }
   }
   ruling.acceptable = true;
-  ruling.why =
-      print("check residual %.4g to %.4g mm", 1e3 * ruling.check_before, 1e3 * ruling.check_after);
+  ruling.why = sentence("check residual %.4g to %.4g mm", 1e3 * ruling.check_before,
+                        1e3 * ruling.check_after);
   if (sigma.parameter)
-    ruling.why += print("; surest change: %s by %.3g m%s (%.0f sigma)",
-                        sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
-                        std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
-                        std::abs(sigma.change) / sigma.parameter->sigma);
+    ruling.why += sentence("; surest change: %s by %.3g m%s (%.0f sigma)",
+                           sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
+                           std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
+                           std::abs(sigma.change) / sigma.parameter->sigma);
   return ruling;
 }
 
@@ -120,10 +122,10 @@ CheckRuling rule_on_check(const Solution& then, const Solution& now, double leas
   }
   ruling.p_value = f_exceeds(std::pow(ruling.rms / ruling.expected, 2), after.rows, before.rows);
   ruling.explained = ruling.p_value >= least_p;
-  ruling.why = print("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s", after.rows,
-                     1e3 * ruling.rms, 1e3 * ruling.expected, ruling.p_value,
-                     ruling.explained ? "the active model explains them"
-                                      : "the active model does not explain them");
+  ruling.why = sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s",
+                        after.rows, 1e3 * ruling.rms, 1e3 * ruling.expected, ruling.p_value,
+                        ruling.explained ? "the active model explains them"
+                                         : "the active model does not explain them");
   return ruling;
 }
 

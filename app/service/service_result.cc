@@ -29,7 +29,7 @@ Options held() {
   return options;
 }
 
-ResultAnswer answer_of(Answer verdict) {
+ResultAnswer stored_answer(Answer verdict) {
   switch (verdict) {
     case Answer::improved:
       return ResultAnswer::improved;
@@ -149,7 +149,7 @@ ResultRecord Service::result_of_check() {
 ResultRecord Service::result_of_candidate() const {
   const Ruling ruling = rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
   ResultRecord result = new_result();
-  result.answer = answer_of(ruling.answer);
+  result.answer = stored_answer(ruling.answer);
   result.decision = !ruling.acceptable         ? ResultDecision::rejected
                     : config_.accept.automatic ? ResultDecision::applying
                                                : ResultDecision::candidate;

@@ -12,7 +12,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
-constexpr double kStep = 1e-3;       // s, over which a speed is taken
+constexpr double kSpeedStep = 1e-3;  // s, over which a speed is taken
 
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
@@ -32,8 +32,9 @@ int group_index(Set& set, const std::string& name) {
 
 /// Speed of the endpoint along the way out of the contact (m/s).
 double speed_out(const Robot& robot, const Reading& reading, const Eigen::Vector3d& outward) {
-  const Eigen::VectorXd step = kStep / 2 * reading.dq;
-  return outward.dot(endpoint(robot, reading.q + step) - endpoint(robot, reading.q - step)) / kStep;
+  const Eigen::VectorXd step = kSpeedStep / 2 * reading.dq;
+  return outward.dot(endpoint(robot, reading.q + step) - endpoint(robot, reading.q - step)) /
+         kSpeedStep;
 }
 
 void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {

@@ -12,7 +12,7 @@
 namespace selfcal {
 namespace {
 
-constexpr std::size_t kMostBytes = 16 << 20;
+constexpr std::size_t kMostDbcBytes = 16 << 20;
 
 /// What one line holds, from left to right; once something is missing all else is.
 class Line {
@@ -203,7 +203,7 @@ Result<Dbc> parse_dbc(std::string_view text, const std::string& file) {
 }
 
 Result<Dbc> read_dbc(const std::filesystem::path& path) {
-  const auto text = read_file(path, kMostBytes);
+  const auto text = read_file(path, kMostDbcBytes);
   if (!text) return tl::unexpected(text.error());
   return parse_dbc(*text, path.string());
 }

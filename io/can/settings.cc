@@ -15,9 +15,9 @@ constexpr std::size_t kMostName = 15;
 // CiA 301: SYNC's predefined id.
 constexpr CanId kSync = {.value = 0x80, .extended = false};
 
-class Reader {
+class CanSettingsReader {
  public:
-  Reader(const Node& node, Problems& problems)
+  CanSettingsReader(const Node& node, Problems& problems)
       : f_(node, "encoders on CAN", problems), problems_(problems) {}
 
   CanSettings read(const std::vector<std::string>& joints, const std::filesystem::path& folder) {
@@ -98,7 +98,7 @@ class Reader {
 
 CanSettings read_can_settings(const Node& node, const std::vector<std::string>& joints,
                               const std::filesystem::path& folder, Problems& problems) {
-  return Reader(node, problems).read(joints, folder);
+  return CanSettingsReader(node, problems).read(joints, folder);
 }
 
 }  // namespace selfcal

@@ -25,7 +25,7 @@ tl::unexpected<Failure> can_failed(const std::string& interface, const std::stri
 }
 
 template <class T>
-bool set(const Descriptor& socket, int level, int option, const T& value) {
+bool set_option(const Descriptor& socket, int level, int option, const T& value) {
   return ::setsockopt(socket.handle(), level, option, &value, sizeof value) == 0;
 }
 
@@ -47,7 +47,7 @@ Result<Descriptor> make_socket(const std::string& interface, bool fd) {
   if (fd && !carries_fd)
     return device_failed("CAN interface " + interface + " carries no FD frames");
   // Also where none are meant: one with a joint's id is to be told, not to be missed.
-  if (carries_fd && !set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1))
+  if (carries_fd && !set_option(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1))
     return can_failed(interface, "FD frames", errno);
   return socket;
 }
@@ -72,10 +72,10 @@ bool set_filters(const Descriptor& socket, const CanReceiverOptions& options) {
   const can_err_mask_t errors = options.errors ? CAN_ERR_MASK : 0;
   return ::setsockopt(socket.handle(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                       static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
-         set(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
+         set_option(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
 }
 
-CanFrame to_plain(const canfd_frame& kernel, std::size_t size) {
+CanFrame frame_of(const canfd_frame& kernel, std::size_t size) {
   CanFrame frame;
   frame.error = (kernel.can_id & CAN_ERR_FLAG) != 0;
   frame.id.extended = !frame.error && (kernel.can_id & CAN_EFF_FLAG) != 0;
@@ -119,9 +119,9 @@ Result<CanReceiver> CanReceiver::open(const CanReceiverOptions& options) {
   auto socket = make_socket(options.interface, options.fd);
   if (!socket) return tl::unexpected(socket.error());
   // Filters first: nothing else may come in between.
-  if (!set_filters(*socket, options) || !set(*socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) ||
-      !set(*socket, SOL_SOCKET, SO_RXQ_OVFL, 1) ||
-      !set(*socket, SOL_SOCKET, SO_RCVBUF, options.receive_buffer))
+  if (!set_filters(*socket, options) || !set_option(*socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) ||
+      !set_option(*socket, SOL_SOCKET, SO_RXQ_OVFL, 1) ||
+      !set_option(*socket, SOL_SOCKET, SO_RCVBUF, options.receive_buffer))
     return can_failed(options.interface, "cannot be set up", errno);
   if (auto bound = bind_to(*socket, options.interface); !bound)
     return tl::unexpected(bound.error());
@@ -148,7 +148,7 @@ Result<CanRead> CanReceiver::read(std::vector<CanFrame>& out) {
     return can_failed(interface_, "cannot be read", errno);
   }
   for (int i = 0; i < count; ++i) {
-    CanFrame frame = to_plain(rooms[i].frame, messages[i].msg_len);
+    CanFrame frame = frame_of(rooms[i].frame, messages[i].msg_len);
     if (const auto dropped = read_control(messages[i].msg_hdr, frame)) {
       frame.lost = *dropped - dropped_;  // the kernel's count begins anew after 2^32 as ours does
       dropped_ = *dropped;

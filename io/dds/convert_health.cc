@@ -18,7 +18,7 @@ std::vector<dds::KeyValue> borrow_values(const HealthMessage& line) {
   return values;
 }
 
-HealthMessage to_plain(const dds::DiagnosticStatus& line, std::size_t prefix) {
+HealthMessage plain_line(const dds::DiagnosticStatus& line, std::size_t prefix) {
   HealthMessage plain{.name = std::string(line.name_).substr(prefix),
                       .level = static_cast<Health>(std::min<std::uint8_t>(line.level_, 3)),
                       .message = line.message_,
@@ -58,7 +58,7 @@ HealthReport to_plain(const dds::DiagnosticArray& array, const std::string& robo
     const auto& line = array.status_._buffer[i];
     if (!std::string_view(line.name_).starts_with(prefix)) continue;
     report.hardware_id = line.hardware_id_;
-    report.lines.push_back(to_plain(line, prefix.size()));
+    report.lines.push_back(plain_line(line, prefix.size()));
   }
   return report;
 }

@@ -8,7 +8,7 @@ namespace {
 using borrowed::text;
 
 // The generated structs' strings are never written to.
-char* text(std::string_view literal) { return const_cast<char*>(literal.data()); }
+char* literal_text(std::string_view literal) { return const_cast<char*>(literal.data()); }
 
 // The value among `all` that `word` is the name of.
 template <class E, std::size_t n>
@@ -18,8 +18,8 @@ std::optional<E> named(std::string_view word, const std::array<E, n>& all) {
   return std::nullopt;
 }
 
-constexpr std::array kKinds = {MoveKind::travel, MoveKind::touch, MoveKind::seat,
-                               MoveKind::retract};
+constexpr std::array kMoveKinds = {MoveKind::travel, MoveKind::touch, MoveKind::seat,
+                                   MoveKind::retract};
 constexpr std::array kOutcomes = {MotionReply::Outcome::accepted, MotionReply::Outcome::done,
                                   MotionReply::Outcome::stopped, MotionReply::Outcome::refused};
 constexpr std::string_view kStop = "stop";
@@ -30,7 +30,7 @@ const std::string kNothing;
 dds::MotionRequest borrow(const MotionRequest& request) {
   const auto size = static_cast<std::uint32_t>(request.q.size());
   return {.id_ = request.id,
-          .kind_ = text(to_string(request.kind)),
+          .kind_ = literal_text(to_string(request.kind)),
           .label_ = text(request.label),
           .q_ = {size, size, const_cast<double*>(request.q.data()), false},
           .speed_ = request.speed,
@@ -39,7 +39,7 @@ dds::MotionRequest borrow(const MotionRequest& request) {
 
 dds::MotionRequest borrow_stop(std::uint64_t id, const std::string& why) {
   return {.id_ = id,
-          .kind_ = text(kStop),
+          .kind_ = literal_text(kStop),
           .label_ = text(kNothing),
           .q_ = {},
           .speed_ = 0,
@@ -50,7 +50,7 @@ Result<RobotRequest> to_plain(const dds::MotionRequest& request) {
   RobotRequest plain{.stop = kStop == request.kind_, .why = request.why_, .move = {}};
   plain.move.id = request.id_;
   if (plain.stop) return plain;
-  const auto kind = named(request.kind_, kKinds);
+  const auto kind = named(request.kind_, kMoveKinds);
   if (!kind) return bad_input("\"" + std::string(request.kind_) + "\" is no kind of motion");
   plain.move.kind = *kind;
   plain.move.label = request.label_;
@@ -60,7 +60,8 @@ Result<RobotRequest> to_plain(const dds::MotionRequest& request) {
 }
 
 dds::MotionReply borrow(const MotionReply& reply) {
-  return {.id_ = reply.id, .outcome_ = text(to_string(reply.outcome)), .why_ = text(reply.why)};
+  return {
+      .id_ = reply.id, .outcome_ = literal_text(to_string(reply.outcome)), .why_ = text(reply.why)};
 }
 
 MotionReply to_plain(const dds::MotionReply& reply) {

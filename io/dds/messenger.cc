@@ -2,7 +2,7 @@
 //
 // Reader and writer of a topic do not find each other at the same moment, so the first reply to a
 // sender may find nobody. The sender says its command again then, with the same id; it is known
-// here for kRemembered and answered from memory.
+// here for kReplyRemembered and answered from memory.
 
 #include "io/dds/messenger.h"
 
@@ -15,8 +15,9 @@
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kRemembered = 60 * kSecond;
-constexpr std::size_t kMostKnown = 2 * DdsMessenger::kMostCommands * (kRemembered / kSecond + 1);
+constexpr Nanoseconds kReplyRemembered = 60 * kSecond;
+constexpr std::size_t kMostKnown =
+    2 * DdsMessenger::kMostCommands * (kReplyRemembered / kSecond + 1);
 
 }  // namespace
 
@@ -83,7 +84,7 @@ void DdsMessenger::take(std::vector<CommandMessage>& out) {
 // Whether the command has been taken before; its reply is repeated then.
 bool DdsMessenger::known(const CommandMessage& command) {
   const Nanoseconds now = monotonic_now();
-  std::erase_if(known_, [&](const Known& known) { return now - known.taken > kRemembered; });
+  std::erase_if(known_, [&](const Known& known) { return now - known.taken > kReplyRemembered; });
   for (const auto& known : known_) {
     if (command.id.empty() || known.reply.id != command.id) continue;
     if (known.replied) send(known.reply);

@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostConfigurationBytes = std::size_t{1} << 20;
 
 bool own(const std::string& interface) {
   return interface == "lo" || interface == "::1" || interface.starts_with("127.");
@@ -48,7 +48,7 @@ Result<DdsReach> dds_reach() {
   const char* given = std::getenv("CYCLONEDDS_URI");
   std::string text = given ? given : "";
   for (const std::string& path : found(text, "file://([^,<]+)")) {
-    const auto content = read_file(path, kMostBytes);
+    const auto content = read_file(path, kMostConfigurationBytes);
     if (!content) return tl::unexpected(content.error());
     text += *content;
   }

@@ -12,9 +12,9 @@
 namespace selfcal {
 namespace {
 
-class Dds final : public EncoderKind {
+class DdsEncoderKind final : public EncoderKind {
  public:
-  explicit Dds(DdsEncodersConfig config) : config_(std::move(config)) {}
+  explicit DdsEncoderKind(DdsEncodersConfig config) : config_(std::move(config)) {}
 
   StampedBy stamped_by() const override { return StampedBy::sender; }
   std::string source() const override { return "topic " + config_.topic; }
@@ -37,7 +37,7 @@ EncoderKindPtr make_dds(const EncoderEntry& entry) {
   config.topic = fields.text("topic", config.topic);
   config.joints = entry.joints;
   fields.refuse_unknown();
-  return std::make_shared<Dds>(std::move(config));
+  return std::make_shared<DdsEncoderKind>(std::move(config));
 }
 
 }  // namespace selfcal

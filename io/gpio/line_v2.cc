@@ -62,7 +62,7 @@ std::vector<std::string> paths_of(const std::string& chip) {
 }
 
 /// The first chip that is the one asked for and has the line; nothing, with errno, otherwise.
-std::optional<Found> find(const GpioSettings& settings) {
+std::optional<Found> find_line(const GpioSettings& settings) {
   int error = ENOENT;
   for (const std::string& path : paths_of(settings.chip)) {
     Owned<gpiod_chip> chip(gpiod_chip_open(path.c_str()));
@@ -122,7 +122,7 @@ struct GpioLine::Handle {
 };
 
 Result<GpioLine> GpioLine::open(const GpioSettings& settings) {
-  const auto found = find(settings);
+  const auto found = find_line(settings);
   if (!found) return tl::make_unexpected(line_failure(settings, errno));
   auto request = ask_for(*found, settings);
   Owned<gpiod_edge_event_buffer> buffer(gpiod_edge_event_buffer_new(EdgeWatch::kQueue));

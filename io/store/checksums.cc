@@ -16,7 +16,7 @@ void put_number(std::string& out, std::uint64_t value) {
   for (int shift = 0; shift < 64; shift += 8) out += static_cast<char>((value >> shift) & 255);
 }
 
-std::string_view bytes_of(sqlite3_value* value) {
+std::string_view content_of(sqlite3_value* value) {
   const void* bytes = sqlite3_value_blob(value);  // before the size: SQLite may convert
   const auto size = static_cast<std::size_t>(sqlite3_value_bytes(value));
   return bytes == nullptr ? std::string_view()
@@ -35,7 +35,7 @@ void put_column(std::string& out, sqlite3_value* value) {
     case SQLITE_NULL:
       return;
     default:
-      const std::string_view bytes = bytes_of(value);
+      const std::string_view bytes = content_of(value);
       put_number(out, bytes.size());
       out += bytes;
   }
@@ -53,7 +53,7 @@ void checksum(sqlite3_context* context, int count, sqlite3_value** values) {
 
 void sha256(sqlite3_context* context, int, sqlite3_value** values) {
   if (sqlite3_value_type(values[0]) == SQLITE_NULL) return sqlite3_result_null(context);
-  const std::string hex = sha256_hex(bytes_of(values[0]));
+  const std::string hex = sha256_hex(content_of(values[0]));
   sqlite3_result_text(context, hex.data(), static_cast<int>(hex.size()), SQLITE_TRANSIENT);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMark = "selfcal.made";
+constexpr const char* kMadeMark = "selfcal.made";
 constexpr const char* kLog = "selfcal.db-wal";
 /// The service writes it next to its store; stores of before had no mark.
 constexpr const char* kExport = "active.robot.yaml";
@@ -51,7 +51,7 @@ bool has_store(const fs::path& folder) {
 
 bool had_store(const fs::path& folder) {
   std::error_code error;
-  return fs::exists(folder / kMark, error);
+  return fs::exists(folder / kMadeMark, error);
 }
 
 std::string lost_store(const fs::path& folder) {
@@ -109,7 +109,7 @@ void remove_unnamed_store(const fs::path& folder) {
 }
 
 Result<std::unique_ptr<StoreMark>> StoreMark::open(const fs::path& folder) {
-  const fs::path path = folder / kMark;
+  const fs::path path = folder / kMadeMark;
   if (!had_store(folder)) {
     if (auto made = write_file_atomically(path, kMade + line_of(0)); !made) {
       return tl::unexpected(made.error());
@@ -129,7 +129,7 @@ void StoreMark::put(std::int64_t changes) const {
 }
 
 std::int64_t marked_changes(const fs::path& folder) {
-  const auto text = read_file(folder / kMark, 4096);
+  const auto text = read_file(folder / kMadeMark, 4096);
   if (!text || text->size() < kMade.size()) return 0;
   const std::string line = text->substr(kMade.size());
   const std::int64_t changes = std::atoll(line.c_str());

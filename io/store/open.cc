@@ -76,7 +76,7 @@ Result<void> refuse_newer(sqlite3* database) {
                                        std::to_string(*found) + " of the store)");
 }
 
-Result<void> set(sqlite3* database, std::initializer_list<const char*> settings) {
+Result<void> apply_settings(sqlite3* database, std::initializer_list<const char*> settings) {
   for (const char* setting : settings) {
     if (auto done = sqlite::run(database, setting); !done) return tl::unexpected(done.error());
   }
@@ -84,9 +84,10 @@ Result<void> set(sqlite3* database, std::initializer_list<const char*> settings)
 }
 
 Result<void> configure(sqlite3* database) {
-  auto done = set(database, {"PRAGMA synchronous = FULL", "PRAGMA foreign_keys = ON",
-                             "PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON",
-                             "PRAGMA journal_size_limit = 8388608"});
+  auto done =
+      apply_settings(database, {"PRAGMA synchronous = FULL", "PRAGMA foreign_keys = ON",
+                                "PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON",
+                                "PRAGMA journal_size_limit = 8388608"});
   if (!done) return done;
   const Result<std::string> mode = sqlite::text(database, "PRAGMA journal_mode = WAL");
   if (!mode) return tl::unexpected(mode.error());
@@ -106,7 +107,8 @@ Result<std::int64_t> make_store(const fs::path& folder, sqlite3* damaged) {
   sqlite3* database = fresh->get();
   // auto_vacuum first: it holds only for a file that has nothing in it. EXTRA: the folder is synced
   // once the journal is gone.
-  if (auto done = set(database, {"PRAGMA auto_vacuum = INCREMENTAL", "PRAGMA synchronous = EXTRA"});
+  if (auto done = apply_settings(
+          database, {"PRAGMA auto_vacuum = INCREMENTAL", "PRAGMA synchronous = EXTRA"});
       !done) {
     return tl::unexpected(done.error());
   }

@@ -33,7 +33,7 @@ std::int64_t plus(std::int64_t a, std::int64_t b) {
 
 /// Reads what the put functions wrote; once something does not fit, `good` is false and all that
 /// follows is zero.
-struct Reader {
+struct PackedReader {
   std::string_view rest;
   bool good = true;
 
@@ -99,7 +99,7 @@ void put_counts(std::string& out, const EncoderSample& sample, const EncoderSamp
   for (std::size_t i = 0; i < joints; ++i) put_z(out, minus(sample.counts[i], base.counts[i]));
 }
 
-void get_counts(Reader& in, EncoderSample& sample, const EncoderSample& base) {
+void get_counts(PackedReader& in, EncoderSample& sample, const EncoderSample& base) {
   sample.joints = in.joints();
   for (std::size_t i = 0; i < static_cast<std::size_t>(sample.joints); ++i) {
     sample.counts[i] = plus(in.z(), base.counts[i]);
@@ -127,7 +127,7 @@ std::string pack_stamps(const TouchRecord& touch) {
 }
 
 bool unpack_stamps(std::string_view packed, TouchRecord& touch) {
-  Reader in{packed};
+  PackedReader in{packed};
   touch.before = touch.after = EncoderSample{};
   touch.before.time = in.z();
   touch.edge = plus(in.z(), touch.before.time);
@@ -163,7 +163,7 @@ std::string pack_labels(const std::vector<StepRecord>& plan) {
 }
 
 bool unpack_labels(std::string_view packed, std::vector<StepRecord>& plan) {
-  Reader in{packed};
+  PackedReader in{packed};
   plan.assign(in.size(4), {});
   std::vector<std::string> names(in.size(1));
   for (std::string& name : names) name = in.s();
@@ -194,7 +194,7 @@ std::string pack_postures(const std::vector<StepRecord>& plan) {
 }
 
 bool unpack_postures(std::string_view packed, std::vector<StepRecord>& plan) {
-  Reader in{packed};
+  PackedReader in{packed};
   for (StepRecord& step : plan) {
     for (std::vector<double>* q : {&step.start, &step.touch, &step.end}) {
       q->resize(in.size(8));

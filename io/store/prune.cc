@@ -18,26 +18,26 @@ namespace {
   " UNION SELECT coalesce(session, 0) FROM slot) ORDER BY session"
 
 /// A kind of thing to forget: the ids that have it, oldest first, and what forgets that of id ?1.
-struct Kind {
+struct Forgettable {
   const char* oldest_first;
   const char* forget;
   const char* forget_too;
 };
 
-constexpr std::array kKinds{
-    Kind{"SELECT id FROM event ORDER BY id", "DELETE FROM event WHERE id = ?1", nullptr},
-    Kind{"SELECT session FROM json WHERE " SELFCAL_MAY_GO, "DELETE FROM json WHERE session = ?1",
-         nullptr},
+constexpr std::array kForgettable{
+    Forgettable{"SELECT id FROM event ORDER BY id", "DELETE FROM event WHERE id = ?1", nullptr},
+    Forgettable{"SELECT session FROM json WHERE " SELFCAL_MAY_GO,
+                "DELETE FROM json WHERE session = ?1", nullptr},
     // Postures and touches put aside go together, so that the first tells of both.
-    Kind{"SELECT session FROM posture WHERE " SELFCAL_MAY_GO,
-         "DELETE FROM posture WHERE session = ?1",
-         "DELETE FROM touch WHERE id >= ?1 << 20 AND id < (?1 + 1) << 20 AND outcome = 1"},
-    Kind{"SELECT session FROM plan WHERE " SELFCAL_MAY_GO,
-         "DELETE FROM touch WHERE id >= ?1 << 20 AND id < (?1 + 1) << 20",
-         "DELETE FROM plan WHERE session = ?1"},
+    Forgettable{"SELECT session FROM posture WHERE " SELFCAL_MAY_GO,
+                "DELETE FROM posture WHERE session = ?1",
+                "DELETE FROM touch WHERE id >= ?1 << 20 AND id < (?1 + 1) << 20 AND outcome = 1"},
+    Forgettable{"SELECT session FROM plan WHERE " SELFCAL_MAY_GO,
+                "DELETE FROM touch WHERE id >= ?1 << 20 AND id < (?1 + 1) << 20",
+                "DELETE FROM plan WHERE session = ?1"},
 };
 
-Result<void> forget(sqlite3* database, const Kind& kind, std::int64_t id) {
+Result<void> forget(sqlite3* database, const Forgettable& kind, std::int64_t id) {
   for (const char* sql : {kind.forget, kind.forget_too}) {
     if (sql == nullptr) continue;
     if (auto done = sqlite::run(database, sql, {id}); !done) return tl::unexpected(done.error());
@@ -58,7 +58,7 @@ Result<std::int64_t> bytes_used(sqlite3* database) {
 }
 
 /// Whether it fits after forgetting what there is of `kind`, or a part of it.
-Result<bool> forget_until(sqlite3* database, const Kind& kind, std::int64_t most_bytes) {
+Result<bool> forget_until(sqlite3* database, const Forgettable& kind, std::int64_t most_bytes) {
   const auto oldest_first =
       sqlite::all(sqlite::Statement::prepare(database, kind.oldest_first),
                   [](const sqlite::Statement& row) { return row.integer(0); });
@@ -77,7 +77,7 @@ Result<bool> forget_until(sqlite3* database, const Kind& kind, std::int64_t most
 Result<void> Store::prune(std::int64_t most_bytes) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  for (const Kind& kind : kKinds) {
+  for (const Forgettable& kind : kForgettable) {
     const Result<bool> fits = forget_until(database_, kind, most_bytes);
     if (!fits) return tl::unexpected(fits.error());
     if (*fits) break;

@@ -12,24 +12,24 @@ namespace {
 using Changes = std::initializer_list<const char*>;
 
 /// A slot as it stands: whose it is, and what is damaged.
-struct Found {
+struct StoredSlot {
   bool there = false;
   std::int64_t session = 0;
   std::string damaged;
 };
 
-Result<Found> find(sqlite3* database, Slot slot) {
+Result<StoredSlot> find_slot(sqlite3* database, Slot slot) {
   auto row = sqlite::Statement::prepare(
       database, "SELECT session, " SELFCAL_DAMAGED_SLOT " FROM slot WHERE slot = ?1",
       {static_cast<std::int64_t>(slot)});
   if (!row) return tl::unexpected(row.error());
   const Result<bool> there = row->step();
   if (!there) return tl::unexpected(there.error());
-  if (!*there) return Found{};
-  return Found{true, row->integer(0), row->text(1)};
+  if (!*there) return StoredSlot{};
+  return StoredSlot{true, row->integer(0), row->text(1)};
 }
 
-tl::unexpected<Failure> damaged(sqlite3* database, const Found& slot) {
+tl::unexpected<Failure> damaged(sqlite3* database, const StoredSlot& slot) {
   return sqlite::failure(database, slot.damaged + ": damaged, and not used");
 }
 
@@ -76,7 +76,7 @@ Result<std::optional<SlotRecord>> Store::slot(Slot slot) {
 Result<void> Store::accept(std::int64_t unix_ms) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  const Result<Found> candidate = find(database_, Slot::candidate);
+  const Result<StoredSlot> candidate = find_slot(database_, Slot::candidate);
   if (!candidate) return tl::unexpected(candidate.error());
   if (!candidate->there) return sqlite::failure(database_, "there is no candidate to accept");
   if (!candidate->damaged.empty()) return damaged(database_, *candidate);
@@ -97,7 +97,7 @@ Result<void> Store::accept(std::int64_t unix_ms) {
 Result<void> Store::reject(std::int64_t unix_ms) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  const Result<Found> candidate = find(database_, Slot::candidate);
+  const Result<StoredSlot> candidate = find_slot(database_, Slot::candidate);
   if (!candidate) return tl::unexpected(candidate.error());
   if (!candidate->there) return sqlite::failure(database_, "there is no candidate to reject");
   if (auto aside = set_slots_aside(database_, unix_ms); !aside) {
@@ -116,8 +116,8 @@ Result<void> Store::reject(std::int64_t unix_ms) {
 Result<void> Store::roll_back(std::int64_t unix_ms) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  const Result<Found> active = find(database_, Slot::active);
-  const Result<Found> previous = find(database_, Slot::previous);
+  const Result<StoredSlot> active = find_slot(database_, Slot::active);
+  const Result<StoredSlot> previous = find_slot(database_, Slot::previous);
   if (!active || !previous) return tl::unexpected((!active ? active : previous).error());
   if (!active->there) {
     return sqlite::failure(database_,

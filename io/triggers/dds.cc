@@ -11,9 +11,9 @@
 namespace selfcal {
 namespace {
 
-class Dds final : public TriggerKind {
+class DdsTriggerKind final : public TriggerKind {
  public:
-  explicit Dds(DdsTriggerConfig config) : config_(std::move(config)) {}
+  explicit DdsTriggerKind(DdsTriggerConfig config) : config_(std::move(config)) {}
 
   StampedBy stamped_by() const override { return StampedBy::sender; }
   std::string source() const override { return "topic " + config_.topic; }
@@ -35,7 +35,7 @@ TriggerKindPtr make_dds(const TriggerEntry& entry) {
   DdsTriggerConfig config;
   config.topic = fields.text("topic", "selfcal/" + ros_name(entry.robot) + "/trigger");
   fields.refuse_unknown();
-  return std::make_shared<Dds>(std::move(config));
+  return std::make_shared<DdsTriggerKind>(std::move(config));
 }
 
 }  // namespace selfcal
