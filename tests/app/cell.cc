@@ -17,9 +17,11 @@ constexpr std::chrono::minutes kLongest(2);
 
 }  // namespace
 
-Ran run_selfcal(const std::string& arguments) {
+Ran run_selfcal(const std::string& arguments, bool quiet) {
   Ran ran;
-  FILE* pipe = popen((std::string(SELFCAL_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = popen(
+      (std::string(SELFCAL_BINARY) + " " + arguments + (quiet ? " 2>/dev/null" : " 2>&1")).c_str(),
+      "r");
   std::array<char, 4096> buffer;
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
     ran.out.append(buffer.data(), n);

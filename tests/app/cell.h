@@ -18,8 +18,8 @@ struct Ran {
   std::string out;  ///< standard output and error
 };
 
-/// Runs the program to its end; `arguments` as a shell reads them.
-Ran run_selfcal(const std::string& arguments);
+/// Runs the program to its end; `arguments` as a shell reads them. `quiet`: without standard error.
+Ran run_selfcal(const std::string& arguments, bool quiet = false);
 
 /// A folder with the example cell, in a DDS domain of the test's own on the loopback interface.
 class CellTest : public ::testing::Test {

@@ -12,7 +12,7 @@
 namespace selfcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -36,8 +36,8 @@ class DamagedStore : public CellTest {
   }
 
   void change(const std::string& sql) { with_sqlite(state / "selfcal.db", sql); }
-  static std::string line(const json& health, const std::string& name) {
-    for (const json& each : health["lines"])
+  static std::string line(const Json& health, const std::string& name) {
+    for (const Json& each : health["lines"])
       if (each["name"] == name) return each.dump();
     return "";
   }
@@ -51,8 +51,8 @@ TEST_F(DamagedStore, IsSaidOnEveryChannelAndThePreviousParametersAreUsed) {
       " WHERE id = (SELECT robot FROM slot WHERE slot = 0)");
   const auto service = serve("rx90");
 
-  const json health = heard([](const json& m) { return m["topic"] == "health"; });
-  const json status = heard([](const json& m) { return m["topic"] == "status"; });
+  const Json health = heard([](const Json& m) { return m["topic"] == "health"; });
+  const Json status = heard([](const Json& m) { return m["topic"] == "status"; });
 
   EXPECT_EQ(status["active"], "session 1");
   EXPECT_THAT(line(health, "selfcal: store"),
@@ -77,7 +77,7 @@ TEST_F(DamagedStore, OfNoBytesIsNoNewRobot) {
   EXPECT_THAT(run_selfcal("history " + state.string()).out, HasSubstr("was emptied"));
   const auto service = serve("rx90");
 
-  const json health = heard([](const json& m) { return m["topic"] == "health"; });
+  const Json health = heard([](const Json& m) { return m["topic"] == "health"; });
 
   EXPECT_THAT(line(health, "selfcal: store"),
               AllOf(HasSubstr("\"error\""), HasSubstr("was emptied (0 bytes)")));

@@ -28,7 +28,9 @@ Diagnosis named(const std::vector<bool>& found) {
   return diagnosis;
 }
 
-std::string page(const Diagnosis& diagnosis) { return html_report({"arm", diagnosis, {}, {}}); }
+std::string report_page(const Diagnosis& diagnosis) {
+  return html_report({"arm", diagnosis, {}, {}});
+}
 
 TEST(DiagnosisSummary, TellsWhatIsNamedFromEverythingFound) {
   const Diagnosis diagnosis = named({true, true, false, false, false});
@@ -38,10 +40,11 @@ TEST(DiagnosisSummary, TellsWhatIsNamedFromEverythingFound) {
   EXPECT_THAT(summary(diagnosis),
               HasSubstr("62 % of what calibration leaves is closed by what is named (55 to 66 %), "
                         "89 % by everything found (88 to 93 %)\n"));
-  EXPECT_THAT(page(diagnosis),
+  EXPECT_THAT(report_page(diagnosis),
               HasSubstr("<td>with joint compliance at j2 and j3 (named)<td class=num>0.64 mm"));
-  EXPECT_THAT(page(diagnosis), HasSubstr("<td>with everything found (5 effects, 3 of them not "
-                                         "named)<td class=num>0.38 mm"));
+  EXPECT_THAT(report_page(diagnosis),
+              HasSubstr("<td>with everything found (5 effects, 3 of them not "
+                        "named)<td class=num>0.38 mm"));
 }
 
 TEST(DiagnosisSummary, SaysThatNothingElseWasFoundWhereAllOfItIsNamed) {
@@ -49,7 +52,7 @@ TEST(DiagnosisSummary, SaysThatNothingElseWasFoundWhereAllOfItIsNamed) {
   EXPECT_THAT(summary(diagnosis), HasSubstr("(named; nothing else was found); noise"));
   EXPECT_THAT(summary(diagnosis), HasSubstr("calibration leaves is closed (55 to 66 %)\n"));
   EXPECT_THAT(summary(diagnosis), Not(HasSubstr("everything found")));
-  EXPECT_THAT(page(diagnosis), Not(HasSubstr("everything found")));
+  EXPECT_THAT(report_page(diagnosis), Not(HasSubstr("everything found")));
 }
 
 TEST(DiagnosisSummary, NamesNothingWhereTheVerdictIsUnknown) {

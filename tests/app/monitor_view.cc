@@ -79,14 +79,14 @@ Watched watched() {
   return all;
 }
 
-std::string text_of(const std::vector<Line>& lines) {
+std::string picture_text(const std::vector<Line>& lines) {
   std::string text;
   for (const Line& line : lines) text += line.text + "\n";
   return text;
 }
 
 TEST(MonitorView, ShowsAllThatIsKnownOfARunningSession) {
-  const std::string text = text_of(picture(watched(), kNow, 120, 50));
+  const std::string text = picture_text(picture(watched(), kNow, 120, 50));
 
   EXPECT_THAT(text, StartsWith("rx90      collecting, touch, session 3 (full)\n"));
   EXPECT_THAT(text, HasSubstr("the robot may move slowly towards the surface"));
@@ -120,8 +120,8 @@ TEST(MonitorView, FitsEverySizeAndKeepsWhatMatters) {
       for (const Line& line : lines) EXPECT_LE(characters(line.text), columns);
       EXPECT_THAT(lines[0].text, StartsWith("rx90"));
       if (rows < 5) continue;
-      EXPECT_THAT(text_of(lines), HasSubstr("ERROR")) << rows;
-      EXPECT_THAT(text_of(lines), HasSubstr("Progress")) << rows;
+      EXPECT_THAT(picture_text(lines), HasSubstr("ERROR")) << rows;
+      EXPECT_THAT(picture_text(lines), HasSubstr("Progress")) << rows;
     }
 }
 
@@ -163,7 +163,7 @@ TEST(MonitorView, HasNoBarWhereNoSessionIsUnderWay) {
   for (const char* state : {"idle", "planning", "awaiting-acceptance"}) {
     Watched all = watched();
     all.status->state = state;
-    EXPECT_THAT(text_of(picture(all, kNow, 120, 50)), Not(HasSubstr("Progress"))) << state;
+    EXPECT_THAT(picture_text(picture(all, kNow, 120, 50)), Not(HasSubstr("Progress"))) << state;
   }
 }
 

@@ -1,44 +1,18 @@
 // The program as its user runs it: exit statuses, files written.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
+
+#include "tests/app/cell.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
-
-struct Ran {
-  int status = -1;
-  std::string out;
-};
-
-/// Runs the program; standard error is joined to its output unless `quiet`.
-Ran selfcal_run(const std::string& arguments, bool quiet = false) {
-  Ran ran;
-  FILE* pipe = popen(
-      (std::string(SELFCAL_BINARY) + " " + arguments + (quiet ? " 2>/dev/null" : " 2>&1")).c_str(),
-      "r");
-  std::array<char, 4096> buffer;
-  while (const size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    ran.out.append(buffer.data(), n);
-  ran.status = WEXITSTATUS(pclose(pipe));
-  return ran;
-}
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream stream;
-  stream << file.rdbuf();
-  return stream.str();
-}
 
 class Program : public testing::Test {
  protected:
@@ -49,7 +23,7 @@ class Program : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   std::string simulated() {
-    const Ran ran = selfcal_run("simulate " SELFCAL_SOURCE_DIR
+    const Ran ran = run_selfcal("simulate " SELFCAL_SOURCE_DIR
                                 "/app/examples/rx90_planes.scenario.yaml --out " +
                                 (folder_ / "data").string());
     EXPECT_EQ(ran.status, 0) << ran.out;
@@ -60,28 +34,28 @@ class Program : public testing::Test {
 
 TEST_F(Program, CalibratesTheSimulatedExampleAndWritesTheCandidate) {
   const std::string data = simulated();
-  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "result").string());
+  const Ran ran = run_selfcal("identify " + data + " --out " + (folder_ / "result").string());
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_NE(ran.out.find("improved: check residual"), std::string::npos) << ran.out;
   const auto json = nlohmann::json::parse(text_of(folder_ / "result/result.json"));
   EXPECT_EQ(json["verdict"]["answer"], "improved");
   const Ran again =
-      selfcal_run("robot check " + (folder_ / "result/calibrated.robot.yaml").string());
+      run_selfcal("robot check " + (folder_ / "result/calibrated.robot.yaml").string());
   EXPECT_EQ(again.status, 0) << again.out;
   // One machine keeps one hash whatever its calibration.
   EXPECT_NE(again.out.find(json["model_hash"].get<std::string>()), std::string::npos) << again.out;
 }
 
 TEST_F(Program, PrintsJsonAloneOnStandardOutput) {
-  const Ran ran = selfcal_run("identify " + simulated() + " --json", true);
+  const Ran ran = run_selfcal("identify " + simulated() + " --json", true);
   EXPECT_EQ(nlohmann::json::parse(ran.out)["robot"], "staubli-rx90");
 }
 
 TEST_F(Program, FailsWhereItCannotWrite) {
   const std::string data = simulated();
-  EXPECT_EQ(selfcal_run("identify " + data + " --json > /dev/full").status, 4);
+  EXPECT_EQ(run_selfcal("identify " + data + " --json > /dev/full").status, 4);
   std::ofstream(folder_ / "file") << "no folder";
-  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "file").string());
+  const Ran ran = run_selfcal("identify " + data + " --out " + (folder_ / "file").string());
   EXPECT_EQ(ran.status, 4);
   EXPECT_EQ(ran.out.find("identifying"), std::string::npos) << "told before the work: " << ran.out;
 }
@@ -89,7 +63,7 @@ TEST_F(Program, FailsWhereItCannotWrite) {
 TEST_F(Program, WritesNothingOnBadInputAndNamesTheLine) {
   const std::string data = simulated();
   std::ofstream(data + "/dataset.yaml", std::ios::app) << "tarket: 1\n";
-  const Ran ran = selfcal_run("identify " + data + " --out " + (folder_ / "result").string());
+  const Ran ran = run_selfcal("identify " + data + " --out " + (folder_ / "result").string());
   EXPECT_EQ(ran.status, 3);
   EXPECT_NE(ran.out.find("dataset.yaml:"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("tarket"), std::string::npos) << ran.out;
@@ -98,19 +72,19 @@ TEST_F(Program, WritesNothingOnBadInputAndNamesTheLine) {
 
 TEST_F(Program, RefusesUnknownNamesAndMethodsAsWrongUsage) {
   const std::string data = simulated();
-  const Ran name = selfcal_run("identify " + data + " --fix thetta2");
+  const Ran name = run_selfcal("identify " + data + " --fix thetta2");
   EXPECT_EQ(name.status, 2);
   EXPECT_NE(name.out.find("thetta2"), std::string::npos);
   EXPECT_EQ(
-      selfcal_run("identifiable " SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml --method plain")
+      run_selfcal("identifiable " SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml --method plain")
           .status,
       2);
-  EXPECT_EQ(selfcal_run("identify").status, 2);
-  EXPECT_EQ(selfcal_run("calibrate").status, 2);
+  EXPECT_EQ(run_selfcal("identify").status, 2);
+  EXPECT_EQ(run_selfcal("calibrate").status, 2);
 }
 
 TEST_F(Program, HoldsWhatTheUserFixes) {
-  const Ran ran = selfcal_run("identify " + simulated() + " --fix 'd*' --json", true);
+  const Ran ran = run_selfcal("identify " + simulated() + " --fix 'd*' --json", true);
   const auto json = nlohmann::json::parse(ran.out);
   for (const auto& p : json["parameters"])
     if (p["name"].get<std::string>()[0] == 'd') {
@@ -125,7 +99,7 @@ TEST_F(Program, KeepsTheEffectsOfTheRobotsFileBesideThoseAskedFor) {
       << "effects:\n"
          "  - {effect: joint_coupling, at: j5, from: j4, kappa_j4: 1.0e-4}\n"
          "  - {effect: transmission_error, at: j2, waves: [3], sin3: 1.0e-4, cos3: 0}\n";
-  const Ran ran = selfcal_run(
+  const Ran ran = run_selfcal(
       "identify " + data + " --effects transmission_error@j2 --effects joint_coupling@j3 --json",
       true);
   const auto json = nlohmann::json::parse(ran.out);
@@ -142,7 +116,7 @@ TEST_F(Program, KeepsTheEffectsOfTheRobotsFileBesideThoseAskedFor) {
 TEST_F(Program, LetsASurfacesFormOfTheRobotsFileActOnItsRows) {
   const std::string data = simulated();
   const auto before = [&] {
-    const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+    const Ran ran = run_selfcal("identify " + data + " --fix '*' --json", true);
     const auto json = nlohmann::json::parse(ran.out);
     std::map<std::string, double> rms;
     for (const auto& set : json["residual"]["check"]["by_set"])
@@ -167,22 +141,22 @@ TEST_F(Program, JudgesRowsThatTheNominalRobotMeetsExactly) {
   std::ofstream(folder_ / "exact.scenario.yaml")
       << "robot: rx90.robot.yaml\nseed: 1\ncheck: 0.33\nsets: {s: {method: position, rows: 100}}\n";
   const std::string data = (folder_ / "data").string();
-  ASSERT_EQ(selfcal_run("simulate " + (folder_ / "exact.scenario.yaml").string() + " --out " + data)
+  ASSERT_EQ(run_selfcal("simulate " + (folder_ / "exact.scenario.yaml").string() + " --out " + data)
                 .status,
             0);
-  const Ran ran = selfcal_run("identify " + data);
+  const Ran ran = run_selfcal("identify " + data);
   EXPECT_EQ(ran.status, 1) << ran.out;
   EXPECT_NE(ran.out.find("not-improved"), std::string::npos) << ran.out;
 }
 
 TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
   const std::string data = simulated();
-  const Ran told = selfcal_run("identify " + data + " --fix '*'");
+  const Ran told = run_selfcal("identify " + data + " --fix '*'");
   EXPECT_EQ(told.status, 1);
   EXPECT_NE(told.out.find("not-determined: nothing was identified"), std::string::npos) << told.out;
   EXPECT_EQ(told.out.find("end position"), std::string::npos) << told.out;
   EXPECT_EQ(told.out.find("candidate"), std::string::npos) << told.out;
-  const Ran ran = selfcal_run("identify " + data + " --fix '*' --json", true);
+  const Ran ran = run_selfcal("identify " + data + " --fix '*' --json", true);
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_TRUE(json["endpoint_sigma"]["rms"].is_null());
   EXPECT_GT(json["residual"]["check"]["rows"], 0);  // the fixed robot is judged all the same
@@ -195,7 +169,7 @@ TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
   for (size_t at = rows.find(",fit"); at != std::string::npos; at = rows.find(",fit", at))
     rows.replace(at, 4, ",check");
   std::ofstream(data + "/observations.csv") << rows;
-  const Ran ran = selfcal_run("identify " + data + " --json", true);
+  const Ran ran = run_selfcal("identify " + data + " --json", true);
   EXPECT_EQ(ran.status, 1);
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_EQ(json["verdict"]["answer"], "not-determined");
@@ -204,13 +178,13 @@ TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
     EXPECT_EQ(p["status"], "fixed") << p["name"];
     EXPECT_TRUE(p["sigma"].is_null()) << p["name"];
   }
-  EXPECT_EQ(selfcal_run("identify " + data, true).out,
+  EXPECT_EQ(run_selfcal("identify " + data, true).out,
             "not-determined: no rows to identify from\n");
-  EXPECT_EQ(selfcal_run("identifiable " + data).status, 1);
+  EXPECT_EQ(run_selfcal("identifiable " + data).status, 1);
 }
 
 TEST_F(Program, SaysWhatRowsOfADataSetCanTell) {
-  const Ran ran = selfcal_run("identifiable " + simulated() + " --json", true);
+  const Ran ran = run_selfcal("identifiable " + simulated() + " --json", true);
   EXPECT_EQ(ran.status, 0);
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_EQ(json["own"], 16);  // five planes of three freedoms, one of the parallel plane
@@ -224,7 +198,7 @@ TEST_F(Program, TellsOfAColumnThatItIgnoresWhateverItIsAsked) {
     rows.insert(at, line == 0 ? ",zz" : ",00");
   std::ofstream(data + "/observations.csv") << rows;
   for (const std::string command : {"identify ", "identifiable "}) {
-    const Ran ran = selfcal_run(command + data);
+    const Ran ran = run_selfcal(command + data);
     EXPECT_NE(ran.out.find("unknown columns are ignored: zz"), std::string::npos) << ran.out;
   }
 }
@@ -232,7 +206,7 @@ TEST_F(Program, TellsOfAColumnThatItIgnoresWhateverItIsAsked) {
 TEST_F(Program, RefusesHowToDrawConfigurationsForADataSetsOwnRows) {
   const std::string data = simulated();
   for (const std::string option : {"--count 50", "--seed 2", "--unknown", "--method plane"}) {
-    const Ran ran = selfcal_run("identifiable " + data + " " + option);
+    const Ran ran = run_selfcal("identifiable " + data + " " + option);
     EXPECT_EQ(ran.status, 2) << option << ": " << ran.out;
     EXPECT_NE(ran.out.find(option.substr(0, option.find(' '))), std::string::npos) << ran.out;
   }
@@ -254,7 +228,7 @@ TEST_F(Program, RefusesOptionsThatWouldChangeNothing) {
         "serve " + config + " --check --sessions 1", "serve " + config + " --check --log debug",
         "serve " + config + " --check --simulate --truth t", "serve " + config + " --truth t",
         "serve " + config + " --sessions -1"}) {
-    const Ran ran = selfcal_run(arguments);
+    const Ran ran = run_selfcal(arguments);
     EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
@@ -269,10 +243,10 @@ TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
   ASSERT_NE(name, std::string::npos);
   std::ofstream(other / "rx90.robot.yaml") << robot.replace(name, 12, "another-rx90");
   for (const std::string option : {"--since ", "--sim "}) {
-    const Ran nowhere = selfcal_run("diagnose " + data + " " + option + "/nowhere");
+    const Ran nowhere = run_selfcal("diagnose " + data + " " + option + "/nowhere");
     EXPECT_EQ(nowhere.status, 3) << nowhere.out;
     EXPECT_EQ(nowhere.out.find("weighing"), std::string::npos) << nowhere.out;
-    const Ran foreign = selfcal_run("diagnose " + data + " " + option + other.string());
+    const Ran foreign = run_selfcal("diagnose " + data + " " + option + other.string());
     EXPECT_EQ(foreign.status, 3) << foreign.out;
     EXPECT_NE(foreign.out.find("only data sets of one robot can be compared"), std::string::npos)
         << foreign.out;

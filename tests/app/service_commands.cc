@@ -12,11 +12,11 @@
 namespace selfcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 class ServiceCommands : public CellTest {
  protected:
-  static bool ready(const json& message) {
+  static bool ready(const Json& message) {
     return message["topic"] == "status" && message["state"] == "idle";
   }
 };
@@ -29,9 +29,9 @@ TEST_F(ServiceCommands, MonitorsOnceInJson) {
 
   ASSERT_EQ(ran.status, 0) << ran.out;
   std::istringstream lines(ran.out);
-  std::map<std::string, json> by_topic;
+  std::map<std::string, Json> by_topic;
   for (std::string line; std::getline(lines, line);)
-    by_topic[json::parse(line)["topic"]] = json::parse(line);
+    by_topic[Json::parse(line)["topic"]] = Json::parse(line);
   ASSERT_TRUE(by_topic.contains("status")) << ran.out;
   EXPECT_EQ(by_topic["status"]["robot"], "rx90");
   EXPECT_EQ(by_topic["status"]["active"], "factory");
@@ -43,7 +43,7 @@ TEST_F(ServiceCommands, MonitorsOnceInJson) {
 TEST_F(ServiceCommands, TestThemselvesForAsLongAsTheLimitSays) {
   const auto service = serve("rx90", "limits: {self_test: 1}\n");
 
-  const json first = heard([](const json& message) { return message["topic"] == "status"; });
+  const Json first = heard([](const Json& message) { return message["topic"] == "status"; });
 
   EXPECT_FALSE(first.is_null());
   EXPECT_FALSE(heard(ready).is_null());
@@ -72,8 +72,8 @@ TEST_F(ServiceCommands, RefuseAWrongVerbAndTellTheServicesReason) {
   EXPECT_EQ(refused.status, 1);
   EXPECT_EQ(refused.out, "refused: no result waits for acceptance\n");
   EXPECT_EQ(in_json.status, 1);
-  EXPECT_EQ(json::parse(in_json.out)["accepted"], false);
-  EXPECT_EQ(json::parse(in_json.out)["why"], "no result waits for acceptance");
+  EXPECT_EQ(Json::parse(in_json.out)["accepted"], false);
+  EXPECT_EQ(Json::parse(in_json.out)["why"], "no result waits for acceptance");
 }
 
 TEST_F(ServiceCommands, AskWhichRobotWhereThereAreTwo) {
@@ -99,9 +99,9 @@ TEST_F(ServiceCommands, EndTheMonitorOnInterrupt) {
 }
 
 /// Identified parameters and their sigma, by name.
-std::map<std::string, std::pair<double, double>> identified(const json& solution) {
+std::map<std::string, std::pair<double, double>> identified(const Json& solution) {
   std::map<std::string, std::pair<double, double>> values;
-  for (const json& p : solution["parameters"])
+  for (const Json& p : solution["parameters"])
     if (p["status"] == "identified") values[p["name"]] = {p["value"], p["sigma"]};
   return values;
 }
@@ -110,10 +110,10 @@ TEST_F(ServiceCommands, TellOfASessionThatSolvesAgainToTheSameResult) {
   const auto service = serve("rx90");
   ASSERT_FALSE(heard(ready).is_null());
   ASSERT_EQ(run_selfcal("command start --wait 20" + in_domain()).out, "accepted\n");
-  const json result = heard([](const json& m) { return m["topic"] == "result"; });
+  const Json result = heard([](const Json& m) { return m["topic"] == "result"; });
   ASSERT_EQ(result["decision"], "candidate") << result;
   ASSERT_EQ(run_selfcal("command accept --wait 20" + in_domain()).status, 0);
-  ASSERT_FALSE(heard([](const json& m) {
+  ASSERT_FALSE(heard([](const Json& m) {
                  return m["topic"] == "status" && m["active"] == "session 1" &&
                         m["state"] == "idle";
                }).is_null());
@@ -127,12 +127,12 @@ TEST_F(ServiceCommands, TellOfASessionThatSolvesAgainToTheSameResult) {
   EXPECT_EQ(table.status, 0);
   EXPECT_NE(table.out.find("improved"), std::string::npos) << table.out;
   EXPECT_NE(table.out.find("active     session 1"), std::string::npos) << table.out;
-  EXPECT_EQ(json::parse(records.out)[0]["result"]["decision"], "applied");
+  EXPECT_EQ(Json::parse(records.out)[0]["result"]["decision"], "applied");
   EXPECT_EQ(exported.status, 0) << exported.out;
   ASSERT_EQ(again.status, 0) << again.out;
   const auto was = identified(result["result"]),
              is = identified(
-                 json::parse(again.out.substr(again.out.find('{'))));  // after the progress
+                 Json::parse(again.out.substr(again.out.find('{'))));  // after the progress
   ASSERT_GT(was.size(), 15);
   EXPECT_EQ(was.size(), is.size());
   for (const auto& [name, value] : was) {

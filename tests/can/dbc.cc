@@ -78,13 +78,13 @@ TEST(Dbc, ReadsLinesThatEndAsWindowsHasThem) {
   EXPECT_NE(find(*dbc->find("M"), "S"), nullptr);
 }
 
-struct Mistake {
+struct WrongDbc {
   const char* name;
   const char* text;
   const char* message;
 };
 
-class DbcMistake : public testing::TestWithParam<Mistake> {};
+class DbcMistake : public testing::TestWithParam<WrongDbc> {};
 
 TEST_P(DbcMistake, IsRefusedWithItsLine) {
   const auto dbc = parse_dbc(GetParam().text, "arm.dbc");
@@ -96,29 +96,29 @@ TEST_P(DbcMistake, IsRefusedWithItsLine) {
 INSTANTIATE_TEST_SUITE_P(
     Each, DbcMistake,
     testing::Values(
-        Mistake{"NoId", "\nBO_ x M: 8 X\n", "arm.dbc:2: expected BO_"},
-        Mistake{"TooLong", "BO_ 1 M: 65 X\n", "arm.dbc:1: message M: 0 to 64"},
-        Mistake{"NoCanId", "BO_ 2048 M: 8 X\n", "arm.dbc:1: message M: no CAN id"},
-        Mistake{"Twice", "BO_ 1 M: 8 X\n\nBO_ 2 M: 8 X\n", "arm.dbc:3: message M is there twice"},
-        Mistake{"NoMessage", " SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n", "arm.dbc:1: SG_ without"},
-        Mistake{"NoBits", "BO_ 1 M: 8 X\n SG_ S : 0@1+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:2: expected SG_"},
-        Mistake{"Order", "BO_ 1 M: 8 X\n SG_ S : 0|8@2+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:2: expected SG_"},
-        Mistake{"OpenText", "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"deg X\n",
-                "arm.dbc:2: expected SG_"},
-        Mistake{"ZeroFactor", "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (0,0) [0|0] \"\" X\n",
-                "arm.dbc:2: signal M.S: a factor"},
-        Mistake{"Beyond", "BO_ 1 M: 2 X\n SG_ S : 8|9@1+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:2: signal M.S reaches beyond the 2 bytes"},
-        Mistake{"BeyondMotorola", "BO_ 1 M: 2 X\n SG_ S : 8|2@0+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:2: signal M.S reaches beyond"},
-        Mistake{"TooManyBits", "BO_ 1 M: 64 X\n SG_ S : 0|65@1+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:2: signal M.S: 1 to 64 bits"},
-        Mistake{"SignalTwice",
-                "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n"
-                " SG_ S : 8|8@1+ (1,0) [0|0] \"\" X\n",
-                "arm.dbc:3: signal M.S is there twice"}),
+        WrongDbc{"NoId", "\nBO_ x M: 8 X\n", "arm.dbc:2: expected BO_"},
+        WrongDbc{"TooLong", "BO_ 1 M: 65 X\n", "arm.dbc:1: message M: 0 to 64"},
+        WrongDbc{"NoCanId", "BO_ 2048 M: 8 X\n", "arm.dbc:1: message M: no CAN id"},
+        WrongDbc{"Twice", "BO_ 1 M: 8 X\n\nBO_ 2 M: 8 X\n", "arm.dbc:3: message M is there twice"},
+        WrongDbc{"NoMessage", " SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n", "arm.dbc:1: SG_ without"},
+        WrongDbc{"NoBits", "BO_ 1 M: 8 X\n SG_ S : 0@1+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: expected SG_"},
+        WrongDbc{"Order", "BO_ 1 M: 8 X\n SG_ S : 0|8@2+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: expected SG_"},
+        WrongDbc{"OpenText", "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"deg X\n",
+                 "arm.dbc:2: expected SG_"},
+        WrongDbc{"ZeroFactor", "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (0,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: signal M.S: a factor"},
+        WrongDbc{"Beyond", "BO_ 1 M: 2 X\n SG_ S : 8|9@1+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: signal M.S reaches beyond the 2 bytes"},
+        WrongDbc{"BeyondMotorola", "BO_ 1 M: 2 X\n SG_ S : 8|2@0+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: signal M.S reaches beyond"},
+        WrongDbc{"TooManyBits", "BO_ 1 M: 64 X\n SG_ S : 0|65@1+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:2: signal M.S: 1 to 64 bits"},
+        WrongDbc{"SignalTwice",
+                 "BO_ 1 M: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n"
+                 " SG_ S : 8|8@1+ (1,0) [0|0] \"\" X\n",
+                 "arm.dbc:3: signal M.S is there twice"}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(Dbc, SaysThatAFileIsMissing) {

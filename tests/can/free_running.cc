@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr double kCycle = 1000;
-constexpr CanTiming kTiming = {.cycle = 0.001, .window = 0.0016, .delay = 0};
+constexpr CanTiming kFreeRunning = {.cycle = 0.001, .window = 0.0016, .delay = 0};
 
 class FreeRunningJoints : public testing::Test {
  protected:
@@ -38,7 +38,7 @@ class FreeRunningJoints : public testing::Test {
     }
   }
 
-  Bus bus{two_joints(false), kTiming};
+  Bus bus{two_joints(false), kFreeRunning};
 };
 
 TEST_F(FreeRunningJoints, AreInterpolatedToTheStampsOfTheFirst) {
@@ -72,7 +72,7 @@ TEST_F(FreeRunningJoints, OfOneFrameNeedNoOther) {
   map.joints[1].id = map.joints[0].id;
   map.joints[1].field = byte_field(4, 4, false, true);
   ASSERT_EQ(map.finish(), std::nullopt);
-  Bus one{map, kTiming};
+  Bus one{map, kFreeRunning};
   for (int k = 0; k < 5; ++k) one.add(encode(one.map, one.map.messages[0], {k, -k}), t(k));
   ASSERT_EQ(one.samples.size(), 4u);  // nothing is known of the first count
   EXPECT_EQ(one.samples[3].counts[0], 4);
@@ -229,7 +229,7 @@ TEST_F(FreeRunningJoints, CountTurnsOnWhileInterpolating) {
   CanMap map = two_joints(false);
   for (CanJoint& joint : map.joints) joint.wraps_at = 100'000;
   ASSERT_EQ(map.finish(), std::nullopt);
-  Bus wrapping{map, kTiming};
+  Bus wrapping{map, kFreeRunning};
   for (int k = 0; k < 200; ++k) {
     wrapping.frame(0, 2000 * k, t(k));
     wrapping.frame(1, -1000 * k, t(k) + 500);

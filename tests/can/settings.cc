@@ -124,12 +124,12 @@ joints:
   EXPECT_EQ(r.settings.map.messages.size(), 1u);
 }
 
-struct Mistake {
+struct WrongSettings {
   const char* name;
   const char* joint;  ///< j1's entry
   const char* message;
 };
-class CanSettingsMistake : public testing::TestWithParam<Mistake> {};
+class CanSettingsMistake : public testing::TestWithParam<WrongSettings> {};
 
 TEST_P(CanSettingsMistake, IsRefusedWithFileAndLine) {
   const Scratch scratch;
@@ -147,31 +147,34 @@ TEST_P(CanSettingsMistake, IsRefusedWithFileAndLine) {
 INSTANTIATE_TEST_SUITE_P(
     Each, CanSettingsMistake,
     testing::Values(
-        Mistake{"NoPlace", "{counts_per_turn: 8}", "one of 'id', 'cia402' and 'message'"},
-        Mistake{"TwoPlaces", "{id: 1, cia402: {node: 1}, counts_per_turn: 8}", "one of 'id'"},
-        Mistake{"LargeId", "{id: 0x800, counts_per_turn: 8}", "a CAN id of at most 0x7ff"},
-        Mistake{"LargerId", "{id: 0x20000000, extended: true, counts_per_turn: 8}",
-                "at most 0x1fffffffx"},
-        Mistake{"NoNumber", "{id: 0x18g, counts_per_turn: 8}", "a CAN id"},
-        Mistake{"Length", "{id: 1, length: 9, counts_per_turn: 8}", "from 1 to 8"},
-        Mistake{"BitAndByte", "{id: 1, bit: 0, bits: 8, byte: 1, counts_per_turn: 8}",
-                "only without 'bit'"},
-        Mistake{"NoBits", "{id: 1, bit: 0, counts_per_turn: 8}", "'bits' is missing"},
-        Mistake{"Endian", "{id: 1, endian: middle, counts_per_turn: 8}", "little or big"},
-        Mistake{"NoCounts", "{id: 1}", "'counts_per_turn' is missing"},
-        Mistake{"Gear", "{id: 1, counts_per_turn: 8, gear: 0}", "a positive number"},
-        Mistake{"Sign", "{id: 1, counts_per_turn: 8, sign: 0}", "1 or -1"},
-        Mistake{"Zero", "{id: 1, counts_per_turn: 8, zero: 0.5}", "a whole number"},
-        Mistake{"Wraps", "{id: 1, length: 2, counts_per_turn: 8, wraps_at: 65537}", "can count"},
-        Mistake{"Unknown", "{id: 1, counts_per_turn: 8, bite: 2}", "unknown key 'bite'"},
-        Mistake{"Node", "{cia402: {node: 128}, counts_per_turn: 8}", "from 1 to 127"},
-        Mistake{"NoNode", "{cia402: {tpdo: 1}, counts_per_turn: 8}", "'node' is missing"},
-        Mistake{"NoMessage", "{message: Axis, signal: One, unit: deg}", "a message of"},
-        Mistake{"NoSignal", "{message: Axes, signal: Ten, unit: deg}", "arm.dbc:1"},
-        Mistake{"Multiplexed", "{message: Axes, signal: Three, unit: deg}", "not multiplexed"},
-        Mistake{"Floating", "{message: Axes, signal: Four, unit: deg}", "not floating point"},
-        Mistake{"NoUnit", "{message: Axes, signal: One}", "'unit' is missing"},
-        Mistake{"Unit", "{message: Axes, signal: One, unit: grad}", "deg, rad, m, mm or counts"}),
+        WrongSettings{"NoPlace", "{counts_per_turn: 8}", "one of 'id', 'cia402' and 'message'"},
+        WrongSettings{"TwoPlaces", "{id: 1, cia402: {node: 1}, counts_per_turn: 8}", "one of 'id'"},
+        WrongSettings{"LargeId", "{id: 0x800, counts_per_turn: 8}", "a CAN id of at most 0x7ff"},
+        WrongSettings{"LargerId", "{id: 0x20000000, extended: true, counts_per_turn: 8}",
+                      "at most 0x1fffffffx"},
+        WrongSettings{"NoNumber", "{id: 0x18g, counts_per_turn: 8}", "a CAN id"},
+        WrongSettings{"Length", "{id: 1, length: 9, counts_per_turn: 8}", "from 1 to 8"},
+        WrongSettings{"BitAndByte", "{id: 1, bit: 0, bits: 8, byte: 1, counts_per_turn: 8}",
+                      "only without 'bit'"},
+        WrongSettings{"NoBits", "{id: 1, bit: 0, counts_per_turn: 8}", "'bits' is missing"},
+        WrongSettings{"Endian", "{id: 1, endian: middle, counts_per_turn: 8}", "little or big"},
+        WrongSettings{"NoCounts", "{id: 1}", "'counts_per_turn' is missing"},
+        WrongSettings{"Gear", "{id: 1, counts_per_turn: 8, gear: 0}", "a positive number"},
+        WrongSettings{"Sign", "{id: 1, counts_per_turn: 8, sign: 0}", "1 or -1"},
+        WrongSettings{"Zero", "{id: 1, counts_per_turn: 8, zero: 0.5}", "a whole number"},
+        WrongSettings{"Wraps", "{id: 1, length: 2, counts_per_turn: 8, wraps_at: 65537}",
+                      "can count"},
+        WrongSettings{"Unknown", "{id: 1, counts_per_turn: 8, bite: 2}", "unknown key 'bite'"},
+        WrongSettings{"Node", "{cia402: {node: 128}, counts_per_turn: 8}", "from 1 to 127"},
+        WrongSettings{"NoNode", "{cia402: {tpdo: 1}, counts_per_turn: 8}", "'node' is missing"},
+        WrongSettings{"NoMessage", "{message: Axis, signal: One, unit: deg}", "a message of"},
+        WrongSettings{"NoSignal", "{message: Axes, signal: Ten, unit: deg}", "arm.dbc:1"},
+        WrongSettings{"Multiplexed", "{message: Axes, signal: Three, unit: deg}",
+                      "not multiplexed"},
+        WrongSettings{"Floating", "{message: Axes, signal: Four, unit: deg}", "not floating point"},
+        WrongSettings{"NoUnit", "{message: Axes, signal: One}", "'unit' is missing"},
+        WrongSettings{"Unit", "{message: Axes, signal: One, unit: grad}",
+                      "deg, rad, m, mm or counts"}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(CanSettings, RefuseWhatConcernsTheWholeBus) {

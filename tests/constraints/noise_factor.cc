@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative
+constexpr double kRelativeRounding = 1e-9;  // relative
 
 Simulated touches() {
   return made(
@@ -32,9 +32,10 @@ TEST(NoiseFactor, OfEveryRowIsThatOfTheSet) {
   const State& state = simulated.truth;
   const Eigen::MatrixXd ours_R = factored.linearise(state, narrow).R;
   const Eigen::MatrixXd theirs_R = plain.linearise(state, wide).R;
-  EXPECT_TRUE((ours_R.transpose() * ours_R).isApprox(theirs_R.transpose() * theirs_R, kRounding));
+  EXPECT_TRUE(
+      (ours_R.transpose() * ours_R).isApprox(theirs_R.transpose() * theirs_R, kRelativeRounding));
   EXPECT_TRUE(factored.dense(state, narrow.scale, none)
-                  .W.isApprox(plain.dense(state, wide.scale, none).W, kRounding));
+                  .W.isApprox(plain.dense(state, wide.scale, none).W, kRelativeRounding));
   const Noise ours = estimate_noise(factored, factored.residuals(state), {});
   const Noise theirs = estimate_noise(plain, plain.residuals(state), {});
   EXPECT_NEAR(3 * ours.estimated[0].length, theirs.estimated[0].length, 1e-12);

@@ -12,7 +12,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kStep = 1e-6;
+constexpr double kMoveStep = 1e-6;
 constexpr double kTolerance = 1e-8;
 constexpr int kInstances = 4;
 
@@ -36,9 +36,9 @@ Locations moved(const Locations& X, int c, double h) {
 template <class Move>
 Block difference(const Instance& at, const Move& move) {
   Instance plus = at, minus = at;
-  move(plus, kStep);
-  move(minus, -kStep);
-  return (plus.evaluate().r - minus.evaluate().r) / (2 * kStep);
+  move(plus, kMoveStep);
+  move(minus, -kMoveStep);
+  return (plus.evaluate().r - minus.evaluate().r) / (2 * kMoveStep);
 }
 
 /// Columns stride a + k of D, over all equations a, against the differences.

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kStep = 1e-6;
 // Relative to the derivative: coefficients a b c grow as 1 / d and lose (h / d)^2, d above 2 mm.
-constexpr double kRelative = 1e-6;
-constexpr int kInstances = 20;
+constexpr double kOwnRelative = 1e-6;
+constexpr int kOwnInstances = 20;
 
 void expect_near(double derivative, double difference, const std::string& what) {
-  EXPECT_NEAR(derivative, difference, kRelative * std::max(1.0, std::abs(derivative))) << what;
+  EXPECT_NEAR(derivative, difference, kOwnRelative * std::max(1.0, std::abs(derivative))) << what;
 }
 
 /// Own values moved by h along freedom k.
@@ -33,7 +33,7 @@ class OwnUnknowns : public testing::TestWithParam<MethodCase> {
 
 TEST_P(OwnUnknowns, AreReportedWithTheirGradients) {
   Random random(71);
-  for (int i = 0; i < kInstances; ++i) {
+  for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     const auto reports = at.method().report(at.own, reference_of(at));
     for (int k = 0; k < at.method().own_freedom(); ++k) {
@@ -52,7 +52,7 @@ TEST_P(OwnUnknowns, AreReportedWithTheirGradients) {
 
 TEST_P(OwnUnknowns, AreReportedWithTheirGradientsToTheReference) {
   Random random(72);
-  for (int i = 0; i < kInstances; ++i) {
+  for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     if (!at.referred()) return;
     const auto reports = at.method().report(at.own, &at.reference);
@@ -80,7 +80,7 @@ TEST_P(OwnUnknowns, AreReportedUnderNamesOfTheirOwnIfThereAreAny) {
 
 TEST_P(OwnUnknowns, HaveEquationsWithTheirDerivatives) {
   Random random(74);
-  for (int i = 0; i < kInstances; ++i) {
+  for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     const auto equations = at.method().own_equations(at.own, reference_of(at));
     for (size_t n = 0; n < equations.size(); ++n) {
@@ -106,7 +106,7 @@ TEST_P(OwnUnknowns, HaveEquationsWithTheirDerivatives) {
 
 TEST_P(OwnUnknowns, OfLinkedGroupsHaveResidualsWithTheirDerivatives) {
   Random random(75);
-  for (int i = 0; i < kInstances; ++i) {
+  for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     for (const GroupLink& link : at.method().links()) {
       const Eigen::VectorXd a = at.groups.col(link.a), b = at.groups.col(link.b);

@@ -11,7 +11,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kRows = 12;
-constexpr double kHolds = 1e-12;  // Newton's steps end below 1e-13, readings at rounding
+constexpr double kSampleHolds = 1e-12;  // Newton's steps end below 1e-13, readings at rounding
 
 /// kRows rows for every set.
 struct Simulated {
@@ -51,7 +51,7 @@ TEST_P(Simulation, MakesRowsThatHold) {
   size_t expected = 0;
   for (const Set& set : made.data.sets) expected += kRows - (set.method->paired() ? 1 : 0);
   EXPECT_EQ(residuals.size(), expected);
-  EXPECT_LT(largest(residuals), kHolds);
+  EXPECT_LT(largest(residuals), kSampleHolds);
 }
 
 TEST_P(Simulation, MakesRowsFromWhichOwnAndGroupValuesAreFound) {

@@ -12,6 +12,7 @@
 #include "diagnosis/view.h"
 #include "io/robot_file.h"
 #include "kinematics/corrected_robot.h"
+#include "tests/diagnosis/two_sessions.h"
 #include "tests/recovery/session.h"
 
 namespace selfcal {
@@ -39,14 +40,6 @@ struct TwoCauses {
   std::shared_ptr<const Robot> robot;
   DataSet data;
 };
-
-/// Enough resamples for a cause to be named, no practice.
-DiagnosisOptions quick() {
-  DiagnosisOptions options;
-  options.practice = 0;
-  options.resamples = 99;
-  return options;
-}
 
 /// m, rms of the distance between measured and modelled positions of the check rows.
 double left_by(const Robot& robot, const Eigen::VectorXd& xi, const Observations& rows) {

@@ -11,14 +11,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Quick: enough resamples for a cause to be named, no practice.
-DiagnosisOptions quick() {
-  DiagnosisOptions options;
-  options.practice = 0;
-  options.resamples = 99;
-  return options;
-}
-
 Differences asked(const std::shared_ptr<const Robot>& robot, const DataSet& simulated,
                   const DataSet& measured) {
   return differences(diagnose(robot, measured, quick()), diagnose(robot, simulated, quick()),
@@ -59,7 +51,7 @@ TEST(Simulation, LacksTheEffectThatTheRobotHas) {
   EXPECT_THAT(of.sentences[0], HasSubstr("its simulation lacks: transmission error at j2"));
 }
 
-Diagnosis with(const std::string& effect, const std::string& place, double value) {
+Diagnosis diagnosed(const std::string& effect, const std::string& place, double value) {
   Diagnosis diagnosis;
   CauseResult cause{.effect = effect, .where = {place}, .probability = 0.99};
   cause.parameters = {{place + ".c", "rad/(N m)", value, 1e-7, 1e-7, 1e-5}};
@@ -70,8 +62,8 @@ Diagnosis with(const std::string& effect, const std::string& place, double value
 }
 
 TEST(Differences, SetsWhatBothHaveSideBySide) {
-  const Differences of = differences(with("joint_compliance", "j2", 3e-6),
-                                     with("joint_compliance", "j2", 1e-6), Comparison{});
+  const Differences of = differences(diagnosed("joint_compliance", "j2", 3e-6),
+                                     diagnosed("joint_compliance", "j2", 1e-6), Comparison{});
   ASSERT_EQ(of.both.size(), 1U);
   ASSERT_EQ(of.both[0].parameters.size(), 1U);
   EXPECT_NEAR(of.both[0].parameters[0].sigmas, 2e-6 / std::hypot(1e-7, 1e-7), 1e-9);
@@ -81,15 +73,15 @@ TEST(Differences, SetsWhatBothHaveSideBySide) {
 }
 
 TEST(Differences, TellTheSameEffectAtAnotherPlaceApart) {
-  const Differences of = differences(with("joint_compliance", "j2", 3e-6),
-                                     with("joint_compliance", "j3", 3e-6), Comparison{});
+  const Differences of = differences(diagnosed("joint_compliance", "j2", 3e-6),
+                                     diagnosed("joint_compliance", "j3", 3e-6), Comparison{});
   EXPECT_TRUE(of.both.empty());
   EXPECT_EQ(of.robot_only.size(), 1U);
   EXPECT_EQ(of.simulation_only.size(), 1U);
 }
 
 TEST(Differences, CountNoCauseThatNoiseExplainsAsWell) {
-  Diagnosis noise = with("joint_compliance", "j2", 3e-6);
+  Diagnosis noise = diagnosed("joint_compliance", "j2", 3e-6);
   noise.verdict = {.effect = "none", .probability = 0.4};
   noise.p_value = 0.2;
   EXPECT_TRUE(shown_causes(noise).empty());

@@ -1,8 +1,10 @@
-// Two sessions of one robot under one tracker, with noise of their own.
+// Two sessions of one robot under one tracker, with noise of their own, and the options of
+// a quick diagnosis.
 #pragma once
 
 #include <memory>
 
+#include "diagnosis/diagnosis.h"
 #include "io/robot_file.h"
 #include "tests/recovery/session.h"
 
@@ -42,5 +44,13 @@ struct TwoSessions {
   std::shared_ptr<const Robot> robot;
   DataSet before, after;
 };
+
+/// Enough resamples for a cause to be named, no practice.
+inline DiagnosisOptions quick() {
+  DiagnosisOptions options;
+  options.practice = 0;
+  options.resamples = 99;
+  return options;
+}
 
 }  // namespace selfcal

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <linux/can/error.h>
 #include <signal.h>
-#include <time.h>
 
 #include <cstdio>
 #include <cstring>
@@ -28,12 +27,6 @@ can_frame error_frame(canid_t classes) {
   frame.can_id = CAN_ERR_FLAG | classes;
   frame.len = CAN_ERR_DLC;
   return frame;
-}
-
-void step_wall_clock(Nanoseconds by) {
-  const Nanoseconds t = realtime_now() + by;
-  const timespec wall = {t / kSecond, t % kSecond};
-  ASSERT_EQ(clock_settime(CLOCK_REALTIME, &wall), 0) << "needs root";
 }
 
 /// A fault, how it is ended, and what the service is to say of it.

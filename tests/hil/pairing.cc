@@ -2,7 +2,6 @@
 // stamp of the edge. Meant for deterministic guest time (tests/hil/machine --icount): elsewhere the
 // host may take the processor away between two instructions.
 #include <gtest/gtest.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +27,6 @@ class NoMotion final : public Motion {
   Result<void> stop(const std::string&) override { return {}; }
   Result<void> take(std::vector<MotionReply>&) override { return {}; }
 };
-
-void step_wall_clock(Nanoseconds by) {
-  const Nanoseconds t = realtime_now() + by;
-  const timespec wall = {t / kSecond, t % kSecond};
-  ASSERT_EQ(clock_settime(CLOCK_REALTIME, &wall), 0) << "needs root";
-}
 
 /// Errors of the readings, in the time at each joint's speed (us); worst joint of each touch.
 struct Pairs {

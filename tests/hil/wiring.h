@@ -2,9 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <cstdlib>
 #include <string>
+
+#include "io/clock.h"
 
 namespace selfcal {
 
@@ -34,5 +37,11 @@ class InTheMachine : public testing::Test {
   }
   const Wiring wires = wiring();
 };
+
+inline void step_wall_clock(Nanoseconds by) {
+  const Nanoseconds t = realtime_now() + by;
+  const timespec wall = {t / kSecond, t % kSecond};
+  ASSERT_EQ(clock_settime(CLOCK_REALTIME, &wall), 0) << "needs root";
+}
 
 }  // namespace selfcal

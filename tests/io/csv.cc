@@ -36,7 +36,7 @@ Table table_of(std::string_view text) {
   return table.value_or(Table());
 }
 
-std::string error_of(std::string_view text) {
+std::string csv_error(std::string_view text) {
   const Scratch scratch;
   const auto table = read(scratch.write("f.csv", text));
   if (table) return "no error";
@@ -64,34 +64,34 @@ TEST(Csv, KeepsCommasQuotesAndLineEndsInsideQuotations) {
 TEST(Csv, ReadsAHeaderWithoutRows) { EXPECT_EQ(table_of("a,b\n"), (Table{{"a", "b"}})); }
 
 TEST(Csv, NamesTheRowOfAWrongCountOfCells) {
-  EXPECT_EQ(error_of("a,b\n1,2\n3\n"), "f.csv: row 2: expected 2 cells as in the header, got 1");
-  EXPECT_EQ(error_of("a,b\n1,2,3\n"), "f.csv: row 1: expected 2 cells as in the header, got 3");
+  EXPECT_EQ(csv_error("a,b\n1,2\n3\n"), "f.csv: row 2: expected 2 cells as in the header, got 1");
+  EXPECT_EQ(csv_error("a,b\n1,2,3\n"), "f.csv: row 1: expected 2 cells as in the header, got 3");
 }
 
 TEST(Csv, RefusesBrokenQuotations) {
-  EXPECT_EQ(error_of("a,b\n1,2\n3,\"4\n"), "f.csv: row 2: the file ends inside a quotation");
-  EXPECT_THAT(error_of("a,b\n1,2\n3,4\"5\n"), HasSubstr("row 2: a quotation mark stands inside"));
-  EXPECT_THAT(error_of("a,b\n1,\"" + std::string(3 << 20, 'x')),
+  EXPECT_EQ(csv_error("a,b\n1,2\n3,\"4\n"), "f.csv: row 2: the file ends inside a quotation");
+  EXPECT_THAT(csv_error("a,b\n1,2\n3,4\"5\n"), HasSubstr("row 2: a quotation mark stands inside"));
+  EXPECT_THAT(csv_error("a,b\n1,\"" + std::string(3 << 20, 'x')),
               HasSubstr("row 1: longer than 1 MiB; is a quotation left open?"));
 }
 
 TEST(Csv, RefusesABrokenHeader) {
-  EXPECT_EQ(error_of(""), "f.csv: header: expected a line with the names of the columns");
-  EXPECT_EQ(error_of("\n\n"), "f.csv: header: expected a line with the names of the columns");
-  EXPECT_EQ(error_of("a,,b\n"), "f.csv: header: column 2 has no name");
-  EXPECT_EQ(error_of("a,b,a\n"), "f.csv: header: column 'a' appears twice");
-  EXPECT_EQ(error_of("a;b\n1;2\n"),
+  EXPECT_EQ(csv_error(""), "f.csv: header: expected a line with the names of the columns");
+  EXPECT_EQ(csv_error("\n\n"), "f.csv: header: expected a line with the names of the columns");
+  EXPECT_EQ(csv_error("a,,b\n"), "f.csv: header: column 2 has no name");
+  EXPECT_EQ(csv_error("a,b,a\n"), "f.csv: header: column 'a' appears twice");
+  EXPECT_EQ(csv_error("a;b\n1;2\n"),
             "f.csv: header: expected commas between the columns, got semicolons");
 }
 
 TEST(Csv, RefusesBlankLinesBetweenRowsAndBytesThatAreNoText) {
-  EXPECT_EQ(error_of("a,b\n1,2\n\n3,4\n"), "f.csv: row 2: stands below a blank line");
-  EXPECT_EQ(error_of(std::string_view("a,b\n1,\0\n", 8)),
+  EXPECT_EQ(csv_error("a,b\n1,2\n\n3,4\n"), "f.csv: row 2: stands below a blank line");
+  EXPECT_EQ(csv_error(std::string_view("a,b\n1,\0\n", 8)),
             "f.csv: row 1: expected UTF-8 text, got other bytes");
-  EXPECT_EQ(error_of("a,b\n1,J\xF6rg\n"), "f.csv: row 1: expected UTF-8 text, got other bytes");
-  EXPECT_THAT(error_of(std::string_view("\xFF\xFE"
-                                        "a\0,\0b\0",
-                                        8)),
+  EXPECT_EQ(csv_error("a,b\n1,J\xF6rg\n"), "f.csv: row 1: expected UTF-8 text, got other bytes");
+  EXPECT_THAT(csv_error(std::string_view("\xFF\xFE"
+                                         "a\0,\0b\0",
+                                         8)),
               HasSubstr("f.csv: header: expected UTF-8 text"));
 }
 

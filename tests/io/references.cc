@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 /// What is wrong with a gauge parallel to a table, of these rows.
-std::string error_of(const std::string& rows) {
+std::string references_error(const std::string& rows) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "references_without_rows";
   std::filesystem::create_directories(folder);
@@ -31,14 +31,15 @@ std::string error_of(const std::string& rows) {
 }
 
 TEST(References, AreRefusedWhenTheOtherSetHasNoFitRows) {
-  EXPECT_THAT(error_of("table,0.1,,,,check\ngauge,0.2,,,,fit\n"),
+  EXPECT_THAT(references_error("table,0.1,,,,check\ngauge,0.2,,,,fit\n"),
               HasSubstr("table, which has no `fit` rows"));
 }
 
 TEST(References, OfASetThatOnlyJudgesNeedSomeRowsOfTheOther) {
-  EXPECT_THAT(error_of("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\n"),
+  EXPECT_THAT(references_error("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\n"),
               HasSubstr("table, which has no `fit` or `check` rows"));
-  EXPECT_EQ(error_of("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\ntable,0.1,,,,check\n"), "");
+  EXPECT_EQ(references_error("tracker,0.1,0.5,0,0,fit\ngauge,0.2,,,,check\ntable,0.1,,,,check\n"),
+            "");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string content(const std::filesystem::path& path) {
 }
 
 /// A store of a few sessions in `scratch`, all of it in the file; its bytes.
-std::string filled(const Scratch& scratch) {
+std::string bytes_of_sessions(const Scratch& scratch) {
   const auto store = opened(scratch.folder());
   for (int i = 0; i < 4; ++i) whole_session(*store, 60);
   EXPECT_TRUE(store->prune(std::int64_t{1} << 40).has_value());  // copies the log into the file
@@ -43,7 +43,7 @@ void expect_set_aside(const Scratch& scratch, const std::string& damaged, int nu
 
 TEST(StoreDamage, OverwrittenBytesSetItAside) {
   const Scratch scratch;
-  std::string bytes = filled(scratch);
+  std::string bytes = bytes_of_sessions(scratch);
   for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 9000; ++i) bytes[i] = '\x5a';
   scratch.write("selfcal.db", bytes);
   expect_set_aside(scratch, bytes, 1);
@@ -51,7 +51,7 @@ TEST(StoreDamage, OverwrittenBytesSetItAside) {
 
 TEST(StoreDamage, ATruncatedFileIsSetAside) {
   const Scratch scratch;
-  const std::string bytes = filled(scratch);
+  const std::string bytes = bytes_of_sessions(scratch);
   const std::string cut = bytes.substr(0, bytes.size() / 2 - 1000);
   scratch.write("selfcal.db", cut);
   expect_set_aside(scratch, cut, 1);
@@ -70,7 +70,7 @@ TEST(StoreDamage, GarbageIsSetAsideAndNeverOverAnother) {
 
 TEST(StoreDamage, TheLogGoesAsideWithTheStore) {
   const Scratch scratch;
-  filled(scratch);
+  bytes_of_sessions(scratch);
   scratch.write("selfcal.db", std::string(20000, 'x'));
   scratch.write("selfcal.db-wal", "a log");
   ASSERT_TRUE(Store::open(scratch.folder()).has_value());
@@ -81,7 +81,7 @@ TEST(StoreDamage, TheLogGoesAsideWithTheStore) {
 // fails to start.
 TEST(StoreDamage, AnyBrokenPageIsSetAsideOrAnswered) {
   const Scratch scratch;
-  const std::string whole = filled(scratch);
+  const std::string whole = bytes_of_sessions(scratch);
   std::mt19937_64 generator(7);
   for (int round = 0; round < 40; ++round) {
     std::string bytes = whole;

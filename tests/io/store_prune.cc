@@ -50,7 +50,7 @@ Left left(Store& store) {
 }
 
 /// Sessions of all kinds of content; the second is active.
-std::unique_ptr<Store> filled(const Scratch& scratch) {
+std::unique_ptr<Store> store_of_sessions(const Scratch& scratch) {
   auto store = opened(scratch.folder());
   for (int i = 0; i < kSessions; ++i) {
     const std::int64_t id = store->begin(some_session(), some_plan(kSteps, 6)).value();
@@ -74,7 +74,7 @@ std::unique_ptr<Store> filled(const Scratch& scratch) {
 // Each later kind is only touched once nothing of the earlier ones may still go.
 TEST_F(StorePrune, ForgetsEventsThenJsonThenPlansThenRawRowsOldestFirst) {
   const Scratch scratch;
-  const auto store = filled(scratch);
+  const auto store = store_of_sessions(scratch);
   Left before = left(*store);
   for (std::int64_t most = store->bytes().value(); most > 0; most -= 20'000) {
     ASSERT_TRUE(store->prune(most).has_value());
@@ -101,7 +101,7 @@ TEST_F(StorePrune, ForgetsEventsThenJsonThenPlansThenRawRowsOldestFirst) {
 
 TEST_F(StorePrune, NeverForgetsTheNewestTheResumableTheActiveOrAnyFigure) {
   const Scratch scratch;
-  auto store = filled(scratch);
+  auto store = store_of_sessions(scratch);
   const std::int64_t resumable = store->begin(some_session(), some_plan(10, 6)).value();
   ASSERT_TRUE(store->add(resumable, some_touch(0, 6)).has_value());
   const std::int64_t newest = whole_session(*store, 10);
@@ -121,7 +121,7 @@ TEST_F(StorePrune, NeverForgetsTheNewestTheResumableTheActiveOrAnyFigure) {
 
 TEST_F(StorePrune, KeepsTheNamesOfStepsAsLongAsTheirRawRows) {
   const Scratch scratch;
-  const auto store = filled(scratch);
+  const auto store = store_of_sessions(scratch);
   std::int64_t most = store->bytes().value();
   while (!store->plan(1)->front().touch.empty()) {
     ASSERT_TRUE(store->prune(most -= 10'000).has_value());
@@ -135,7 +135,7 @@ TEST_F(StorePrune, KeepsTheNamesOfStepsAsLongAsTheirRawRows) {
 
 TEST_F(StorePrune, LeavesAloneWhatFitsAndShrinksTheFileOtherwise) {
   const Scratch scratch;
-  const auto store = filled(scratch);
+  const auto store = store_of_sessions(scratch);
   const auto path = scratch.folder() / "selfcal.db";
   const std::int64_t all = store->bytes().value();
   ASSERT_TRUE(store->prune(all).has_value());

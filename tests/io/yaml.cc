@@ -19,7 +19,7 @@ bool equal(const Node& a, const Node& b) {
   return std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), equal);
 }
 
-std::string error_of(std::string_view text) {
+std::string yaml_error(std::string_view text) {
   const auto node = parse_yaml(text, "f.yaml");
   return node ? "no error" : node.error().what;
 }
@@ -77,33 +77,33 @@ TEST(Yaml, ReadsWindowsLineEndsAndAByteOrderMark) {
 }
 
 TEST(Yaml, NamesTheLineOfWhatIsNotYaml) {
-  EXPECT_THAT(error_of("a: 1\nb: [1, 2\n"), StartsWith("f.yaml:"));
-  EXPECT_THAT(error_of("a: 1\nb: *nowhere\n"), StartsWith("f.yaml:2: is not valid YAML"));
-  EXPECT_THAT(error_of("a: \"unfinished\nb: 2\n"), HasSubstr("is not valid YAML"));
-  EXPECT_THAT(error_of("a: 1\n\tb: 2\n"), HasSubstr("f.yaml:2"));
+  EXPECT_THAT(yaml_error("a: 1\nb: [1, 2\n"), StartsWith("f.yaml:"));
+  EXPECT_THAT(yaml_error("a: 1\nb: *nowhere\n"), StartsWith("f.yaml:2: is not valid YAML"));
+  EXPECT_THAT(yaml_error("a: \"unfinished\nb: 2\n"), HasSubstr("is not valid YAML"));
+  EXPECT_THAT(yaml_error("a: 1\n\tb: 2\n"), HasSubstr("f.yaml:2"));
 }
 
 TEST(Yaml, RefusesWhatWouldBeLostSilently) {
-  EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"), "f.yaml:3: key 'a' appears twice");
-  EXPECT_EQ(error_of("x:\n  - {r: 1, r: 1}\n"), "f.yaml:2: key 'r' appears twice");
-  EXPECT_EQ(error_of("a: 1\n---\na: 2\n"), "f.yaml: expected one document, got 2");
-  EXPECT_EQ(error_of("[a]: 1\n"), "f.yaml:1: expected a text for a key");
+  EXPECT_EQ(yaml_error("a: 1\nb: 2\na: 3\n"), "f.yaml:3: key 'a' appears twice");
+  EXPECT_EQ(yaml_error("x:\n  - {r: 1, r: 1}\n"), "f.yaml:2: key 'r' appears twice");
+  EXPECT_EQ(yaml_error("a: 1\n---\na: 2\n"), "f.yaml: expected one document, got 2");
+  EXPECT_EQ(yaml_error("[a]: 1\n"), "f.yaml:1: expected a text for a key");
 }
 
 TEST(Yaml, RefusesAFileWithoutAMapping) {
-  EXPECT_EQ(error_of(""), "f.yaml: is empty");
-  EXPECT_EQ(error_of("# nothing\n"), "f.yaml: is empty");
-  EXPECT_EQ(error_of("- 1\n- 2\n"), "f.yaml:1: expected `key: value` lines");
-  EXPECT_EQ(error_of("text\n"), "f.yaml:1: expected `key: value` lines");
-  EXPECT_EQ(error_of(std::string_view("\xFF\xFE\0a", 4)),
+  EXPECT_EQ(yaml_error(""), "f.yaml: is empty");
+  EXPECT_EQ(yaml_error("# nothing\n"), "f.yaml: is empty");
+  EXPECT_EQ(yaml_error("- 1\n- 2\n"), "f.yaml:1: expected `key: value` lines");
+  EXPECT_EQ(yaml_error("text\n"), "f.yaml:1: expected `key: value` lines");
+  EXPECT_EQ(yaml_error(std::string_view("\xFF\xFE\0a", 4)),
             "f.yaml: expected UTF-8 text, got other bytes");
 }
 
 TEST(Yaml, RefusesNestingAndAliasesWithoutEnd) {
-  EXPECT_THAT(error_of("a: " + std::string(65, '[') + std::string(65, ']')),
+  EXPECT_THAT(yaml_error("a: " + std::string(65, '[') + std::string(65, ']')),
               HasSubstr("nested deeper than 64 levels"));
-  EXPECT_THAT(error_of("a: " + std::string(100000, '[')), StartsWith("f.yaml"));
-  EXPECT_THAT(error_of("a: &x [*x, *x]\n"), StartsWith("f.yaml"));
+  EXPECT_THAT(yaml_error("a: " + std::string(100000, '[')), StartsWith("f.yaml"));
+  EXPECT_THAT(yaml_error("a: &x [*x, *x]\n"), StartsWith("f.yaml"));
   std::string laughs = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
   for (int i = 1; i < 10; ++i) {
     const std::string one = "*a" + std::to_string(i - 1) + " ";
@@ -111,7 +111,7 @@ TEST(Yaml, RefusesNestingAndAliasesWithoutEnd) {
     for (int k = 0; k < 9; ++k) laughs += ", " + one;
     laughs += "]\n";
   }
-  EXPECT_THAT(error_of(laughs), HasSubstr("more than"));
+  EXPECT_THAT(yaml_error(laughs), HasSubstr("more than"));
 }
 
 TEST(Yaml, SaysWhichFileCannotBeRead) {

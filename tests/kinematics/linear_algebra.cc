@@ -8,7 +8,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-12;  // matrices of 20 x 8 normal numbers, condition below 100
+constexpr double kMatrixRounding = 1e-12;  // matrices of 20 x 8 normal numbers, condition below 100
 
 Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -24,7 +24,7 @@ TEST(Triangularise, LeavesAnUpperTriangleWithTheSameProduct) {
     Eigen::MatrixXd R = A;
     triangularise(R);
     EXPECT_TRUE(R.isUpperTriangular(0));
-    EXPECT_LT((gram(R) - gram(A)).norm(), kRounding) << rows;
+    EXPECT_LT((gram(R) - gram(A)).norm(), kMatrixRounding) << rows;
   }
 }
 
@@ -33,7 +33,7 @@ TEST(Triangularise, WorksOnTheTopRowsOfALargerMatrix) {
   const Eigen::MatrixXd A = random_matrix(20, 4, random);
   Eigen::MatrixXd B = A;
   triangularise(B.topRows(12));
-  EXPECT_LT((gram(B.topRows(12)) - gram(A.topRows(12))).norm(), kRounding);
+  EXPECT_LT((gram(B.topRows(12)) - gram(A.topRows(12))).norm(), kMatrixRounding);
   EXPECT_EQ(B.bottomRows(8), A.bottomRows(8));
 }
 
@@ -44,7 +44,7 @@ TEST(Eliminate, ReflectsOnlyTheFirstColumnsIntoATriangle) {
     Eigen::MatrixXd B = A;
     eliminate(B, 3);
     EXPECT_TRUE(B.leftCols(3).isUpperTriangular(0));
-    EXPECT_LT((gram(B) - gram(A)).norm(), kRounding) << rows;
+    EXPECT_LT((gram(B) - gram(A)).norm(), kMatrixRounding) << rows;
   }
 }
 
@@ -57,14 +57,14 @@ TEST(Eliminate, LeavesBelowTheTriangleTheSchurComplement) {
   const Eigen::MatrixXd schur = N.bottomRightCorner(5, 5) - N.bottomLeftCorner(5, 3) *
                                                                 N.topLeftCorner(3, 3).inverse() *
                                                                 N.topRightCorner(3, 5);
-  EXPECT_LT((gram(B.bottomRightCorner(17, 5)) - schur).norm(), kRounding);
+  EXPECT_LT((gram(B.bottomRightCorner(17, 5)) - schur).norm(), kMatrixRounding);
 }
 
 TEST(InverseOfTriangle, TimesTheTriangleIsTheIdentity) {
   std::mt19937_64 random(45);
   Eigen::MatrixXd R = random_matrix(6, 6, random).triangularView<Eigen::Upper>();
   R.diagonal().array() += 5.0;
-  EXPECT_TRUE((inverse_of_triangle(R) * R).isIdentity(kRounding));
+  EXPECT_TRUE((inverse_of_triangle(R) * R).isIdentity(kMatrixRounding));
 }
 
 TEST(LeastSquares, LeavesAResidualNormalToEveryColumn) {
@@ -72,7 +72,7 @@ TEST(LeastSquares, LeavesAResidualNormalToEveryColumn) {
   const Eigen::MatrixXd A = random_matrix(20, 5, random);
   const Eigen::VectorXd b = random_matrix(20, 1, random);
   const Eigen::VectorXd x = least_squares(A, b);
-  EXPECT_LT((A.transpose() * (A * x - b)).norm(), kRounding);
+  EXPECT_LT((A.transpose() * (A * x - b)).norm(), kMatrixRounding);
 }
 
 TEST(LeastSquares, IsTheShortestWhereManySolve) {
@@ -81,11 +81,11 @@ TEST(LeastSquares, IsTheShortestWhereManySolve) {
   A.col(3) = 2 * A.col(0);
   const Eigen::VectorXd x = least_squares(A, A.col(0));
   // x0 + 2 x3 = 1 with the least x0^2 + x3^2.
-  EXPECT_LT((x - Eigen::Vector4d(0.2, 0, 0, 0.4)).norm(), kRounding);
+  EXPECT_LT((x - Eigen::Vector4d(0.2, 0, 0, 0.4)).norm(), kMatrixRounding);
   const Eigen::MatrixXd wide = random_matrix(2, 5, random);
   const Eigen::VectorXd b = random_matrix(2, 1, random);
   const Eigen::VectorXd y = least_squares(wide, b);
-  EXPECT_LT((y - wide.transpose() * gram(wide.transpose()).inverse() * b).norm(), kRounding);
+  EXPECT_LT((y - wide.transpose() * gram(wide.transpose()).inverse() * b).norm(), kMatrixRounding);
 }
 
 TEST(Beyond, IsNormalToWhatIsProjectedOutAndDiffersByItsCombinations) {
@@ -94,8 +94,8 @@ TEST(Beyond, IsNormalToWhatIsProjectedOutAndDiffersByItsCombinations) {
   onto.col(3) = onto.col(1) - onto.col(2);  // a dependent column must do no harm
   const Eigen::MatrixXd M = random_matrix(20, 3, random);
   const Eigen::MatrixXd rest = beyond(onto, M);
-  EXPECT_LT((onto.transpose() * rest).norm(), kRounding);
-  EXPECT_LT((beyond(onto, M - rest)).norm(), kRounding);
+  EXPECT_LT((onto.transpose() * rest).norm(), kMatrixRounding);
+  EXPECT_LT((beyond(onto, M - rest)).norm(), kMatrixRounding);
   EXPECT_EQ(beyond(Eigen::MatrixXd(20, 0), M), M);
   EXPECT_EQ(beyond(Eigen::MatrixXd::Zero(20, 2), M), M);
 }
@@ -110,11 +110,11 @@ TEST(SingularValues, DescendAndComeWithTheirDirections) {
     if (i > 0) {
       EXPECT_GE(found.values[i - 1], found.values[i]);
     }
-    EXPECT_NEAR((A * found.directions.col(i)).norm(), found.values[i], kRounding);
+    EXPECT_NEAR((A * found.directions.col(i)).norm(), found.values[i], kMatrixRounding);
   }
-  EXPECT_TRUE(gram(found.directions).isIdentity(kRounding));
-  EXPECT_NEAR(std::abs(found.directions(3, 3)), 1, kRounding);
-  EXPECT_NEAR(found.values[3], 0, kRounding);
+  EXPECT_TRUE(gram(found.directions).isIdentity(kMatrixRounding));
+  EXPECT_NEAR(std::abs(found.directions(3, 3)), 1, kMatrixRounding);
+  EXPECT_NEAR(found.values[3], 0, kMatrixRounding);
 }
 
 TEST(SymmetricEigen, AscendsAndRebuildsTheMatrix) {
@@ -122,7 +122,7 @@ TEST(SymmetricEigen, AscendsAndRebuildsTheMatrix) {
   const Eigen::MatrixXd A = gram(random_matrix(6, 4, random));
   const Symmetric found = symmetric_eigen(A);
   EXPECT_LT((found.vectors * found.values.asDiagonal() * found.vectors.transpose() - A).norm(),
-            kRounding);
+            kMatrixRounding);
   for (int i = 1; i < 4; ++i) EXPECT_LE(found.values[i - 1], found.values[i]);
 }
 

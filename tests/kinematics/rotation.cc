@@ -11,7 +11,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-14;  // tens of epsilon
+constexpr double kRotationRounding = 1e-14;  // tens of epsilon
 
 Eigen::Vector3d direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -36,7 +36,7 @@ TEST(RotationVector, ComesBackAtHalfATurnWithEitherSign) {
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector3d phi = (std::numbers::pi - short_of) * direction(random);
       const Eigen::Vector3d back = log_rotation(exp_rotation(phi));
-      EXPECT_LE(back.norm(), std::numbers::pi + kRounding);
+      EXPECT_LE(back.norm(), std::numbers::pi + kRotationRounding);
       // pi about u and pi about -u are one rotation.
       EXPECT_LT(std::min((back - phi).norm(), (back + phi).norm()), 1e-13 + 2 * short_of);
       EXPECT_LT((exp_rotation(back) - exp_rotation(phi)).norm(), 1e-13);
@@ -48,13 +48,13 @@ TEST(RotationVector, BeyondHalfATurnComesBackAsTheShorterWay) {
   std::mt19937_64 random(33);
   const Eigen::Vector3d u = direction(random);
   const Eigen::Vector3d back = log_rotation(exp_rotation(4.0 * u));
-  EXPECT_LT((back - (4.0 - 2 * std::numbers::pi) * u).norm(), kRounding);
+  EXPECT_LT((back - (4.0 - 2 * std::numbers::pi) * u).norm(), kRotationRounding);
 }
 
 TEST(RotationVector, GivesARotationWhoseAxisItIs) {
   const Eigen::Matrix3d R = exp_rotation({0, 0, std::numbers::pi / 2});
-  EXPECT_LT((R * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), kRounding);
-  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), kRounding);
+  EXPECT_LT((R * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), kRotationRounding);
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), kRotationRounding);
 }
 
 TEST(SkewMatrix, MultipliesAsACrossProduct) {

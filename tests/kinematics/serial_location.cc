@@ -13,7 +13,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-12;  // 20 frames, metres and radians: a few hundred epsilon
+constexpr double kLocationRounding = 1e-12;  // 20 frames, metres and radians: a few hundred epsilon
 
 #ifdef SELFCAL_HAVE_KDL
 /// A whole pose turned further by the parameters rx ry rz, in KDL's words.
@@ -60,8 +60,8 @@ int last_moving_frame(const RandomRobot& made) {
 
 void expect_equal(const Locations& X, int lane, const KDL::Frame& frame) {
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(X.p(lane)[i], frame.p(i), kRounding);
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(X.R(lane)(i, k), frame.M(i, k), kRounding);
+    EXPECT_NEAR(X.p(lane)[i], frame.p(i), kLocationRounding);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(X.R(lane)(i, k), frame.M(i, k), kLocationRounding);
   }
 }
 
@@ -99,8 +99,8 @@ TEST(SerialLocation, AgreesWithThePosesThatStaticsUses) {
   made.robot->locate(block, values(*made.robot), Body::endpoint, X, nullptr);
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto poses = serial::frame_poses(model, block.q.row(lane).matrix().transpose());
-    EXPECT_LT((poses.back().linear() - X.R(lane)).norm(), kRounding);
-    EXPECT_LT((poses.back().translation() - X.p(lane)).norm(), kRounding);
+    EXPECT_LT((poses.back().linear() - X.R(lane)).norm(), kLocationRounding);
+    EXPECT_LT((poses.back().translation() - X.p(lane)).norm(), kLocationRounding);
   }
 }
 
@@ -126,12 +126,12 @@ TEST(SerialLocation, OfATwoJointArmIsTheOneWorkedByHand) {
   PsiBlock psi;
   arm.robot->locate(block, values(*arm.robot), Body::endpoint, X, &psi);
   // q = 0: stretched along x. 30 and 90 degrees: 0.4 (cos 30, sin 30) + 0.3 (cos 120, sin 120).
-  EXPECT_LT((X.p(0) - Eigen::Vector3d(0.7, 0, 0.5)).norm(), kRounding);
+  EXPECT_LT((X.p(0) - Eigen::Vector3d(0.7, 0, 0.5)).norm(), kLocationRounding);
   const double root3 = std::sqrt(3.0);
   EXPECT_LT((X.p(1) - Eigen::Vector3d(0.2 * root3 - 0.15, 0.2 + 0.15 * root3, 0.5)).norm(),
-            kRounding);
-  EXPECT_LT((X.p(2) - Eigen::Vector3d(0.3, 0.4, 0.5)).norm(), kRounding);
-  EXPECT_LT((X.R(2) - Eigen::Matrix3d::Identity()).norm(), kRounding);
+            kLocationRounding);
+  EXPECT_LT((X.p(2) - Eigen::Vector3d(0.3, 0.4, 0.5)).norm(), kLocationRounding);
+  EXPECT_LT((X.R(2) - Eigen::Matrix3d::Identity()).norm(), kLocationRounding);
   // Stretched out: theta1 swings 0.7 m, theta2 0.3 m along y; both turn about z.
   const auto column = [&](const char* name) {
     const Eigen::VectorXd whole = psi.col(find_parameter(*arm.robot, name));
@@ -154,7 +154,7 @@ TEST(SerialLocation, TurnsByGearTimesReading) {
   block.count = 1;
   Locations X;
   arm.robot->locate(block, xi, Body::endpoint, X, nullptr);
-  EXPECT_LT((X.p(0) - Eigen::Vector3d(0.4, 0.3, 0.5)).norm(), kRounding);
+  EXPECT_LT((X.p(0) - Eigen::Vector3d(0.4, 0.3, 0.5)).norm(), kLocationRounding);
 }
 
 }  // namespace

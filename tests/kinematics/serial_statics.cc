@@ -10,7 +10,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-12;  // N m of tens
+constexpr double kTorqueRounding = 1e-12;  // N m of tens
 
 serial::Model model_of(const std::string& text) {
   Problems problems;
@@ -33,29 +33,29 @@ TEST(GravityTorques, OfATwoJointArmAreTheOnesWorkedByHand) {
   // Stretched along x: 4 kg at 0.25 m, 2 kg at 0.65 m, 1 kg at 0.8 m from j1; 0.15 m, 0.3 m from
   // j2.
   const Eigen::VectorXd level = serial::gravity_torques(model, Eigen::Vector2d(0, 0));
-  EXPECT_NEAR(level[0], -g * (4 * 0.25 + 2 * 0.65 + 1 * 0.8), kRounding);
-  EXPECT_NEAR(level[1], -g * (2 * 0.15 + 1 * 0.3), kRounding);
+  EXPECT_NEAR(level[0], -g * (4 * 0.25 + 2 * 0.65 + 1 * 0.8), kTorqueRounding);
+  EXPECT_NEAR(level[1], -g * (2 * 0.15 + 1 * 0.3), kTorqueRounding);
   // Upright: nothing to hold.
   const Eigen::VectorXd upright =
       serial::gravity_torques(model, Eigen::Vector2d(std::numbers::pi / 2, 0));
-  EXPECT_LT(upright.norm(), kRounding);
+  EXPECT_LT(upright.norm(), kTorqueRounding);
   // Upper arm up, forearm level: both joints carry the forearm alone.
   const double quarter = std::numbers::pi / 2;
   const Eigen::VectorXd bent = serial::gravity_torques(model, Eigen::Vector2d(quarter, -quarter));
-  EXPECT_NEAR(bent[0], -g * 0.6, kRounding);
-  EXPECT_NEAR(bent[1], -g * 0.6, kRounding);
+  EXPECT_NEAR(bent[0], -g * 0.6, kTorqueRounding);
+  EXPECT_NEAR(bent[1], -g * 0.6, kTorqueRounding);
 }
 
 TEST(GravityTorques, TurnTheirSignWithGravity) {
   const serial::Model hung = model_of("gravity: [0, 0, 9.81]\n" + with_frames(kArm));
-  EXPECT_NEAR(serial::gravity_torques(hung, Eigen::Vector2d(0, 0))[1], 9.81 * 0.6, kRounding);
+  EXPECT_NEAR(serial::gravity_torques(hung, Eigen::Vector2d(0, 0))[1], 9.81 * 0.6, kTorqueRounding);
 }
 
 TEST(GravityTorques, AreForcesAlongPrismaticJoints) {
   const serial::Model lift = model_of(with_frames(
       "  - {name: j1, joint: prismatic, mass: 3}\n  - {name: tool, joint: fixed, mass: 2}\n"));
   const Eigen::VectorXd force = serial::gravity_torques(lift, Eigen::VectorXd::Constant(1, 0.4));
-  EXPECT_NEAR(force[0], -9.81 * 5, kRounding);
+  EXPECT_NEAR(force[0], -9.81 * 5, kTorqueRounding);
 }
 
 TEST(SerialRemarks, SayWhereGravityPointsAndWhatHoldsTheArm) {

@@ -19,7 +19,7 @@ namespace {
 constexpr unsigned kSessions = 4;  // of each kind
 // rad/(N m), of a spring of 2e5 N m/rad: 1 mrad under the stretched arm, of which calibration
 // leaves 2 to 5 times the noise.
-constexpr double kCompliance = 5e-6;
+constexpr double kTrueCompliance = 5e-6;
 
 struct Tally {
   int right = 0, weighed = 0, as_stiff = 0;  ///< compliances that were identified; rightly
@@ -76,7 +76,7 @@ void weigh(const Diagnosis& diagnosis, const std::vector<std::string>& joints, T
     const double c = diagnosis.values[at], sigma = sigma_of(diagnosis, joint + ".c");
     std::printf("  %s.c %.2fe-6", joint.c_str(), c * 1e6);
     ++tally.weighed;
-    tally.as_stiff += std::abs(c - kCompliance) <= std::max(0.1 * kCompliance, 3 * sigma);
+    tally.as_stiff += std::abs(c - kTrueCompliance) <= std::max(0.1 * kTrueCompliance, 3 * sigma);
   }
 }
 
@@ -84,7 +84,7 @@ Diagnosis diagnosed(const std::vector<std::string>& joints, unsigned seed) {
   const Scratch scratch;
   SessionOrder order;
   order.seed = seed;
-  for (const std::string& joint : joints) order.compliance.emplace_back(joint, kCompliance);
+  for (const std::string& joint : joints) order.compliance.emplace_back(joint, kTrueCompliance);
   const Session session = make_session(scratch.folder() / "session", order);
   std::printf("%4u %5d %9.1f", seed, session.rows, session.noise * 1e6);
   auto loaded = load_data_set(scratch.folder() / "session");

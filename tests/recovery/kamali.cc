@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -15,8 +14,6 @@
 
 namespace selfcal::recovery {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct True {
   const char* name;

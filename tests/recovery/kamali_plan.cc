@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
@@ -12,7 +11,6 @@ namespace selfcal::recovery {
 namespace {
 
 constexpr int kGrid = 5;
-constexpr double kDegree = std::numbers::pi / 180;
 
 double uniform(std::mt19937_64& random, double lower, double upper) {
   return std::uniform_real_distribution<double>(lower, upper)(random);

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <numbers>
 #include <random>
 
 #include "kinematics/robot.h"
 
 namespace selfcal::recovery {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 inline constexpr int kWrenches = 7;  ///< at each pose
 

@@ -57,12 +57,12 @@ class ModelsOfADamagedStore : public testing::Test {
   std::unique_ptr<Store> store_;
 };
 
-constexpr double kRounding = 1e-12;  // of a length of 1 m, moved and moved back
+constexpr double kShiftRounding = 1e-12;  // of a length of 1 m, moved and moved back
 
 TEST_F(ModelsOfADamagedStore, AreThoseOfTheActiveSlotWhileItIsSound) {
   const Models models = load();
   EXPECT_EQ(models.name(), "session 2");
-  EXPECT_NEAR(moved(models), 0.002, kRounding);
+  EXPECT_NEAR(moved(models), 0.002, kShiftRounding);
   EXPECT_EQ(models.refused(), "");
 }
 
@@ -70,7 +70,7 @@ TEST_F(ModelsOfADamagedStore, AreThePreviousOnesAndSaySo) {
   change_active();
   const Models models = load();
   EXPECT_EQ(models.name(), "session 1");
-  EXPECT_NEAR(moved(models), 0.001, kRounding);
+  EXPECT_NEAR(moved(models), 0.001, kShiftRounding);
   EXPECT_THAT(models.refused(), AllOf(HasSubstr("the active parameters (session 2) were damaged"),
                                       HasSubstr("those before them, of session 1, are used")));
 }

@@ -16,10 +16,10 @@ EncoderSample sample_of(Nanoseconds time, std::vector<std::int64_t> counts) {
   return sample;
 }
 
-const std::vector<EncoderScale> kScales = {{1e-3, 100}, {-2e-3, 0}};
+const std::vector<EncoderScale> kTwoScales = {{1e-3, 100}, {-2e-3, 0}};
 
 TEST(Reading, TurnsCountsIntoReadingsByStepAndZero) {
-  const Eigen::VectorXd q = reading_of(sample_of(0, {1100, 500}), kScales);
+  const Eigen::VectorXd q = reading_of(sample_of(0, {1100, 500}), kTwoScales);
   EXPECT_DOUBLE_EQ(q[0], 1.0);
   EXPECT_DOUBLE_EQ(q[1], -1.0) << "a negative step turns the joint";
 }
@@ -28,7 +28,7 @@ TEST(Reading, IsExactBetweenTwoSamplesAtASteadySpeed) {
   // Over 4 ms joint 0 goes from 1.0 to 1.4 and joint 1 from -1.0 to -0.2: 100 and 200 rad/s.
   const Reading reading =
       reading_between(sample_of(0, {1100, 500}), sample_of(4 * kMillisecond, {1500, 100}),
-                      1 * kMillisecond, kScales);
+                      1 * kMillisecond, kTwoScales);
   constexpr double kRounding = 1e-15;  // a few roundings of numbers about 1
   EXPECT_NEAR(reading.q[0], 1.1, kRounding);
   EXPECT_NEAR(reading.q[1], -0.8, kRounding);
@@ -38,11 +38,11 @@ TEST(Reading, IsExactBetweenTwoSamplesAtASteadySpeed) {
 
 TEST(Reading, IsTheSamplesOwnAtTheMomentOfASample) {
   const EncoderSample first = sample_of(0, {1100, 500}), second = sample_of(100, {1500, 100});
-  EXPECT_EQ(reading_between(first, second, 0, kScales).q, reading_of(first, kScales));
-  const Eigen::VectorXd last = reading_between(first, second, 100, kScales).q;
-  EXPECT_LT((last - reading_of(second, kScales)).norm(), 1e-15);  // rounding of 1 + (1.4 - 1)
-  const Reading still = reading_between(second, second, 100, kScales);
-  EXPECT_EQ(still.q, reading_of(second, kScales));
+  EXPECT_EQ(reading_between(first, second, 0, kTwoScales).q, reading_of(first, kTwoScales));
+  const Eigen::VectorXd last = reading_between(first, second, 100, kTwoScales).q;
+  EXPECT_LT((last - reading_of(second, kTwoScales)).norm(), 1e-15);  // rounding of 1 + (1.4 - 1)
+  const Reading still = reading_between(second, second, 100, kTwoScales);
+  EXPECT_EQ(still.q, reading_of(second, kTwoScales));
   EXPECT_EQ(still.dq, Eigen::VectorXd::Zero(2)) << "one sample tells no speed";
 }
 
