@@ -37,6 +37,7 @@ foreach(stem IN LISTS stems)
 endforeach()
 
 add_library(selfcal_messages STATIC ${generated_sources})
+set_target_properties(selfcal_messages PROPERTIES UNITY_BUILD OFF)
 target_include_directories(selfcal_messages SYSTEM PUBLIC ${generated})
 target_link_libraries(selfcal_messages PUBLIC CycloneDDS::ddsc)
 # What others generate is held to their warnings, not to ours.

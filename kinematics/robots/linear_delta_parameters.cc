@@ -16,7 +16,7 @@ namespace {
 constexpr double kOwnTolerance = 2.0e-3;    // m or rad
 constexpr double kPlacedTolerance = 50e-3;  // of the tool: m or rad
 constexpr double kScaleTolerance = 1.0e-4;
-constexpr const char* kNames[kFields] = {"radius", "angle",  "rod",  "endstop",
+constexpr const char* kDeltaFields[kFields] = {"radius", "angle",  "rod",  "endstop",
                                          "tilt_x", "tilt_y", "scale"};
 
 void take_figures(const Delta& model, int at, double silent, Parameter& p) {
@@ -27,9 +27,9 @@ void take_figures(const Delta& model, int at, double silent, Parameter& p) {
 
 Parameter tower_parameter(const Delta& model, int t, int field) {
   Parameter p;
-  p.name = kNames[field] + std::to_string(t + 1);
+  p.name = kDeltaFields[field] + std::to_string(t + 1);
   p.frame = tower_name(t);
-  p.field = kNames[field];
+  p.field = kDeltaFields[field];
   const int at = index(t, field);
   if (field == kScale) {
     p.quantity = Quantity::ratio;

@@ -14,11 +14,11 @@
 namespace selfcal {
 namespace {
 
-constexpr double kStep = 1e-6;
+constexpr double kKindStep = 1e-6;
 // What is cut off is step^2 / 6 of the third derivative: of a delta, where a rod l stands 3 across
 // 1 high, 900 / l^2 a rod, 2e4 / m^2, ten times that for the three together: 3e-8. Rounding leaves
 // 1e-16 m / step, times 3: 3e-10.
-constexpr double kTolerance = 1e-7;
+constexpr double kKindTolerance = 1e-7;
 constexpr Body kBodies[] = {Body::endpoint, Body::last_link, Body::first_link};
 
 std::vector<std::string> kinds() {
@@ -63,14 +63,14 @@ class RobotKind : public testing::TestWithParam<std::string> {
 };
 
 /// (dx dy dz, rotation vector) per unit from `minus` to `plus`, laid out as a column of Psi.
-Eigen::VectorXd difference(const Locations& plus, const Locations& minus) {
+Eigen::VectorXd kind_difference(const Locations& plus, const Locations& minus) {
   Eigen::VectorXd column(6 * kLanes);
   for (int lane = 0; lane < kLanes; ++lane) {
     const Eigen::Vector3d shift = plus.p(lane) - minus.p(lane);
     const Eigen::Vector3d turn = log_rotation(plus.R(lane) * minus.R(lane).transpose());
     for (int c = 0; c < 3; ++c) {
-      column[c * kLanes + lane] = shift[c] / (2 * kStep);
-      column[(3 + c) * kLanes + lane] = turn[c] / (2 * kStep);
+      column[c * kLanes + lane] = shift[c] / (2 * kKindStep);
+      column[(3 + c) * kLanes + lane] = turn[c] / (2 * kKindStep);
     }
   }
   return column;
@@ -95,11 +95,11 @@ TEST_P(RobotKind, HasForEveryParameterTheColumnThatDifferencesGive) {
     ASSERT_EQ(psi.cols(), xi_.size());
     for (Eigen::Index p = 0; p < xi_.size(); ++p) {
       Eigen::VectorXd plus = xi_, minus = xi_;
-      plus[p] += kStep;
-      minus[p] -= kStep;
+      plus[p] += kKindStep;
+      minus[p] -= kKindStep;
       const Eigen::VectorXd column =
-          difference(located(block_, plus, body), located(block_, minus, body));
-      EXPECT_LT((psi.col(p) - column).cwiseAbs().maxCoeff(), kTolerance)
+          kind_difference(located(block_, plus, body), located(block_, minus, body));
+      EXPECT_LT((psi.col(p) - column).cwiseAbs().maxCoeff(), kKindTolerance)
           << robot_->parameters()[p].name << " of body " << static_cast<int>(body);
     }
   }
@@ -115,11 +115,11 @@ TEST_P(RobotKind, HasForEveryReadingTheColumnThatDifferencesGive) {
     ASSERT_EQ(J.cols(), block_.q.cols());
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
       ConfigurationBlock plus = block_, minus = block_;
-      plus.q.col(j) += kStep;
-      minus.q.col(j) -= kStep;
+      plus.q.col(j) += kKindStep;
+      minus.q.col(j) -= kKindStep;
       const Eigen::VectorXd column =
-          difference(located(plus, xi_, body), located(minus, xi_, body));
-      EXPECT_LT((J.col(j) - column).cwiseAbs().maxCoeff(), kTolerance)
+          kind_difference(located(plus, xi_, body), located(minus, xi_, body));
+      EXPECT_LT((J.col(j) - column).cwiseAbs().maxCoeff(), kKindTolerance)
           << robot_->joints()[j].name << " of body " << static_cast<int>(body);
     }
   }

@@ -188,7 +188,7 @@ TEST(StandardTable, KeepsThePriorOfWhatPlacesTheRobot) {
   EXPECT_EQ(tolerance("j1.r"), 2e-3);
 }
 
-std::string refusal(const std::string& text) {
+std::string table_refusal(const std::string& text) {
   Problems problems;
   EXPECT_EQ(make_robot(parsed(text), problems), nullptr);
   return problems.any() ? problems.list.front() : "accepted";
@@ -196,12 +196,12 @@ std::string refusal(const std::string& text) {
 
 TEST(StandardTable, IsRefusedWhereItHasABeta) {
   const std::string head = "robot: arm\nkind: serial\nconvention: standard\nframes:\n";
-  EXPECT_THAT(refusal(head + "  - {name: j1, joint: revolute, beta: 0.1}\n"),
+  EXPECT_THAT(table_refusal(head + "  - {name: j1, joint: revolute, beta: 0.1}\n"),
               AllOf(StartsWith("arm.yaml:5: "), HasSubstr("standard DH has no beta")));
-  EXPECT_THAT(refusal(head + "  - {name: j1, joint: revolute, tolerance: {beta: 0.1}}\n"),
+  EXPECT_THAT(table_refusal(head + "  - {name: j1, joint: revolute, tolerance: {beta: 0.1}}\n"),
               AllOf(StartsWith("arm.yaml:5: "), HasSubstr("unknown key 'beta'")));
-  EXPECT_THAT(refusal("robot: arm\nkind: serial\nconvention: craig\nframes:\n"
-                      "  - {name: j1, joint: revolute}\n"),
+  EXPECT_THAT(table_refusal("robot: arm\nkind: serial\nconvention: craig\nframes:\n"
+                            "  - {name: j1, joint: revolute}\n"),
               AllOf(StartsWith("arm.yaml:3: "), HasSubstr("modified or standard")));
 }
 

@@ -18,9 +18,9 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 // log of a rotation that was composed from its angles: a few epsilon of 1 to 3 rad.
-constexpr double kRounding = 1e-14;
+constexpr double kPoseRounding = 1e-14;
 
-const char* const kFrames =
+const char* const kPoseFrames =
     "  - {name: base, joint: fixed, xyz: [0, 0, 0.5], rpy: [0, 0, 0.3]}\n"
     "  - {name: j1, joint: revolute}\n"
     "  - {name: bend, joint: fixed, xyz: [0.3, 0, 0.1]}\n"
@@ -38,16 +38,16 @@ Location tool_of(const std::string& pose) {
 
 TEST(WholePose, TurnsByRollThenPitchThenYawAboutTheAxesOfTheFrameBefore) {
   const Location yawed = tool_of("xyz: [0.03, 0, 0.1], rpy: [0, 0, pi/2]");
-  EXPECT_TRUE(yawed.p.isApprox(Eigen::Vector3d(0.03, 0, 0.1), kRounding));
-  EXPECT_TRUE(yawed.R.col(0).isApprox(Eigen::Vector3d::UnitY(), kRounding));
+  EXPECT_TRUE(yawed.p.isApprox(Eigen::Vector3d(0.03, 0, 0.1), kPoseRounding));
+  EXPECT_TRUE(yawed.R.col(0).isApprox(Eigen::Vector3d::UnitY(), kPoseRounding));
   // Roll turns y to z; yaw, last, x to y: so z of the tool is -y, then x of the frame before.
   const Location both = tool_of("rpy: [pi/2, 0, pi/2]");
-  EXPECT_TRUE(both.R.col(2).isApprox(Eigen::Vector3d::UnitX(), kRounding));
-  EXPECT_TRUE(both.R.col(1).isApprox(Eigen::Vector3d::UnitZ(), kRounding));
+  EXPECT_TRUE(both.R.col(2).isApprox(Eigen::Vector3d::UnitX(), kPoseRounding));
+  EXPECT_TRUE(both.R.col(1).isApprox(Eigen::Vector3d::UnitZ(), kPoseRounding));
 }
 
 TEST(WholePose, TurnsByItsParametersAboutItsOwnAxes) {
-  const auto robot = robot_of(with_frames(kFrames));
+  const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
   const Eigen::Vector2d q(0.3, -0.4);
   Eigen::VectorXd xi = values(*robot);
@@ -56,11 +56,11 @@ TEST(WholePose, TurnsByItsParametersAboutItsOwnAxes) {
   const Location after = locate(*robot, xi, q);
   EXPECT_EQ(after.p, before.p);
   EXPECT_TRUE((before.R.transpose() * after.R)
-                  .isApprox(exp_rotation(Eigen::Vector3d(0, 0.2, 0)), kRounding));
+                  .isApprox(exp_rotation(Eigen::Vector3d(0, 0.2, 0)), kPoseRounding));
 }
 
 TEST(WholePose, HasSixParametersOfItsPartInThePlaceOfFive) {
-  const auto robot = robot_of(with_frames(kFrames));
+  const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
   std::vector<std::string> names;
   for (const int i : match_parameters(*robot, "tool.*"))
@@ -85,7 +85,7 @@ TEST(WholePose, HasSixParametersOfItsPartInThePlaceOfFive) {
 }
 
 TEST(WholePose, CarriesTheScaleBetweenJointsOnly) {
-  const auto robot = robot_of(with_frames(kFrames));
+  const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
   std::vector<std::string> lengths;
   for (const Parameter& p : robot->parameters())
@@ -94,7 +94,7 @@ TEST(WholePose, CarriesTheScaleBetweenJointsOnly) {
 }
 
 TEST(WholePose, ComesFirstInTheOrderOfBaseAndTool) {
-  const auto robot = robot_of(with_frames(kFrames));
+  const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
   std::vector<std::string> names;
   for (const int i : robot->preference()) names.push_back(robot->parameters()[i].name);
@@ -108,19 +108,19 @@ TEST(WholePose, ComesFirstInTheOrderOfBaseAndTool) {
 }
 
 TEST(WholePose, KeepsTheMakersPoseBesideWhatWasIdentified) {
-  const auto robot = robot_of(with_frames(kFrames));  // its pitch is a quarter turn
+  const auto robot = robot_of(with_frames(kPoseFrames));  // its pitch is a quarter turn
   ASSERT_NE(robot, nullptr);
   Eigen::VectorXd xi = values(*robot);
   std::mt19937_64 random(91);
   for (double& v : xi) v += uniform(random, -0.02, 0.02);
   const auto back = robot_of(robot->describe(xi));
   ASSERT_NE(back, nullptr);
-  EXPECT_LT((values(*back) - xi).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LT((values(*back) - xi).cwiseAbs().maxCoeff(), kPoseRounding);
   EXPECT_EQ(nominal_values(*back), nominal_values(*robot));
   EXPECT_EQ(back->identity(), robot->identity());
   const Eigen::Vector2d q(0.3, -0.4);
   const Location one = locate(*robot, xi, q), other = locate(*back, values(*back), q);
-  EXPECT_LT((one.R - other.R).norm() + (one.p - other.p).norm(), kRounding);
+  EXPECT_LT((one.R - other.R).norm() + (one.p - other.p).norm(), kPoseRounding);
   // What the file says now is what it says ever after.
   const auto again = robot_of(back->describe(values(*back)));
   ASSERT_NE(again, nullptr);
@@ -128,7 +128,7 @@ TEST(WholePose, KeepsTheMakersPoseBesideWhatWasIdentified) {
 }
 
 TEST(WholePose, IsWrittenAsItWasGivenWhereNothingMoved) {
-  const auto robot = robot_of(with_frames(kFrames));
+  const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
   const Node node = robot->describe(values(*robot));
   const Node& tool = node.find("frames")->items[4];
@@ -148,11 +148,11 @@ TEST(WholePose, HasItsMakersPoseForTheCentreOfThePrior) {
   const int x = find_parameter(*robot, "tool.x"), rz = find_parameter(*robot, "tool.rz");
   EXPECT_EQ(robot->parameters()[x].value, 0.031);
   EXPECT_EQ(robot->parameters()[x].nominal, 0.03);
-  EXPECT_NEAR(robot->parameters()[rz].value, 0.02, kRounding);
+  EXPECT_NEAR(robot->parameters()[rz].value, 0.02, kPoseRounding);
   EXPECT_EQ(robot->parameters()[rz].nominal, 0);
 }
 
-std::string refusal(const std::string& frames) {
+std::string pose_refusal(const std::string& frames) {
   Problems problems;
   const auto robot = make_robot(parsed(with_frames(frames)), problems);
   EXPECT_EQ(robot, nullptr);
@@ -174,8 +174,8 @@ TEST(WholePose, IsRefusedWithTheLine) {
       {"joint: fixed, xyz: [0, 0, 1], nominal: {x: 0}", "unknown key 'x'"},
   };
   for (const auto& each : cases)
-    EXPECT_THAT(refusal("  - {name: j1, joint: revolute}\n  - {name: tool, " +
-                        std::string(each.frame) + "}\n"),
+    EXPECT_THAT(pose_refusal("  - {name: j1, joint: revolute}\n  - {name: tool, " +
+                             std::string(each.frame) + "}\n"),
                 AllOf(StartsWith("arm.yaml:5: "), HasSubstr(each.told)))
         << each.frame;
 }
