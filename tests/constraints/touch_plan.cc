@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(TouchPlan, TouchesItsPlanesWithinPatchLimitsAndTilt) {
-  const Cell cell = table_and_wall();
+  const PlannedCell cell = table_and_wall();
   const TouchPlan plan = cell.plan();
   EXPECT_EQ(plan.unreached, "");
   ASSERT_EQ(plan.touches.size(), 24u);
@@ -35,7 +35,7 @@ TEST(TouchPlan, TouchesItsPlanesWithinPatchLimitsAndTilt) {
 }
 
 TEST(TouchPlan, BeginsItsClearanceBeforeTheSurfaceAndGivesUpItsSearchBehindIt) {
-  const Cell cell = table_and_wall();
+  const PlannedCell cell = table_and_wall();
   for (const PlannedTouch& each : cell.plan().touches) {
     const Obstacle& plane = cell.obstacles[each.set];
     const auto height = [&](const Eigen::VectorXd& q) {
@@ -55,7 +55,7 @@ TEST(TouchPlan, BeginsItsClearanceBeforeTheSurfaceAndGivesUpItsSearchBehindIt) {
 }
 
 TEST(TouchPlan, TouchesBothOfTwoParallelFaces) {
-  Cell cell;
+  PlannedCell cell;
   const Eigen::Vector3d normal = Eigen::Vector3d(1, 0, 0.2).normalized();
   const Eigen::Vector3d near(-0.60, -0.18, 0.6);
   const Eigen::Vector3d far(-0.796, 0.18, 0.561);
@@ -74,7 +74,7 @@ TEST(TouchPlan, TouchesBothOfTwoParallelFaces) {
 }
 
 TEST(TouchPlan, KeepsTheShareOfEverySetAsideToJudge) {
-  Cell cell = table_and_wall(20);
+  PlannedCell cell = table_and_wall(20);
   cell.options.check = 0.3;
   std::map<int, int> checks;
   for (const PlannedTouch& each : cell.plan().touches) checks[each.set] += each.check;
@@ -83,7 +83,7 @@ TEST(TouchPlan, KeepsTheShareOfEverySetAsideToJudge) {
 }
 
 TEST(TouchPlan, IsTheSameForTheSameSeedAndAnotherForAnother) {
-  Cell cell = table_and_wall(6);
+  PlannedCell cell = table_and_wall(6);
   const TouchPlan one = cell.plan(), again = cell.plan();
   cell.options.seed = 2;
   const TouchPlan other = cell.plan();
@@ -94,7 +94,7 @@ TEST(TouchPlan, IsTheSameForTheSameSeedAndAnotherForAnother) {
 }
 
 TEST(TouchPlan, SaysWhichSetIsOutOfReach) {
-  Cell cell;
+  PlannedCell cell;
   cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, 4);
   cell.plane({5, 0, 0.15}, {0, 0, 1}, 0.25, 4);
   const TouchPlan plan = cell.plan();

@@ -27,15 +27,15 @@ inline Set set_of(const std::string& name, const std::string& method) {
 }
 
 /// Planes and sockets around the robot.
-struct Cell {
+struct PlannedCell {
   std::vector<Set> sets;
   std::vector<TouchTarget> targets;
   std::vector<Obstacle> obstacles;
   TouchPlanOptions options;
-  Cell() { options.home = home(); }
+  PlannedCell() { options.home = home(); }
 
-  Cell& plane(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double radius,
-              int touches) {
+  PlannedCell& plane(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double radius,
+                     int touches) {
     TouchTarget target;
     target.set = static_cast<int>(sets.size());
     target.touches = touches;
@@ -48,7 +48,8 @@ struct Cell {
     obstacles.push_back({point, target.outward, target.within});
     return *this;
   }
-  Cell& sockets(const std::string& method, const std::vector<Location>& places, int touches) {
+  PlannedCell& sockets(const std::string& method, const std::vector<Location>& places,
+                       int touches) {
     TouchTarget target;
     target.set = static_cast<int>(sets.size());
     target.touches = touches;
@@ -63,8 +64,8 @@ struct Cell {
   }
 };
 
-inline Cell table_and_wall(int touches = 12) {
-  Cell cell;
+inline PlannedCell table_and_wall(int touches = 12) {
+  PlannedCell cell;
   cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, touches);
   cell.plane({0, 0.9, 0.7}, {0.1, -1, 0}, 0.25, touches);
   return cell;

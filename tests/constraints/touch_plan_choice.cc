@@ -14,7 +14,7 @@ namespace selfcal {
 namespace {
 
 /// What rows at these readings, of set `set` each, and the priors say of the robot and the planes.
-Eigen::MatrixXd information(const Cell& cell, const std::vector<Eigen::VectorXd>& rows,
+Eigen::MatrixXd information(const PlannedCell& cell, const std::vector<Eigen::VectorXd>& rows,
                             const std::vector<int>& set) {
   DataSet data;
   data.sets = cell.sets;
@@ -53,7 +53,7 @@ double log_det(const Eigen::MatrixXd& A) {
 
 TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
   constexpr int kTouches = 20;
-  Cell cell;
+  PlannedCell cell;
   cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, kTouches);
   std::vector<Eigen::VectorXd> planned;
   for (const PlannedTouch& each : cell.plan().touches) planned.push_back(each.touch);
@@ -77,7 +77,7 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
 }
 
 TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
-  Cell cell;
+  PlannedCell cell;
   const Eigen::Vector3d normal(0, 1, 0);
   cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, 20);
   cell.plane({0.70, 0.1, 0.5}, normal, 0.2, 20).plane({0.70, -0.1, 0.5}, -normal, 0.2, 20);

@@ -10,7 +10,7 @@ namespace selfcal {
 namespace {
 
 TEST(TouchPlan, VisitsEverySocketAndComesInFromItsWayOut) {
-  Cell cell;
+  PlannedCell cell;
   const std::vector<Location> places = {{Eigen::Matrix3d::Identity(), {0.7, 0.1, 0.3}},
                                         {Eigen::Matrix3d::Identity(), {0.6, -0.2, 0.3}},
                                         {Eigen::Matrix3d::Identity(), {0.5, 0.3, 0.35}}};
@@ -34,7 +34,7 @@ TEST(TouchPlan, VisitsEverySocketAndComesInFromItsWayOut) {
 }
 
 TEST(TouchPlan, SitsInANestAsItIsTurned) {
-  Cell cell;
+  PlannedCell cell;
   cell.options.tilt = 3.2;
   Location nest = located(home());
   nest.p.z() -= 0.05;

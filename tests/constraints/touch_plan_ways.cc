@@ -7,7 +7,7 @@ namespace selfcal {
 namespace {
 
 TEST(TouchPlan, ChoosesWaysThatAreFree) {
-  const Cell cell = table_and_wall();
+  const PlannedCell cell = table_and_wall();
   const TouchPlan plan = cell.plan();
   const auto free = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, int touched = -1) {
     return path_is_free(rx90(), values(rx90()), from, to, cell.obstacles, cell.options.apart,
