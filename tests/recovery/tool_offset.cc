@@ -78,12 +78,14 @@ TEST_P(ToolOffsetBy, IsFoundByAWholePoseWithItsOrientationHeldAndSaid) {
     ASSERT_EQ(session.unreached, "");
     const Solution solution = identify(*robot, session.data);
     EXPECT_EQ(solution.verdict.answer, Answer::improved) << solution.verdict.why;
+    // Along the last joint's axis and around it the tool is not told from the last link: there its
+    // sigma is that of the link's prior.
     for (const char* name : {"tool.x", "tool.y", "tool.z"}) {
       const int i = find_parameter(*robot, name);
       const ParameterResult& p = solution.parameters[i];
-      EXPECT_EQ(p.status, Status::identified) << name;
+      EXPECT_TRUE(p.status == Status::identified || p.status == Status::grouped) << name;
       EXPECT_LT(std::abs(p.value - truth[i]), 4 * p.sigma) << name;  // one in 16 000 exceeds it
-      EXPECT_LT(p.sigma, 1e-3) << name;
+      EXPECT_LT(p.sigma, 2.1e-3) << name;                            // 50 mm were believed
     }
     std::vector<std::string> held;
     for (const Note& note : solution.gauge) {
