@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "app/subcommand.h"
+#include "app/commands/subcommand.h"
 
 namespace selfcal {
 namespace {

@@ -1,7 +1,7 @@
 // Where and when the rows of a data set were taken, as effects ask for it.
 #pragma once
 
-#include "constraints/data_set.h"
+#include "constraints/methods/data_set.h"
 #include "kinematics/effect.h"
 
 namespace selfcal {

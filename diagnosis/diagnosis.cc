@@ -4,18 +4,18 @@
 #include <cmath>
 #include <random>
 
-#include "diagnosis/causes.h"
-#include "diagnosis/closing.h"
-#include "diagnosis/detectable.h"
-#include "diagnosis/folds.h"
-#include "diagnosis/named.h"
-#include "diagnosis/next.h"
-#include "diagnosis/null.h"
-#include "diagnosis/practice.h"
-#include "diagnosis/structures.h"
-#include "diagnosis/view.h"
-#include "diagnosis/warnings.h"
-#include "diagnosis/whereabouts.h"
+#include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/report/attribution.h"
+#include "diagnosis/report/detectable.h"
+#include "diagnosis/report/experiment_design.h"
+#include "diagnosis/report/holdout_validation.h"
+#include "diagnosis/report/named.h"
+#include "diagnosis/report/warnings.h"
+#include "diagnosis/search/causes.h"
+#include "diagnosis/search/sign_flip_test.h"
+#include "diagnosis/search/simulation_based_calibration.h"
+#include "diagnosis/validation/folds.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
@@ -48,10 +48,10 @@ class Diagnostician {
     result_.verdict = decided(named_cause(view_, *bench_, posterior_, result_.candidates, options_),
                               posterior_, result_.p_value, options_);
     tell("practising on simulated sessions", 0.8);
-    result_.practice = practise(view_, *bench_, null, options_);
+    result_.practice = calibrate_by_simulation(view_, *bench_, null, options_);
     for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
       *each = calibrated(*each, result_.practice);
-    result_.where = whereabouts(view_, *bench_, data_);
+    result_.where = attribution(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable(view_, *bench_, options_, result_);
     result_.next = next_steps(view_, data_, result_);
@@ -67,22 +67,22 @@ class Diagnostician {
     for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       const DenseEquations rows = view_.kept();
-      bench_ = std::make_unique<Bench>(
+      bench_ = std::make_unique<EvidenceEvaluator>(
           view_.whitened(), structures(data_.rows, rows, view_.ends(), view_.by_joint(rows)),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
-      if (bench_->workbench(0).freedom() < kFewestFreedoms ||
+      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms ||
           !std::isfinite(posterior_.log_total)) {
         result_.problem =
             "too few rows for a diagnosis: beyond what calibration takes they leave " +
-            format_number(std::floor(bench_->workbench(0).freedom())) +
+            format_number(std::floor(bench_->marginal_likelihood(0).freedom())) +
             " equations, at least 10 are needed";
         return;
       }
       const Hypothesis& best = posterior_.hypotheses.front();
-      const auto [columns, sigma] = Workbench::unfold(bench_->terms(best));
+      const auto [columns, sigma] = MarginalLikelihood::unfold(bench_->terms(best));
       const double variance =
-          bench_->workbench(best.structure).estimate(bench_->terms(best)).variance *
+          bench_->marginal_likelihood(best.structure).estimate(bench_->terms(best)).variance *
           bench_->noise_variance(best.structure);
       // The bench and the view must end up with the same rows.
       if (pass + 1 == kDiagnosisPasses || !view_.refine(view_.residuals(columns, sigma), variance))
@@ -108,14 +108,15 @@ class Diagnostician {
     Correction correction;
     for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       const DenseEquations rows = view_.kept();
-      const Bench bench(view_.whitened(), noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
-                        view_.parameters(), rule);
+      const EvidenceEvaluator bench(view_.whitened(),
+                                    noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
+                                    view_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
       best = with_named(bench.grow(best, kMostEffects), result_.verdict, all, posterior_);
-      const auto [columns, sigma] = Workbench::unfold(bench.terms(best));
-      const double variance =
-          bench.workbench(0).estimate(bench.terms(best)).variance * bench.noise_variance(0);
+      const auto [columns, sigma] = MarginalLikelihood::unfold(bench.terms(best));
+      const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
+                              bench.noise_variance(0);
       const bool again = view_.refine(view_.residuals(columns, sigma), variance);
       if (again && pass + 1 < kDiagnosisPasses) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
@@ -152,13 +153,13 @@ class Diagnostician {
     if (!best.candidates.empty()) result_.found = grown(best);
     // What nobody knows is no noise; nor is what more of the named effects explains.
     if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
-    Closing closing = close_gap(view_.shared_geometry(), view_.adjusted(), data_, result_.found,
-                                view_.site(), result_.noise, options_);
+    Closing closing = validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_,
+                                          result_.found, view_.site(), result_.noise, options_);
     result_.judged = std::move(closing.judged);
     result_.gap = gap_of(result_.judged, options_.seed);
     result_.rejected = std::move(closing.rejected);
     for (int row = 0; row < data_.rows.rows(); ++row)
-      if (view_.put_aside()[row])
+      if (view_.outlier()[row])
         result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
                                     "no explanation comes near it: a false reading"});
     result_.model = closing.model;
@@ -173,8 +174,9 @@ class Diagnostician {
     int tried = 0;
     for (CauseResult& each : result_.candidates) {
       if (each.correction.empty() || each.probability < kTried || ++tried > kMostTried) continue;
-      const Closing alone = close_gap(view_.shared_geometry(), view_.adjusted(), data_,
-                                      each.correction, view_.site(), result_.noise, options_);
+      const Closing alone =
+          validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_, each.correction,
+                              view_.site(), result_.noise, options_);
       each.rms_after = gap_of(alone.judged, options_.seed).rms_all;
     }
   }
@@ -186,8 +188,8 @@ class Diagnostician {
   const DataSet& data_;
   const DiagnosisOptions& options_;
   const Progress& progress_;
-  View view_;
-  std::unique_ptr<Bench> bench_;
+  LinearisedModel view_;
+  std::unique_ptr<EvidenceEvaluator> bench_;
   Posterior posterior_;
   Diagnosis result_;
 };
@@ -216,8 +218,8 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   }
   Diagnosis diagnosis = Diagnostician(robot, data, options, progress).run();
   if (!diagnosis.problem.empty()) return diagnosis;
-  if (std::string own = warning_of_own_effects(*robot); !own.empty())
-    diagnosis.warnings.push_back(std::move(own));
+  if (std::string nuisance = warning_of_own_effects(*robot); !nuisance.empty())
+    diagnosis.warnings.push_back(std::move(nuisance));
   if (diagnosis.judged.empty()) judge_by_folds(robot, data, options, progress, diagnosis);
   if (std::string warning = warning_of_gap(diagnosis); !warning.empty())
     diagnosis.warnings.push_back(std::move(warning));

@@ -3,109 +3,14 @@
 // Only `fit` rows identify and choose; `check` rows judge how far the gap closes.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "constraints/identification.h"
-#include "diagnosis/correction.h"
-#include "diagnosis/gap.h"
-#include "diagnosis/search.h"
+#include "constraints/methods/data_set.h"
+#include "constraints/progress.h"
+#include "diagnosis/findings.h"
+#include "kinematics/robot.h"
 
 namespace selfcal {
-
-struct DiagnosisOptions {
-  SearchRule search;
-  /// A cause is named when `none` is less probable than the first of these, and noise looks as much
-  /// like a cause less often than the second.
-  double name_below_none = 0.1, name_below_p = 0.025;
-  int resamples = 199;  ///< of the null distribution
-  int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
-  double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
-  unsigned long long seed = 1;
-};
-
-struct NamedValue {
-  std::string name, unit;
-  double value = 0, sigma = 0, usual_least = 0, usual_most = 0;
-};
-
-struct CauseResult {
-  std::string effect;
-  std::vector<std::string> where = {};
-  double probability = 0;
-  double together = 0;   ///< of the verdict: with the known causes that cannot be told from it
-  double survival = 0;   ///< share of it that calibration cannot absorb
-  double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
-  double visible = 0;    ///< rms of its visible part over the noise
-  std::string shape = {};  ///< since when, how fast: "from 1840 s on"; empty where there is no such
-  std::vector<NamedValue> parameters = {};
-  std::vector<std::string> confounded_with = {};
-  Correction correction = {};  ///< with its values
-};
-
-struct Detectable {
-  std::string effect, where, unit;
-  double smallest = 0;
-};
-
-struct Share {
-  std::string name;
-  double share = 0;
-};
-struct Region {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double radius = 0, share = 0;
-};
-struct Interval {
-  double from = 0, to = 0, share = 0;
-};
-
-struct Where {
-  std::vector<Share> by_joint, by_set;
-  std::vector<Region> by_region;
-  std::vector<Interval> by_time;
-};
-
-struct NextStep {
-  std::string what;
-  std::vector<std::string> separates;
-  double probability_after = 0;
-  Observations rows;  ///< to measure: readings, set, and what else shall hold (nothing measured)
-};
-
-/// What simulated sessions over the same configurations taught.
-struct Practice {
-  int sessions = 0;
-  double right = 0;         ///< share of the causes in them that were named
-  double false_alarms = 0;  ///< share of the sessions without one that named one
-  double temperature = 1;   ///< by which log odds are divided
-};
-
-struct Diagnosis {
-  /// Why these rows cannot be diagnosed; all else is empty then. Empty: they can.
-  std::string problem;
-  bool converged = true;  ///< the fits that the gap is taken between
-  Gap gap;
-  std::vector<JudgedRow> judged;  ///< that the gap is the figures of
-  CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
-  std::string why;      ///< the verdict in words
-  double p_value = 1;   ///< of the verdict's evidence under a resampled null
-  std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
-  Practice practice;
-  Where where;
-  std::vector<Detectable> detectable;
-  std::vector<Untestable> untestable;
-  std::vector<NextStep> next;
-  std::vector<Rejected> rejected;
-  std::vector<std::string> warnings;
-  Correction found;                    ///< the effects of `model`, in its order
-  std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values
-  Eigen::VectorXd values;
-  double noise = 0;  ///< m, 1 sigma of one scalar
-};
 
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
                    const DiagnosisOptions& options = {}, const Progress& progress = {});

@@ -34,7 +34,7 @@ struct ProgressMessage {
   std::string robot;
   std::int64_t session = 0;
   std::string kind;
-  std::uint32_t done = 0, planned = 0, put_aside = 0;
+  std::uint32_t done = 0, planned = 0, outlier = 0;
   double seconds_left = 0;  ///< NaN when not known
   std::string set;          ///< of the last touch
   std::uint32_t index = 0;  ///< of the last touch in the plan

@@ -105,7 +105,7 @@ class CorrectedRobot final : public Robot {
  private:
   /// Of one lane: the influence of all effects side by side, and the body as seen from the tip.
   struct Deviation {
-    Influence by;
+    Regressor by;
     Eigen::Vector3d arm;
   };
 
@@ -155,8 +155,8 @@ class CorrectedRobot final : public Robot {
     Eigen::Index column = 0;
     for (const auto& effect : effects_) {
       const auto own = static_cast<Eigen::Index>(effect->parameters().size());
-      Influence part{Eigen::MatrixXd::Zero(n, own), Eigen::MatrixXd::Zero(6, own)};
-      effect->influence(at, part);
+      Regressor part{Eigen::MatrixXd::Zero(n, own), Eigen::MatrixXd::Zero(6, own)};
+      effect->regressor(at, part);
       all.by.joints.middleCols(column, own) = part.joints;
       all.by.tip.middleCols(column, own) = part.tip;
       column += own;
@@ -182,7 +182,7 @@ class CorrectedRobot final : public Robot {
     psi.leftCols(own) = inner;
     Eigen::MatrixXd J(6, n);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Influence& by = deviations[lane].by;
+      const Regressor& by = deviations[lane].by;
       for (Eigen::Index j = 0; j < n; ++j)
         for (int c = 0; c < 6; ++c)
           J(c, j) = inner(c * kLanes + lane, variable_parameter(static_cast<int>(j)));

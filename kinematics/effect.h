@@ -38,7 +38,7 @@ struct Circumstances {
 };
 
 /// d(joint variables) and d(location of the tip) to each of the effect's parameters.
-struct Influence {
+struct Regressor {
   Eigen::MatrixXd joints;  ///< joints x parameters
   Eigen::MatrixXd tip;     ///< 6 x parameters: shift (m), then rotation vector, world
 };
@@ -89,7 +89,7 @@ class Effect {
   /// What rows must have so that it can be seen: "temperatures that change".
   virtual std::string needs() const = 0;
   /// `into` is zero and of the right size.
-  virtual void influence(const Circumstances& at, Influence& into) const = 0;
+  virtual void regressor(const Circumstances& at, Regressor& into) const = 0;
 
  protected:
   friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const Site&, Problems&);

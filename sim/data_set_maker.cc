@@ -16,7 +16,7 @@ Simulated make_data_set(const Scenario& scenario, const Robot& robot, Problems& 
   const std::optional<Compliance> compliance =
       true_compliance(scenario, robot, made.truth.xi, problems);
   if (problems.any()) return made;
-  made.truth.own = true_own_values(scenario, made.data.sets, robot, made.truth.xi, problems);
+  made.truth.nuisance = true_own_values(scenario, made.data.sets, robot, made.truth.xi, problems);
   if (problems.any()) return made;
   take_rows(scenario, robot, made);
   if (made.unreached.empty()) disturb_measurements(scenario, robot, made);

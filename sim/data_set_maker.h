@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "constraints/data_set.h"
-#include "constraints/equations.h"
+#include "constraints/equations/equations.h"
+#include "constraints/methods/data_set.h"
 #include "kinematics/robot.h"
 #include "sim/scenario.h"
 

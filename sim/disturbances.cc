@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "constraints/contact.h"
+#include "constraints/sampling/contact.h"
 #include "kinematics/rotation.h"
 #include "sim/streams.h"
 #include "sim/true_sets.h"
@@ -86,8 +86,8 @@ class Disturber {
         if (equations[a] == Quantity::length) r[a] = normal(errors_);
       return size * r.normalized();
     }
-    const auto plane = true_plane(made_.data.sets, set, made_.truth.own);
-    const auto outward = outward_normal(scenario_, made_.data.sets, set, made_.truth.own);
+    const auto plane = true_plane(made_.data.sets, set, made_.truth.nuisance);
+    const auto outward = outward_normal(scenario_, made_.data.sets, set, made_.truth.nuisance);
     r[0] = plane && plane->n.dot(*outward) < 0 ? -size : size;
     return r;
   }

@@ -24,12 +24,12 @@ void hand_over(std::deque<T>& queue, std::vector<T>& out) {
 }
 
 std::vector<TrueSurface> true_surfaces(const Scenario& scenario, const std::vector<Set>& sets,
-                                       const std::vector<Eigen::VectorXd>& own) {
+                                       const std::vector<Eigen::VectorXd>& nuisance) {
   std::vector<TrueSurface> surfaces;
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const std::optional<Plane> plane = true_plane(sets, s, own);
+    const std::optional<Plane> plane = true_plane(sets, s, nuisance);
     if (!plane || !plane->d) continue;
-    const Eigen::Vector3d outward = *outward_normal(scenario, sets, s, own);
+    const Eigen::Vector3d outward = *outward_normal(scenario, sets, s, nuisance);
     surfaces.push_back(
         {static_cast<int>(s), outward, plane->n.dot(outward) * *plane->d, scenario.sets[s].within});
   }
@@ -59,10 +59,10 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
   truth_.xi = true_parameters(scenario, *robot_, problems);
   if (problems.any()) return;
   compliance_ = true_compliance(scenario, *robot_, truth_.xi, problems);
-  truth_.own = true_own_values(scenario, sets_, *robot_, truth_.xi, problems);
+  truth_.nuisance = true_own_values(scenario, sets_, *robot_, truth_.xi, problems);
   if (problems.any()) return;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
-    const std::optional<Plane> plane = true_plane(sets_, s, truth_.own);
+    const std::optional<Plane> plane = true_plane(sets_, s, truth_.nuisance);
     const bool known = plane && plane->d;
     if (known && scenario.sets[s].within.radius <= 0)
       problems.add(scenario.sets[s].entry.place,
@@ -75,7 +75,7 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
       if (sets_[s].groups.size() <= g) sets_[s].groups.push_back("g" + std::to_string(g));
   }
   if (problems.any()) return;
-  surfaces_ = true_surfaces(scenario, sets_, truth_.own);
+  surfaces_ = true_surfaces(scenario, sets_, truth_.nuisance);
   const double step = scenario.encoder_step > 0 ? scenario.encoder_step : kFinestStep;
   scales_.assign(robot_->joints().size(), {step, 0});
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/contact.h"
+#include "constraints/sampling/contact.h"
 #include "sim/machine.h"
 
 namespace selfcal {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "constraints/configurations.h"
 #include "constraints/methods/plane.h"
+#include "constraints/sampling/configurations.h"
 #include "sim/streams.h"
 #include "sim/true_sets.h"
 
@@ -31,10 +31,10 @@ int configurations(const SetScenario& set, const Repeats& repeats, const Method&
 
 /// The centre's plane of a set touched by a probe, as a set of its own.
 void touch_by_point(const Eigen::Vector3d& outward, const Plane& plane, double radius, Set& set,
-                    Eigen::VectorXd& own) {
+                    Eigen::VectorXd& nuisance) {
   set.method = point_on_plane();
   set.reference = -1;
-  own = set.method->own_of({plane.n, *plane.d + radius * plane.n.dot(outward)});
+  nuisance = set.method->nuisance_of({plane.n, *plane.d + radius * plane.n.dot(outward)});
 }
 
 std::vector<int> shuffled(int count, Random& random) {
@@ -115,17 +115,18 @@ void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made) {
   for (std::size_t s = 0; s < sampled.sets.size(); ++s) {
     const SetScenario& wanted = scenario.sets[s];
     Set& set = sampled.sets[s];
-    Eigen::VectorXd own = made.truth.own[s];
+    Eigen::VectorXd nuisance = made.truth.nuisance[s];
     const int count = configurations(wanted, scenario.repeats, *set.method);
     if (const double radius = probe_radius(wanted); radius > 0) {
-      normals[s] = *outward_normal(scenario, made.data.sets, s, made.truth.own);
-      touch_by_point(normals[s], *true_plane(made.data.sets, s, made.truth.own), radius, set, own);
+      normals[s] = *outward_normal(scenario, made.data.sets, s, made.truth.nuisance);
+      touch_by_point(normals[s], *true_plane(made.data.sets, s, made.truth.nuisance), radius, set,
+                     nuisance);
     }
     SampleRequest& request = requests.emplace_back();
     request.set = static_cast<int>(s);
     request.rows = count;
     request.rows_per_group = wanted.rows_per_group;
-    request.own = std::move(own);
+    request.nuisance = std::move(nuisance);
     request.patch = wanted.within;
     request.places = wanted.places;
   }

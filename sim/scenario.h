@@ -32,7 +32,7 @@
 //     surface       random                     {point: [x, y, z], normal: [x, y, z]} of an unknown
 //                                              plane; the normal points outwards, at the robot
 //     outward       see below                  direction on whose side a plane is touched
-//     truth         random                     own unknowns by their names in result.json
+//     truth         random                     nuisance parameters by their names in result.json
 //                                              ({cx: 0.6, frame.x: 2}); what is left out is drawn
 //     within        everywhere                 {center: [x, y, z], radius: R}, m: where rows lie
 //     places        random                     where the sockets or nests really are, one a group:
@@ -48,7 +48,7 @@
 #include <string>
 #include <vector>
 
-#include "constraints/place_fields.h"
+#include "constraints/sampling/cell_geometry.h"
 #include "kinematics/by_part.h"
 #include "kinematics/description.h"
 #include "sim/machine_scenario.h"

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "constraints/place_fields.h"
+#include "constraints/sampling/cell_geometry.h"
 #include "sim/scenario_fields.h"
 
 namespace selfcal {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "constraints/method.h"
+#include "constraints/methods/method.h"
 
 namespace selfcal {
 

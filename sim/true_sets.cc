@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "constraints/endpoint_sigma.h"
+#include "constraints/sampling/random_poses.h"
 #include "kinematics/linear_algebra.h"
 #include "sim/streams.h"
 
@@ -32,17 +32,17 @@ Location anywhere(const Robot& robot, const Eigen::VectorXd& xi, Body body, cons
   return {Eigen::Matrix3d::Identity(), patch.centre};
 }
 
-const OwnReport* find(const std::vector<OwnReport>& reports, const std::string& name) {
-  for (const OwnReport& report : reports)
+const NuisanceReport* find(const std::vector<NuisanceReport>& reports, const std::string& name) {
+  for (const NuisanceReport& report : reports)
     if (report.name == name) return &report;
   return nullptr;
 }
 
 /// False, with a problem, when the method reports no such name.
-bool check_names(const SetScenario& wanted, const std::vector<OwnReport>& reports,
+bool check_names(const SetScenario& wanted, const std::vector<NuisanceReport>& reports,
                  Problems& problems) {
   std::string known;
-  for (const OwnReport& report : reports) known += (known.empty() ? "" : ", ") + report.name;
+  for (const NuisanceReport& report : reports) known += (known.empty() ? "" : ", ") + report.name;
   for (const NamedNumber& each : wanted.truth) {
     if (find(reports, each.name)) continue;
     problems.add(each.place, "set " + wanted.name + " truth: no own unknown is called '" +
@@ -53,21 +53,22 @@ bool check_names(const SetScenario& wanted, const std::vector<OwnReport>& report
 }
 
 void bring_to_truth(const SetScenario& wanted, const Method& method,
-                    const Eigen::VectorXd* reference, Eigen::VectorXd& own, Problems& problems) {
-  if (!check_names(wanted, method.report(own, reference), problems)) return;
+                    const Eigen::VectorXd* reference, Eigen::VectorXd& nuisance,
+                    Problems& problems) {
+  if (!check_names(wanted, method.report(nuisance, reference), problems)) return;
   const auto count = static_cast<Eigen::Index>(wanted.truth.size());
-  Eigen::MatrixXd A(count, method.own_freedom());
+  Eigen::MatrixXd A(count, method.tangent_dimension());
   Eigen::VectorXd miss(count);
   for (int step = 0; step < kValueSteps; ++step) {
-    const std::vector<OwnReport> reports = method.report(own, reference);
+    const std::vector<NuisanceReport> reports = method.report(nuisance, reference);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const OwnReport* report = find(reports, wanted.truth[i].name);
+      const NuisanceReport* report = find(reports, wanted.truth[i].name);
       if (!report) break;  // a plane through the origin has no a b c
       A.row(i) = report->D_own.transpose();
       miss[i] = wanted.truth[i].value - report->value;
     }
     if (miss.norm() < kValuesMet) return;
-    method.retract(own, least_squares(A, miss));
+    method.retract(nuisance, least_squares(A, miss));
   }
   problems.add(wanted.truth.front().place,
                "set " + wanted.name + " truth: no own values have these numbers together");
@@ -85,7 +86,7 @@ std::vector<Set> make_sets(const Scenario& scenario, Problems& problems) {
     if (!set.method) continue;
     const bool plane = set.method->touches() == TouchedSurface::plane;
     const bool free_plane =
-        plane && set.method->own_freedom() > 0 && set.method->reference().empty();
+        plane && set.method->tangent_dimension() > 0 && set.method->reference().empty();
     if (each.surface && !free_plane)
       problems.add(each.entry.place,
                    "set " + each.name + ": `surface` is for planes whose place is unknown");
@@ -103,34 +104,34 @@ std::vector<Eigen::VectorXd> true_own_values(const Scenario& scenario, const std
                                              const Robot& robot, const Eigen::VectorXd& xi,
                                              Problems& problems) {
   Random random = stream(scenario.seed, Draw::own_values);
-  std::vector<Eigen::VectorXd> own(sets.size());
+  std::vector<Eigen::VectorXd> nuisance(sets.size());
   // A set that refers to another comes after it.
   for (const bool referring : {false, true})
     for (std::size_t s = 0; s < sets.size(); ++s) {
       if ((sets[s].reference >= 0) != referring) continue;
       const Method& method = *sets[s].method;
       const SetScenario& wanted = scenario.sets[s];
-      const Eigen::VectorXd* reference = referring ? &own[sets[s].reference] : nullptr;
+      const Eigen::VectorXd* reference = referring ? &nuisance[sets[s].reference] : nullptr;
       const Location X = anywhere(robot, xi, method.body(), wanted.within, random);
       if (const auto& surface = wanted.surface)
-        own[s] = method.own_of({surface->normal, surface->normal.dot(surface->point)});
+        nuisance[s] = method.nuisance_of({surface->normal, surface->normal.dot(surface->point)});
       else
-        own[s] = method.through(X, reference, random);
-      if (!wanted.truth.empty()) bring_to_truth(wanted, method, reference, own[s], problems);
+        nuisance[s] = method.through(X, reference, random);
+      if (!wanted.truth.empty()) bring_to_truth(wanted, method, reference, nuisance[s], problems);
     }
-  return own;
+  return nuisance;
 }
 
 std::optional<Plane> true_plane(const std::vector<Set>& sets, std::size_t set,
-                                const std::vector<Eigen::VectorXd>& own) {
+                                const std::vector<Eigen::VectorXd>& nuisance) {
   const int reference = sets[set].reference;
-  return sets[set].method->plane(own[set], reference < 0 ? nullptr : &own[reference]);
+  return sets[set].method->plane(nuisance[set], reference < 0 ? nullptr : &nuisance[reference]);
 }
 
 std::optional<Eigen::Vector3d> outward_normal(const Scenario& scenario,
                                               const std::vector<Set>& sets, std::size_t set,
-                                              const std::vector<Eigen::VectorXd>& own) {
-  const std::optional<Plane> plane = true_plane(sets, set, own);
+                                              const std::vector<Eigen::VectorXd>& nuisance) {
+  const std::optional<Plane> plane = true_plane(sets, set, nuisance);
   if (!plane) return std::nullopt;
   const SetScenario& wanted = scenario.sets[set];
   double side = 1;  // a normal alone is the outward one

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/data_set.h"
+#include "constraints/methods/data_set.h"
 #include "kinematics/robot.h"
 #include "sim/scenario.h"
 
@@ -23,11 +23,11 @@ std::vector<Eigen::VectorXd> true_own_values(const Scenario& scenario, const std
 
 /// The touched plane of a set, n as its residual has it; nothing for other methods.
 std::optional<Plane> true_plane(const std::vector<Set>& sets, std::size_t set,
-                                const std::vector<Eigen::VectorXd>& own);
+                                const std::vector<Eigen::VectorXd>& nuisance);
 
 /// Its normal turned to the side from which it is touched.
 std::optional<Eigen::Vector3d> outward_normal(const Scenario& scenario,
                                               const std::vector<Set>& sets, std::size_t set,
-                                              const std::vector<Eigen::VectorXd>& own);
+                                              const std::vector<Eigen::VectorXd>& nuisance);
 
 }  // namespace selfcal

@@ -20,9 +20,10 @@ Json by_name(const std::vector<NamedNumber>& list) {
 
 Json own_values(const Simulated& made, std::size_t s) {
   const Set& set = made.data.sets[s];
-  const Eigen::VectorXd* reference = set.reference < 0 ? nullptr : &made.truth.own[set.reference];
+  const Eigen::VectorXd* reference =
+      set.reference < 0 ? nullptr : &made.truth.nuisance[set.reference];
   Json json = Json::object();
-  for (const OwnReport& report : set.method->report(made.truth.own[s], reference))
+  for (const NuisanceReport& report : set.method->report(made.truth.nuisance[s], reference))
     json[set.name + "." + report.name] = report.value;
   const std::vector<std::string> names = set.method->group_names();
   const Eigen::MatrixXd& groups = made.truth.groups[s];

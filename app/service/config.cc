@@ -7,9 +7,9 @@
 
 #include "app/service/config_transports.h"
 #include "io/dds/participant.h"
-#include "io/file.h"
-#include "io/robot_file.h"
-#include "io/yaml.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
 
 namespace selfcal {
 namespace {

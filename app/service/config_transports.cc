@@ -44,9 +44,9 @@ void read_encoders(const Node& node, const std::filesystem::path& folder, Config
   if (config.joint_names.size() != of_robot.size())
     f.fail("joints", std::to_string(of_robot.size()) + " names");
   config.silence = f.number("silence", config.silence, 0.01, 60);
-  const Node own = node.without({"kind", mapped ? "kind" : "joints", "silence"});
+  const Node nuisance = node.without({"kind", mapped ? "kind" : "joints", "silence"});
   const std::string kind = f.text("kind", "dds");
-  config.encoders = make_encoders(kind, {own, config.joint_names, of_robot, folder, problems});
+  config.encoders = make_encoders(kind, {nuisance, config.joint_names, of_robot, folder, problems});
   refuse_unknown_kind(f, kind, encoder_kinds());
 }
 
@@ -54,9 +54,9 @@ void read_trigger(const Node& node, Config& config, Problems& problems) {
   Fields f(node, "trigger", problems);
   config.touch.debounce = f.number("debounce", config.touch.debounce, 0, 0.1);
   config.touch.delay = f.number("delay", config.touch.delay, 0, 0.1);
-  const Node own = node.without({"kind", "debounce", "delay"});
+  const Node nuisance = node.without({"kind", "debounce", "delay"});
   const std::string kind = f.text("kind", "dds");
-  config.trigger = make_trigger(kind, {own, config.id, problems});
+  config.trigger = make_trigger(kind, {nuisance, config.id, problems});
   refuse_unknown_kind(f, kind, trigger_kinds());
 }
 

@@ -1,7 +1,7 @@
 #include "app/service/models.h"
 
-#include "io/file.h"
-#include "io/robot_file.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
 
 namespace selfcal {
 namespace {

@@ -7,12 +7,12 @@
 #include <deque>
 #include <memory>
 
+#include "app/service/acceptance.h"
 #include "app/service/computation.h"
 #include "app/service/config.h"
 #include "app/service/journal.h"
 #include "app/service/models.h"
-#include "app/service/ruling.h"
-#include "app/service/senses.h"
+#include "app/service/sensor_front_end.h"
 #include "app/service/session.h"
 #include "io/messages.h"
 #include "io/supervisor.h"
@@ -81,7 +81,7 @@ class Service {
   int repeats() const;
   bool next_via_home(int step) const;
   void read_touch();
-  void put_aside(const std::string& why);
+  void outlier(const std::string& why);
   void keep(TouchRecord touch);
   void abort(const std::string& why);
 
@@ -135,7 +135,7 @@ class Service {
   std::size_t damage_told_ = 0;           ///< of Store::met
   Supervisor supervisor_;
   Reflex reflex_;
-  Senses senses_;
+  SensorFrontEnd senses_;
   Situation situation_;
   std::deque<Event> events_;
   Nanoseconds now_ = 0;
@@ -150,7 +150,7 @@ class Service {
   bool testing_ = false;
 
   Session session_;
-  Meaning meaning_;
+  Decoding meaning_;
   Nanoseconds collecting_since_ = 0;
   int touches_this_run_ = 0;
 

@@ -24,8 +24,8 @@ void Service::act(const Action& action) {
       return make_move(action.what);
     case Do::read:
       return read_touch();
-    case Do::put_aside:
-      return put_aside(action.why);
+    case Do::outlier:
+      return outlier(action.why);
     case Do::abort:
       return abort(action.why);
     case Do::analyse:

@@ -88,7 +88,7 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
   progress.planned = static_cast<std::uint32_t>(session_.plan.size());
   const int next = next_step(session_, repeats(), config_.limits.attempts);
   progress.done = static_cast<std::uint32_t>(next);
-  progress.put_aside =
+  progress.outlier =
       static_cast<std::uint32_t>(steps_put_aside(session_, repeats(), config_.limits.attempts));
   const double each =
       touches_this_run_ > 0 ? seconds(now_ - collecting_since_) / touches_this_run_ : std::nan("");
@@ -100,9 +100,8 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
     progress.index = static_cast<std::uint32_t>(touch->step);
     progress.accepted = touch->outcome == TouchOutcome::taken;
     if (progress.accepted) {
-      Session so_far = session_;
-      so_far.plan.resize(touch->step + 1);
-      progress.residual = running_residual(*models_.active(), rows_of(*models_.active(), so_far,
+      const Session recent = lately(session_, touch->step);
+      progress.residual = running_residual(*models_.active(), rows_of(*models_.active(), recent,
                                                                       meaning_, Parts::all_fit))
                               .value_or(std::nan(""));
     }

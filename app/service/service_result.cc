@@ -2,10 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include "app/service/service.h"
+#include "constraints/estimation/identification.h"
 #include "constraints/site.h"
-#include "io/robot_file.h"
-#include "io/solution_json.h"
-#include "io/yaml.h"
+#include "io/files/robot_file.h"
+#include "io/files/solution_json.h"
+#include "io/files/yaml.h"
 
 namespace selfcal {
 namespace {
@@ -20,13 +21,6 @@ std::string too_few(const DataSet& data) {
       return "set " + data.sets[s].name + " has only " + std::to_string(rows) + " good touches";
   }
   return {};
-}
-
-/// Nothing of the robot may move: what do the rows say of it as it is?
-Options held() {
-  Options options;
-  options.fix = {"*"};
-  return options;
 }
 
 ResultAnswer stored_answer(Answer verdict) {
@@ -104,8 +98,8 @@ void Service::judge() {
   computation_.start([unchanged = unchanged_, then = check ? solution_ : nullptr,
                       robot = models_.active(), data = data_,
                       base = base_](const Computation::Tell& tell) {
-    *unchanged = selfcal::identify(*on_site(robot, *data), *data, held(), tell);
-    if (then) *then = selfcal::identify(*on_site(robot, *base), *base, held(), tell);
+    *unchanged = judge_as_it_is(*on_site(robot, *data), *data, tell);
+    if (then) *then = judge_as_it_is(*on_site(robot, *base), *base, tell);
     return std::string();
   });
   when_computed_ = [this, check](const std::string& failure) {
@@ -147,7 +141,8 @@ ResultRecord Service::result_of_check() {
 }
 
 ResultRecord Service::result_of_candidate() const {
-  const Ruling ruling = rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
+  const AcceptanceDecision ruling =
+      rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
   ResultRecord result = new_result();
   result.answer = stored_answer(ruling.answer);
   result.decision = !ruling.acceptable         ? ResultDecision::rejected

@@ -161,9 +161,9 @@ bool Service::next_via_home(int step) const {
 void Service::read_touch() {
   const Nanoseconds edge = senses_.closing()->time;
   if (!senses_.closing()->timed)
-    return put_aside("the trigger's edge got lost, and with it the moment of the touch");
+    return outlier("the trigger's edge got lost, and with it the moment of the touch");
   const auto around = senses_.samples().around(edge - nanoseconds(config_.touch.delay));
-  if (!around) return put_aside("no encoder readings just before and after the edge");
+  if (!around) return outlier("no encoder readings just before and after the edge");
   TouchRecord touch;
   touch.step = situation_.step;
   touch.edge = edge;
@@ -177,10 +177,10 @@ void Service::read_touch() {
   keep(std::move(touch));
 }
 
-void Service::put_aside(const std::string& why) {
+void Service::outlier(const std::string& why) {
   TouchRecord touch;
   touch.step = situation_.step;
-  touch.outcome = TouchOutcome::put_aside;
+  touch.outcome = TouchOutcome::outlier;
   touch.why = why;
   if (!senses_.samples().empty()) touch.before = touch.after = senses_.samples().last();
   keep(std::move(touch));

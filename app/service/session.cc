@@ -2,21 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
-#include "constraints/equations.h"
-#include "constraints/spread.h"
-#include "io/file.h"
-#include "io/yaml.h"
+#include "constraints/equations/equations.h"
+#include "constraints/planning/d_optimal.h"
+#include "io/files/file.h"
+#include "io/files/yaml.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
+constexpr int kLastTouches = 60;     // of each set, that a running residual is taken from
 constexpr double kSpeedStep = 1e-3;  // s, over which a speed is taken
 
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
-int set_index(const Meaning& meaning, const std::string& name) {
+int set_index(const Decoding& meaning, const std::string& name) {
   for (std::size_t s = 0; s < meaning.sets.size(); ++s)
     if (meaning.sets[s].name == name) return static_cast<int>(s);
   return 0;
@@ -83,12 +85,12 @@ std::string config_hash(const Config& config, const std::vector<EncoderScale>& s
                     config.robot->identity());
 }
 
-Result<Meaning> read_meaning(const std::string& text) {
+Result<Decoding> read_meaning(const std::string& text) {
   const Result<Node> node = parse_yaml(text, "session");
   if (!node) return tl::unexpected(node.error());
   Result<std::vector<Set>> sets = sets_of(text);
   if (!sets) return tl::unexpected(sets.error());
-  Meaning meaning;
+  Decoding meaning;
   meaning.sets = std::move(*sets);
   Problems problems;
   Fields fields(*node, "session", problems);
@@ -174,12 +176,12 @@ int steps_put_aside(const Session& session, int repeats, int attempts) {
   return static_cast<int>(std::ranges::count(states, StepState::lost));
 }
 
-Reading reading_of(const TouchRecord& touch, const Meaning& meaning) {
+Reading reading_of(const TouchRecord& touch, const Decoding& meaning) {
   return reading_between(touch.before, touch.after, touch.edge - nanoseconds(meaning.delay),
                          meaning.scales);
 }
 
-DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meaning, Parts parts) {
+DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning, Parts parts) {
   DataSet data;
   data.sets = meaning.sets;
   data.target = meaning.target;
@@ -232,7 +234,7 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   return data;
 }
 
-TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Meaning& meaning,
+TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
                           const StepRecord& step, const Reading& reading, double search,
                           double tolerance) {
   const int set = set_index(meaning, step.set);
@@ -241,7 +243,7 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Mean
   };
   const double early = out_by(vector_of(step.touch));
   if (early > search)
-    return {TouchOutcome::put_aside,
+    return {TouchOutcome::outlier,
             "touched " + format_number(std::round(early * 1e5) / 100) + " mm before the surface"};
   const auto good = good_touches(session, step.index);
   for (const TouchRecord* other : good) {
@@ -251,6 +253,18 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Mean
               "differs by " + format_number(std::round(apart * 1e6)) + " um from the one before"};
   }
   return {};
+}
+
+Session lately(const Session& session, std::size_t step) {
+  Session recent{session.record, session.plan, {}};
+  recent.plan.resize(step + 1);
+  std::map<std::string, int> taken;
+  for (auto touch = session.touches.rbegin(); touch != session.touches.rend(); ++touch)
+    if (static_cast<std::size_t>(touch->step) <= step &&
+        ++taken[recent.plan[touch->step].set] <= kLastTouches)
+      recent.touches.push_back(*touch);
+  std::ranges::reverse(recent.touches);
+  return recent;
 }
 
 std::optional<double> running_residual(const Robot& robot, const DataSet& data) {
@@ -264,7 +278,7 @@ std::optional<double> running_residual(const Robot& robot, const DataSet& data) 
   const Equations equations(robot, data, Use::fit);
   State state;
   state.xi = values(robot);
-  state.own.resize(data.sets.size());
+  state.nuisance.resize(data.sets.size());
   state.groups.resize(data.sets.size());
   equations.start(state);
   for (const RowResidual& row : equations.residuals(state))

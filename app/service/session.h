@@ -7,7 +7,7 @@
 
 #include "app/service/config.h"
 #include "app/service/reading.h"
-#include "constraints/data_set.h"
+#include "constraints/methods/data_set.h"
 #include "io/store/store.h"
 
 namespace selfcal {
@@ -22,7 +22,7 @@ struct Session {
 };
 
 /// What is stored with a session so that its raw counts can be understood in ten years.
-struct Meaning {
+struct Decoding {
   double target = 1e-3;  ///< m
   double delay = 0;      ///< s, of the trigger
   std::vector<EncoderScale> scales;
@@ -35,7 +35,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& readings);
 
 /// Text of the meaning of the touches that a session is going to make, and back.
 std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales);
-Result<Meaning> read_meaning(const std::string& text);
+Result<Decoding> read_meaning(const std::string& text);
 /// Of all that changes what the touches mean: sets, robot, where readings and edges come from and
 /// what their counts stand for. Rows of sessions with different ones do not belong together.
 std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales);
@@ -51,14 +51,14 @@ int next_step(const Session& session, int repeats, int attempts);
 int steps_put_aside(const Session& session, int repeats, int attempts);
 
 /// Joint readings at the edge of a touch.
-Reading reading_of(const TouchRecord& touch, const Meaning& meaning);
+Reading reading_of(const TouchRecord& touch, const Decoding& meaning);
 
 /// The rows that the good touches make, in the order of the plan, with speed, time and temperature.
 /// With `all_check` every row only judges, with `all_fit` every row identifies. A row's noise is
 /// that of its set and, on top, what the reading leaves open (Reading::sigma_time) at the speed at
 /// which `robot`, nearly the true one, came in.
 enum class Parts { as_planned, all_check, all_fit };
-DataSet rows_of(const Robot& robot, const Session& session, const Meaning& meaning,
+DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning,
                 Parts parts = Parts::as_planned);
 
 /// The fit rows of `base` and the rows of `check` as rows that judge; both have the same sets.
@@ -69,12 +69,16 @@ struct TouchRuling {
   TouchOutcome outcome = TouchOutcome::taken;
   std::string why;
 };
-TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Meaning& meaning,
+TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
                           const StepRecord& step, const Reading& reading, double search,
                           double tolerance);
 
 /// Endpoint at readings `q` with the robot's own values (m, world).
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q);
+
+/// The session up to `step`, of each set the last touches alone: as many as tell where a surface
+/// is, however long the session.
+Session lately(const Session& session, std::size_t step);
 
 /// Distance of the last row from its surface (socket) as the rows so far have it, with the robot's
 /// own values; nothing while they are too few to tell (m).

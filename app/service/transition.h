@@ -98,10 +98,10 @@ struct Action {
     go_home,
     go_to_start,
     go_touch,
-    go_back,    ///< motion for the step in progress
-    back_off,   ///< to where the last move began, out of a contact that was not looked for
-    read,       ///< judge and store the touch whose edge was seen
-    put_aside,  ///< store the attempt as failed; `why`
+    go_back,   ///< motion for the step in progress
+    back_off,  ///< to where the last move began, out of a contact that was not looked for
+    read,      ///< judge and store the touch whose edge was seen
+    outlier,   ///< store the attempt as failed; `why`
     analyse,
     identify,
     judge,

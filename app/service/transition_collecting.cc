@@ -68,7 +68,7 @@ void TransitionStep::moved() {
     return act(Do::go_to_start);
   }
   if (s_.phase == Phase::approach) return touch();
-  if (s_.phase == Phase::touch) return act(Do::put_aside, "no touch up to the end of the search");
+  if (s_.phase == Phase::touch) return act(Do::outlier, "no touch up to the end of the search");
   if (s_.phase != Phase::retract) return;
   s_.out = true;
   back_out();

@@ -25,15 +25,15 @@ void DeviceFrame::retract(Eigen::Ref<Eigen::VectorXd> values, const Eigen::Vecto
   values.head<kValues>() = to_values(X);
 }
 
-std::vector<OwnReport> DeviceFrame::report(const Eigen::VectorXd& values, int freedom) {
+std::vector<NuisanceReport> DeviceFrame::report(const Eigen::VectorXd& values, int freedom) {
   static constexpr const char* kNames[] = {"frame.x",  "frame.y",  "frame.z",
                                            "frame.rx", "frame.ry", "frame.rz"};
   const Location X = pose(values);
   const Eigen::Vector3d phi = log_rotation(X.R);
   const Eigen::Matrix3d J = left_jacobian_inverse(phi);
-  std::vector<OwnReport> list;
+  std::vector<NuisanceReport> list;
   for (int i = 0; i < kFreedom; ++i) {
-    OwnReport each{kNames[i], i < 3 ? X.p[i] : phi[i - 3], Eigen::VectorXd::Zero(freedom), {}};
+    NuisanceReport each{kNames[i], i < 3 ? X.p[i] : phi[i - 3], Eigen::VectorXd::Zero(freedom), {}};
     if (i < 3)
       each.D_own[i] = 1;
     else

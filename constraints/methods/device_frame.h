@@ -1,7 +1,7 @@
-// The pose of a measuring device in the world: known (the world itself) or six own unknowns.
+// The pose of a measuring device in the world: known (the world itself) or six nuisance parameters.
 #pragma once
 
-#include "constraints/method.h"
+#include "constraints/methods/method.h"
 
 namespace selfcal {
 
@@ -13,7 +13,7 @@ struct DeviceFrame {
   static Location pose(const Eigen::VectorXd& values);
   static void retract(Eigen::Ref<Eigen::VectorXd> values, const Eigen::VectorXd& step);
   /// x y z rx ry rz with their gradients to `freedom` own freedoms, the first six the frame's.
-  static std::vector<OwnReport> report(const Eigen::VectorXd& values, int freedom);
+  static std::vector<NuisanceReport> report(const Eigen::VectorXd& values, int freedom);
   /// The pose that brings points of the device onto points of the world best (Kabsch).
   static Eigen::VectorXd register_points(const std::vector<Eigen::Vector3d>& device,
                                          const std::vector<Eigen::Vector3d>& world);

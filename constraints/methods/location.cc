@@ -25,7 +25,7 @@ class LocationMethod final : public Method {
   }
   bool constrains() const override { return false; }
   bool frame_unknown() const override { return frame_; }
-  int own_freedom() const override { return frame_ ? DeviceFrame::kFreedom : 0; }
+  int tangent_dimension() const override { return frame_ ? DeviceFrame::kFreedom : 0; }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,
@@ -45,17 +45,19 @@ class LocationMethod final : public Method {
     return to_values(F);
   }
 
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
-    if (frame_) DeviceFrame::retract(own, step);
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
+    if (frame_) DeviceFrame::retract(nuisance, step);
   }
-  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
-    return frame_ ? DeviceFrame::report(own, own_freedom()) : std::vector<OwnReport>{};
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd*) const override {
+    return frame_ ? DeviceFrame::report(nuisance, tangent_dimension())
+                  : std::vector<NuisanceReport>{};
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const Location F = DeviceFrame::pose(*in.own);
+    const Location F = DeviceFrame::pose(*in.nuisance);
     const Eigen::Matrix3d to_device = F.R.transpose();
-    const int m = own_freedom();
+    const int m = tangent_dimension();
     for (int lane = 0; lane < in.count; ++lane) {
       const Location x = measured(*in.data, in.rows[lane]);
       const Eigen::Vector3d step = in.now->p(lane) - F.p;
@@ -75,9 +77,9 @@ class LocationMethod final : public Method {
     }
   }
 
-  void measure(const Location& X, const Location&, const Eigen::VectorXd& own, Observations& data,
-               int row) const override {
-    const Location F = DeviceFrame::pose(own);
+  void measure(const Location& X, const Location&, const Eigen::VectorXd& nuisance,
+               Observations& data, int row) const override {
+    const Location F = DeviceFrame::pose(nuisance);
     const Eigen::VectorXd v = to_values({F.R.transpose() * X.R, F.R.transpose() * (X.p - F.p)});
     data.position.row(row) = v.head<3>().transpose();
     data.orientation.row(row) = v.tail<4>().transpose();
@@ -85,10 +87,10 @@ class LocationMethod final : public Method {
 
   Eigen::VectorXd through(const Location&, const Eigen::VectorXd*, Random& random) const override {
     std::normal_distribution<double> normal;
-    Eigen::VectorXd own = DeviceFrame::world(), step(DeviceFrame::kFreedom);
+    Eigen::VectorXd nuisance = DeviceFrame::world(), step(DeviceFrame::kFreedom);
     for (double& v : step) v = normal(random);
-    if (frame_) DeviceFrame::retract(own, step);
-    return own;
+    if (frame_) DeviceFrame::retract(nuisance, step);
+    return nuisance;
   }
 
  private:

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "constraints/method.h"
+#include "constraints/methods/method.h"
 #include "kinematics/description.h"
 
 namespace selfcal {

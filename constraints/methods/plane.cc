@@ -30,13 +30,14 @@ Eigen::VectorXd values_of(const Eigen::Vector3d& n, double d) {
 }
 
 /// nx ny nz d a b c of a plane whose n moves by D_n (3 x tangents) and d by D_d, over all freedoms.
-std::vector<OwnReport> describe(NormalForm plane, Eigen::MatrixXd D_n, Eigen::RowVectorXd D_d) {
+std::vector<NuisanceReport> describe(NormalForm plane, Eigen::MatrixXd D_n,
+                                     Eigen::RowVectorXd D_d) {
   if (plane.d < 0) {
     plane = {-plane.n, -plane.d};
     D_n = -D_n;
     D_d = -D_d;
   }
-  std::vector<OwnReport> list;
+  std::vector<NuisanceReport> list;
   static constexpr const char* kNames[] = {"nx", "ny", "nz"};
   for (int i = 0; i < 3; ++i) list.push_back({kNames[i], plane.n[i], D_n.row(i), {}});
   list.push_back({"d", plane.d, D_d, {}});
@@ -62,9 +63,9 @@ class Touch : public Method {
     if (probe_radius_ > 0) return {"nx", "ny", "nz"};
     return {};
   }
-  void approach(const Eigen::VectorXd& own, const Eigen::VectorXd* reference, Observations& data,
-                int row) const override {
-    data.normal.row(row) = (reference ? *reference : own).head<3>().transpose();
+  void approach(const Eigen::VectorXd& nuisance, const Eigen::VectorXd* reference,
+                Observations& data, int row) const override {
+    data.normal.row(row) = (reference ? *reference : nuisance).head<3>().transpose();
   }
 
  protected:
@@ -84,15 +85,18 @@ class OnePlane final : public Touch {
       : Touch(probe_radius), known_(known) {}
 
   bool may_leave_scale_free() const override { return true; }
-  int own_freedom() const override { return known_ ? 0 : 3; }
+  int tangent_dimension() const override { return known_ ? 0 : 3; }
   std::vector<KnownLength> known_lengths() const override {
     if (!known_) return {};
     return {{"distance of the plane from the world's origin", known_->d, 0, true}};
   }
-  std::optional<Plane> plane(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
-    return Plane{own.head<3>(), own[3]};
+  std::optional<Plane> plane(const Eigen::VectorXd& nuisance,
+                             const Eigen::VectorXd*) const override {
+    return Plane{nuisance.head<3>(), nuisance[3]};
   }
-  Eigen::VectorXd own_of(const Plane& plane) const override { return values_of(plane.n, *plane.d); }
+  Eigen::VectorXd nuisance_of(const Plane& plane) const override {
+    return values_of(plane.n, *plane.d);
+  }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd*,
@@ -103,20 +107,21 @@ class OnePlane final : public Touch {
     for (const Location& each : X) d += n.dot(each.p) / static_cast<double>(X.size());
     return values_of(n, d);
   }
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     if (known_) return;
-    own.head<3>() = tilted(own.head<3>(), step.head<2>());
-    own[3] += step[2];
+    nuisance.head<3>() = tilted(nuisance.head<3>(), step.head<2>());
+    nuisance[3] += step[2];
   }
-  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd*) const override {
     if (known_) return {};
     Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 3);
-    D_n.leftCols<2>() = tangents(own.head<3>());
-    return describe(normal_form(own), D_n, Eigen::RowVector3d(0, 0, 1));
+    D_n.leftCols<2>() = tangents(nuisance.head<3>());
+    return describe(normal_form(nuisance), D_n, Eigen::RowVector3d(0, 0, 1));
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const NormalForm plane = normal_form(*in.own);
+    const NormalForm plane = normal_form(*in.nuisance);
     const Eigen::Matrix<double, 3, 2> T = tangents(plane.n);
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d P = touched(in, lane);
@@ -150,13 +155,13 @@ class ParallelPlane final : public Touch {
   bool can_refer_to(const Method& other) const override {
     return dynamic_cast<const OnePlane*>(&other) != nullptr;
   }
-  int own_freedom() const override { return 1; }
+  int tangent_dimension() const override { return 1; }
   std::vector<KnownLength> known_lengths() const override {
     return {{"distance from " + reference_, distance_, noise_, false}};
   }
-  std::optional<Plane> plane(const Eigen::VectorXd& own,
+  std::optional<Plane> plane(const Eigen::VectorXd& nuisance,
                              const Eigen::VectorXd* reference) const override {
-    return Plane{reference->head<3>(), own[0]};
+    return Plane{reference->head<3>(), nuisance[0]};
   }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
@@ -167,26 +172,26 @@ class ParallelPlane final : public Touch {
       d += reference->head<3>().dot(each.p) / static_cast<double>(X.size());
     return Eigen::Vector2d(d, d < (*reference)[3] ? -1 : 1);
   }
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
-    own[0] += step[0];
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
+    nuisance[0] += step[0];
   }
   Eigen::VectorXd through(const Location&, const Eigen::VectorXd* reference,
                           Random&) const override {
     return Eigen::Vector2d((*reference)[3] + distance_, 1);
   }
-  std::vector<OwnEquation> own_equations(const Eigen::VectorXd& own,
+  std::vector<OwnEquation> own_equations(const Eigen::VectorXd& nuisance,
                                          const Eigen::VectorXd* reference) const override {
-    const double side = own[1];
-    return {{side * (own[0] - (*reference)[3]) - distance_, noise_,
+    const double side = nuisance[1];
+    return {{side * (nuisance[0] - (*reference)[3]) - distance_, noise_,
              Eigen::VectorXd::Constant(1, side), Eigen::Vector3d(0, 0, -side)}};
   }
-  std::vector<OwnReport> report(const Eigen::VectorXd& own,
-                                const Eigen::VectorXd* reference) const override {
-    const NormalForm plane{reference->head<3>(), own[0]};
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd* reference) const override {
+    const NormalForm plane{reference->head<3>(), nuisance[0]};
     Eigen::MatrixXd D_n = Eigen::MatrixXd::Zero(3, 4);
     D_n.middleCols<2>(1) = tangents(plane.n);
-    std::vector<OwnReport> list = describe(plane, D_n, Eigen::RowVector4d(1, 0, 0, 0));
-    for (OwnReport& each : list) {
+    std::vector<NuisanceReport> list = describe(plane, D_n, Eigen::RowVector4d(1, 0, 0, 0));
+    for (NuisanceReport& each : list) {
       each.D_reference = each.D_own.tail<3>();
       each.D_own = Eigen::VectorXd(each.D_own.head<1>());
     }
@@ -198,7 +203,7 @@ class ParallelPlane final : public Touch {
     const Eigen::Matrix<double, 3, 2> T = tangents(n);
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d P = touched(in, lane);
-      out.r(lane, 0) = n.dot(P) - (*in.own)[0];
+      out.r(lane, 0) = n.dot(P) - (*in.nuisance)[0];
       set_linear(out.G_now, lane, 0, n);
       out.D_own(lane, 0) = -1;
       if (out.D_reference.cols() > 0) out.D_reference.row(lane).head<2>() = P.transpose() * T;

@@ -15,33 +15,35 @@ class PlaneNormal final : public Method {
   std::string_view name() const override { return "plane-normal"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
   TouchedSurface touches() const override { return TouchedSurface::plane; }
-  std::optional<Plane> plane(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
-    return Plane{own, std::nullopt};
+  std::optional<Plane> plane(const Eigen::VectorXd& nuisance,
+                             const Eigen::VectorXd*) const override {
+    return Plane{nuisance, std::nullopt};
   }
-  Eigen::VectorXd own_of(const Plane& plane) const override { return plane.n; }
+  Eigen::VectorXd nuisance_of(const Plane& plane) const override { return plane.n; }
   bool paired() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
-  int own_freedom() const override { return known_ ? 0 : 2; }
+  int tangent_dimension() const override { return known_ ? 0 : 2; }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd*,
                         const Location&) const override {
     return known_ ? *known_ : best_normal(X);
   }
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
-    if (!known_) own = tilted(own, step);
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
+    if (!known_) nuisance = tilted(nuisance, step);
   }
-  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
-    std::vector<OwnReport> list;
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd*) const override {
+    std::vector<NuisanceReport> list;
     if (known_) return list;
     static constexpr const char* kNames[] = {"nx", "ny", "nz"};
-    const Eigen::Matrix<double, 3, 2> T = tangents(own);
-    for (int i = 0; i < 3; ++i) list.push_back({kNames[i], own[i], T.row(i).transpose(), {}});
+    const Eigen::Matrix<double, 3, 2> T = tangents(nuisance);
+    for (int i = 0; i < 3; ++i) list.push_back({kNames[i], nuisance[i], T.row(i).transpose(), {}});
     return list;
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const Eigen::Vector3d n = *in.own;
+    const Eigen::Vector3d n = *in.nuisance;
     const Eigen::Matrix<double, 3, 2> T = tangents(n);
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d step = in.now->p(lane) - in.before->p(lane);

@@ -20,35 +20,38 @@ class Position final : public Method {
   bool constrains() const override { return false; }
   bool frame_unknown() const override { return frame_; }
   bool point_unknown() const override { return point_; }
-  int own_freedom() const override { return point_at() + (point_ ? 3 : 0); }
+  int tangent_dimension() const override { return point_at() + (point_ ? 3 : 0); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,
                         const Location& tool) const override {
-    Eigen::VectorXd own(DeviceFrame::kValues + 3);
-    own << DeviceFrame::world(), tool.p;
-    if (!frame_) return own;
+    Eigen::VectorXd nuisance(DeviceFrame::kValues + 3);
+    nuisance << DeviceFrame::world(), tool.p;
+    if (!frame_) return nuisance;
     std::vector<Eigen::Vector3d> device, world;
     for (size_t i = 0; i < rows.size(); ++i) {
       device.emplace_back(data.position.row(rows[i]).transpose());
       world.push_back(point_ ? X[i].p + X[i].R * tool.p : X[i].p);
     }
-    own.head<DeviceFrame::kValues>() = DeviceFrame::register_points(device, world);
-    return own;
+    nuisance.head<DeviceFrame::kValues>() = DeviceFrame::register_points(device, world);
+    return nuisance;
   }
 
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
-    if (frame_) DeviceFrame::retract(own.head<DeviceFrame::kValues>(), step);
-    if (point_) own.tail<3>() += step.tail<3>();
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
+    if (frame_) DeviceFrame::retract(nuisance.head<DeviceFrame::kValues>(), step);
+    if (point_) nuisance.tail<3>() += step.tail<3>();
   }
 
-  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
-    std::vector<OwnReport> list;
-    if (frame_) list = DeviceFrame::report(own, own_freedom());
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd*) const override {
+    std::vector<NuisanceReport> list;
+    if (frame_) list = DeviceFrame::report(nuisance, tangent_dimension());
     static constexpr const char* kNames[] = {"point.x", "point.y", "point.z"};
     for (int i = 0; point_ && i < 3; ++i) {
-      OwnReport each{
-          kNames[i], own[DeviceFrame::kValues + i], Eigen::VectorXd::Zero(own_freedom()), {}};
+      NuisanceReport each{kNames[i],
+                          nuisance[DeviceFrame::kValues + i],
+                          Eigen::VectorXd::Zero(tangent_dimension()),
+                          {}};
       each.D_own[point_at() + i] = 1;
       list.push_back(std::move(each));
     }
@@ -56,10 +59,11 @@ class Position final : public Method {
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const Location F = DeviceFrame::pose(*in.own);
-    const Eigen::Vector3d s = point_ ? Eigen::Vector3d(in.own->tail<3>()) : Eigen::Vector3d::Zero();
+    const Location F = DeviceFrame::pose(*in.nuisance);
+    const Eigen::Vector3d s =
+        point_ ? Eigen::Vector3d(in.nuisance->tail<3>()) : Eigen::Vector3d::Zero();
     const Eigen::Matrix3d to_device = F.R.transpose();
-    const int m = own_freedom();
+    const int m = tangent_dimension();
     for (int lane = 0; lane < in.count; ++lane) {
       Eigen::Vector3d P = in.now->p(lane);
       Eigen::Matrix3d by_angle = Eigen::Matrix3d::Zero(), by_point = Eigen::Matrix3d::Zero();
@@ -83,23 +87,23 @@ class Position final : public Method {
     }
   }
 
-  void measure(const Location& X, const Location&, const Eigen::VectorXd& own, Observations& data,
-               int row) const override {
-    const Location F = DeviceFrame::pose(own);
-    const Eigen::Vector3d P = point_ ? X.p + X.R * own.tail<3>() : X.p;
+  void measure(const Location& X, const Location&, const Eigen::VectorXd& nuisance,
+               Observations& data, int row) const override {
+    const Location F = DeviceFrame::pose(nuisance);
+    const Eigen::Vector3d P = point_ ? X.p + X.R * nuisance.tail<3>() : X.p;
     data.position.row(row) = (F.R.transpose() * (P - F.p)).transpose();
   }
 
   Eigen::VectorXd through(const Location&, const Eigen::VectorXd*, Random& random) const override {
     std::normal_distribution<double> normal;
-    Eigen::VectorXd own(DeviceFrame::kValues + 3);
-    own << DeviceFrame::world(), 0.05, 0.02, 0.1;
+    Eigen::VectorXd nuisance(DeviceFrame::kValues + 3);
+    nuisance << DeviceFrame::world(), 0.05, 0.02, 0.1;
     if (frame_) {
       Eigen::VectorXd step(DeviceFrame::kFreedom);
       for (double& v : step) v = normal(random);
-      DeviceFrame::retract(own.head<DeviceFrame::kValues>(), step);
+      DeviceFrame::retract(nuisance.head<DeviceFrame::kValues>(), step);
     }
-    return own;
+    return nuisance;
   }
 
  private:

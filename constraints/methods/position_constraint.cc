@@ -13,7 +13,7 @@ namespace {
 
 class PositionConstraint final : public Method {
  public:
-  PositionConstraint(std::vector<GroupLink> links, std::vector<std::string> names)
+  PositionConstraint(std::vector<GroupDistance> links, std::vector<std::string> names)
       : links_(std::move(links)), names_(std::move(names)) {}
 
   std::string_view name() const override { return "position-constraint"; }
@@ -23,10 +23,10 @@ class PositionConstraint final : public Method {
   bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return 3; }
   std::vector<std::string> group_names() const override { return {"x", "y", "z"}; }
-  std::vector<GroupLink> links() const override { return links_; }
+  std::vector<GroupDistance> links() const override { return links_; }
   std::vector<KnownLength> known_lengths() const override {
     std::vector<KnownLength> list;
-    for (const GroupLink& link : links_)
+    for (const GroupDistance& link : links_)
       list.push_back({"distance of " + names_[link.a] + " from " + names_[link.b], link.distance,
                       link.noise, false});
     return list;
@@ -46,8 +46,9 @@ class PositionConstraint final : public Method {
     group += step;
   }
 
-  double link_residual(const GroupLink& link, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                       Eigen::VectorXd& D_a, Eigen::VectorXd& D_b) const override {
+  double link_residual(const GroupDistance& link, const Eigen::VectorXd& a,
+                       const Eigen::VectorXd& b, Eigen::VectorXd& D_a,
+                       Eigen::VectorXd& D_b) const override {
     const double length = (a - b).norm();
     D_a = length > 0 ? Eigen::VectorXd((a - b) / length) : Eigen::VectorXd::Zero(3);
     D_b = -D_a;
@@ -66,13 +67,13 @@ class PositionConstraint final : public Method {
   }
 
  private:
-  std::vector<GroupLink> links_;
+  std::vector<GroupDistance> links_;
   std::vector<std::string> names_;  ///< of the groups that the links know by their index
 };
 
-GroupLink read_link(const Node& node, SetEntry& entry) {
+GroupDistance read_link(const Node& node, SetEntry& entry) {
   Fields fields(node, entry.fields.what() + " apart", entry.problems);
-  GroupLink link;
+  GroupDistance link;
   const std::vector<std::string> names = fields.texts("groups");
   if (names.size() == 2 && names[0] != names[1]) {
     link.a = group_index(entry.groups, names[0]);
@@ -90,14 +91,14 @@ GroupLink read_link(const Node& node, SetEntry& entry) {
 }  // namespace
 
 MethodPtr make_position_constraint(SetEntry& entry) {
-  std::vector<GroupLink> links;
+  std::vector<GroupDistance> links;
   if (const Node* list = entry.fields.node("apart")) {
     if (list->kind != Node::Kind::list)
       entry.fields.fail("apart", "a list of {groups: [A, B], distance: D, noise: S}");
     for (const Node& item : list->items) {
-      GroupLink link = read_link(item, entry);
+      GroupDistance link = read_link(item, entry);
       link.known = static_cast<int>(links.size());
-      if (std::ranges::any_of(links, [&](const GroupLink& other) {
+      if (std::ranges::any_of(links, [&](const GroupDistance& other) {
             return std::minmax(link.a, link.b) == std::minmax(other.a, other.b);
           }))
         entry.problems.add(item.place, "these two groups are apart already");

@@ -19,7 +19,7 @@ class Sphere final : public Method {
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
   TouchedSurface touches() const override { return TouchedSurface::curved; }
   bool may_leave_scale_free() const override { return true; }
-  int own_freedom() const override { return radius_at() + (radius_ ? 0 : 1); }
+  int tangent_dimension() const override { return radius_at() + (radius_ ? 0 : 1); }
   std::vector<KnownLength> known_lengths() const override {
     if (!radius_) return {};
     return {{"radius", *radius_, 0, true}};
@@ -39,39 +39,40 @@ class Sphere final : public Method {
       b[static_cast<Eigen::Index>(i)] = p.squaredNorm();
     }
     const Eigen::Vector4d fit = least_squares(A, b);
-    Eigen::VectorXd own(4);
-    own.head<3>() = centre_.value_or(mean + fit.head<3>());
+    Eigen::VectorXd nuisance(4);
+    nuisance.head<3>() = centre_.value_or(mean + fit.head<3>());
     double radius = 0;
     for (const Location& each : X)
-      radius += (each.p - own.head<3>()).norm() / static_cast<double>(X.size());
-    own[3] = radius_.value_or(radius);
-    return own;
+      radius += (each.p - nuisance.head<3>()).norm() / static_cast<double>(X.size());
+    nuisance[3] = radius_.value_or(radius);
+    return nuisance;
   }
-  void retract(Eigen::VectorXd& own, const Eigen::VectorXd& step) const override {
-    if (!centre_) own.head<3>() += step.head<3>();
-    if (!radius_) own[3] += step[radius_at()];
+  void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
+    if (!centre_) nuisance.head<3>() += step.head<3>();
+    if (!radius_) nuisance[3] += step[radius_at()];
   }
-  std::vector<OwnReport> report(const Eigen::VectorXd& own, const Eigen::VectorXd*) const override {
+  std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,
+                                     const Eigen::VectorXd*) const override {
     static constexpr const char* kNames[] = {"cx", "cy", "cz"};
-    std::vector<OwnReport> list;
+    std::vector<NuisanceReport> list;
     const auto unit = [&](int i) {
-      Eigen::VectorXd D = Eigen::VectorXd::Zero(own_freedom());
+      Eigen::VectorXd D = Eigen::VectorXd::Zero(tangent_dimension());
       D[i] = 1;
       return D;
     };
-    for (int i = 0; !centre_ && i < 3; ++i) list.push_back({kNames[i], own[i], unit(i), {}});
-    if (!radius_) list.push_back({"radius", own[3], unit(radius_at()), {}});
+    for (int i = 0; !centre_ && i < 3; ++i) list.push_back({kNames[i], nuisance[i], unit(i), {}});
+    if (!radius_) list.push_back({"radius", nuisance[3], unit(radius_at()), {}});
     return list;
   }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
-    const Eigen::Vector3d c = in.own->head<3>();
+    const Eigen::Vector3d c = in.nuisance->head<3>();
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d step = in.now->p(lane) - c;
       const double length = step.norm();
       const Eigen::Vector3d u =
           length > 0 ? Eigen::Vector3d(step / length) : Eigen::Vector3d::Zero();
-      out.r(lane, 0) = length - (*in.own)[3];
+      out.r(lane, 0) = length - (*in.nuisance)[3];
       set_linear(out.G_now, lane, 0, u);
       if (!centre_) out.D_own.row(lane).head<3>() = -u.transpose();
       if (!radius_) out.D_own(lane, radius_at()) = -1;
@@ -81,14 +82,14 @@ class Sphere final : public Method {
   Eigen::VectorXd through(const Location& X, const Eigen::VectorXd*,
                           Random& random) const override {
     std::uniform_real_distribution<double> size(0.05, 0.3);
-    Eigen::VectorXd own(4);
+    Eigen::VectorXd nuisance(4);
     if (centre_) {
-      own << *centre_, radius_.value_or((X.p - *centre_).norm());
+      nuisance << *centre_, radius_.value_or((X.p - *centre_).norm());
     } else {
-      own[3] = radius_.value_or(size(random));
-      own.head<3>() = X.p + own[3] * random_direction(random);
+      nuisance[3] = radius_.value_or(size(random));
+      nuisance.head<3>() = X.p + nuisance[3] * random_direction(random);
     }
-    return own;
+    return nuisance;
   }
 
  private:

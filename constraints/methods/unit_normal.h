@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "constraints/method.h"
+#include "constraints/methods/method.h"
 
 namespace selfcal {
 

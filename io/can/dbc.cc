@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/file.h"
+#include "io/files/file.h"
 
 namespace selfcal {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <selfcal_messages/types.h>
 
-#include "io/dds/monitor.h"
+#include "io/dds/clients/monitor.h"
 #include "io/dds/robot_side.h"
 #include "io/messages.h"
 #include "io/ports.h"

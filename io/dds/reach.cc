@@ -4,14 +4,14 @@
 #include <cstdlib>
 #include <regex>
 
-#include "io/file.h"
+#include "io/files/file.h"
 
 namespace selfcal {
 namespace {
 
 constexpr std::size_t kMostConfigurationBytes = std::size_t{1} << 20;
 
-bool own(const std::string& interface) {
+bool nuisance(const std::string& interface) {
   return interface == "lo" || interface == "::1" || interface.starts_with("127.");
 }
 
@@ -39,7 +39,7 @@ DdsReach reach_of(std::string_view configuration) {
     all_own = all_own && !named.empty();
     interfaces.insert(interfaces.end(), named.begin(), named.end());
   }
-  for (const std::string& interface : interfaces) all_own = all_own && own(interface);
+  for (const std::string& interface : interfaces) all_own = all_own && nuisance(interface);
   reach.loopback = all_own && !interfaces.empty();
   return reach;
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-#include "io/file.h"
+#include "io/files/file.h"
 
 namespace selfcal {
 namespace {

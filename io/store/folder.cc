@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "io/file.h"
+#include "io/files/file.h"
 
 namespace selfcal {
 namespace {

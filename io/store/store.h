@@ -40,7 +40,7 @@ struct StepRecord {
 
 enum class TouchOutcome : std::uint8_t {
   taken = 0,
-  put_aside = 1,
+  outlier = 1,
   differs = 2,  ///< from the good ones of its step before it: none of them counts
 };
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/file.h"
+#include "io/files/file.h"
 #include "io/store/checksums.h"
 #include "io/store/sqlite.h"
 

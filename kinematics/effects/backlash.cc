@@ -27,7 +27,7 @@ class Backlash final : public Effect {
     return by_load_ ? "torques of both signs" : "dq of both signs";
   }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     into.joints(joint_, 0) =
         by_load_ ? sign(at.torque[joint_]) / 2 : -sign(at.velocity[joint_]) / 2;
   }

@@ -31,7 +31,7 @@ class BaseDrift final : public Effect {
 
   std::string needs() const override { return "rows with times, spread over the drift"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (std::isnan(at.time) || end_ <= begin_) return;
     if (half_waves_.empty()) return move(at, share(at.time), 0, into);
     for (size_t i = 0; i < half_waves_.size(); ++i) {
@@ -49,7 +49,7 @@ class BaseDrift final : public Effect {
   }
 
   /// The columns from `first` on: `s` of a shift along and a turn about each axis.
-  static void move(const Circumstances& at, double s, Eigen::Index first, Influence& into) {
+  static void move(const Circumstances& at, double s, Eigen::Index first, Regressor& into) {
     const Eigen::Vector3d tip = at.poses.back().translation();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d unit = s * Eigen::Vector3d::Unit(axis);

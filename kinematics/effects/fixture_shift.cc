@@ -19,7 +19,7 @@ class FixtureShift final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches with times before and after it"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0 || !(at.time >= moment_)) return;
     const Eigen::Vector3d from = at.poses.back().translation() - frame_.centre;
     const double share[] = {1, frame_.v.dot(from), -frame_.u.dot(from)};

@@ -31,7 +31,7 @@ class JointCompliance final : public Effect {
 
   std::string needs() const override { return "a load whose torque on the joint changes"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (!lumps_) {
       into.joints(joint_, 0) = at.torque[joint_];
       return;

@@ -25,7 +25,7 @@ class LinkCompliance final : public Effect {
 
   std::string needs() const override { return "a load whose moment on the link changes"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     const int next = std::min(link_ + 1, static_cast<int>(at.poses.size()) - 1);
     const Eigen::Vector3d O = at.poses[link_].translation(), E = at.poses[next].translation();
     const Eigen::Vector3d tip = at.poses.back().translation();

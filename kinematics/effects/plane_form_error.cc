@@ -17,7 +17,7 @@ class PlaneFormError final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches spread over the surface"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
     const Eigen::Vector3d from = at.poses.back().translation() - frame_.centre;
     const double u = frame_.u.dot(from), v = frame_.v.dot(from);

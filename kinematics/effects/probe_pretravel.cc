@@ -21,7 +21,7 @@ class ProbePretravel final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches at different angles to the stylus"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (!at.normal.allFinite()) return;
     const Eigen::Vector3d n = at.poses.back().linear().transpose() * at.normal;
     const double sine = std::hypot(n.x(), n.y()), psi = std::atan2(n.y(), n.x());

@@ -38,7 +38,7 @@ class ThermalExpansion final : public Effect {
 
   std::string needs() const override { return "temperatures that change"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     const double T = temperature(at);
     if (std::isnan(T)) return;
     const int first = at.mechanics->link_of(0);

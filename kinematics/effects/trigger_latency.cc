@@ -16,7 +16,7 @@ class TriggerLatency final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches with velocities dq, at different speeds"; }
 
-  void influence(const Circumstances& at, Influence& into) const override {
+  void regressor(const Circumstances& at, Regressor& into) const override {
     if (at.normal.allFinite() && at.velocity.allFinite()) into.joints.col(0) = -at.velocity;
   }
 };

@@ -18,8 +18,8 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
 }
 
 /// dp to the seven parameters of tower `t`, `toward` its p - c and `g` the column of the inverse.
-Eigen::Matrix<double, 3, kFields> tower_columns(const Eigen::VectorXd& xi, const Closed& at, int t,
-                                                const Eigen::Vector3d& g, double q) {
+Eigen::Matrix<double, 3, kFields> tower_columns(const Eigen::VectorXd& xi, const ClosedLoops& at,
+                                                int t, const Eigen::Vector3d& g, double q) {
   const double angle = xi[index(t, kAngle)];
   const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0);
   const Eigen::Vector3d along(-out.y(), out.x(), 0), u = at.towers[t].u;
@@ -77,7 +77,7 @@ class LinearDelta final : public Robot {
       const Eigen::Vector3d q = block.q.row(lane).matrix().transpose();
       Eigen::Vector3d added = Eigen::Vector3d::Zero();
       if (block.added.rows() > 0) added = block.added.row(lane).matrix().transpose();
-      const Closed at = close(xi, towers, q, added);
+      const ClosedLoops at = close(xi, towers, q, added);
       if (!at.open.empty()) {
         closure.leave_open(lane, at.open);
         continue;
@@ -111,7 +111,7 @@ class LinearDelta final : public Robot {
 
  private:
   /// `tool`: from the effector's joints to the body, world; null where the body is the effector.
-  static void fill(const Eigen::VectorXd& xi, const Closed& at, const Eigen::Vector3d& q,
+  static void fill(const Eigen::VectorXd& xi, const ClosedLoops& at, const Eigen::Vector3d& q,
                    const Eigen::Matrix3d& R, const Eigen::Matrix3d& turn,
                    const Eigen::Vector3d* tool, int lane, PsiBlock& psi) {
     Eigen::Matrix<double, 6, kParameters> all = Eigen::Matrix<double, 6, kParameters>::Zero();

@@ -56,7 +56,7 @@ Tower tower(const Eigen::VectorXd& xi, int t);
 Eigen::Vector3d tilt_of(const Eigen::VectorXd& xi, int at);
 
 /// One configuration with the loops closed.
-struct Closed {
+struct ClosedLoops {
   std::array<Tower, kTowers> towers;
   Eigen::Vector3d height;    ///< s_i
   Eigen::Matrix3d carriage;  ///< column i is c_i
@@ -65,8 +65,8 @@ struct Closed {
 };
 
 /// The loops closed at readings `q`, `added` to the joint variables.
-Closed close(const Eigen::VectorXd& xi, const std::array<Tower, kTowers>& towers,
-             const Eigen::Vector3d& q, const Eigen::Vector3d& added);
+ClosedLoops close(const Eigen::VectorXd& xi, const std::array<Tower, kTowers>& towers,
+                  const Eigen::Vector3d& q, const Eigen::Vector3d& added);
 
 /// Readings that bring the effector's joints to `p`; nothing where a rod does not reach.
 std::optional<Eigen::Vector3d> readings_at(const Eigen::VectorXd& xi, const Eigen::Vector3d& p);

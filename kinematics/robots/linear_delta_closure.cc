@@ -34,7 +34,7 @@ std::string apart(const Eigen::Matrix3d& c, const Eigen::Vector3d& rod) {
   return {};
 }
 
-void meet(const Eigen::Vector3d& rod, Closed& at) {
+void meet(const Eigen::Vector3d& rod, ClosedLoops& at) {
   at.open = apart(at.carriage, rod);
   if (!at.open.empty()) return;
   const Eigen::Vector3d c1 = at.carriage.col(0);
@@ -63,9 +63,9 @@ void meet(const Eigen::Vector3d& rod, Closed& at) {
 
 Eigen::Vector3d tilt_of(const Eigen::VectorXd& xi, int at) { return {xi[at], xi[at + 1], 0}; }
 
-Closed close(const Eigen::VectorXd& xi, const std::array<Tower, kTowers>& towers,
-             const Eigen::Vector3d& q, const Eigen::Vector3d& added) {
-  Closed at;
+ClosedLoops close(const Eigen::VectorXd& xi, const std::array<Tower, kTowers>& towers,
+                  const Eigen::Vector3d& q, const Eigen::Vector3d& added) {
+  ClosedLoops at;
   at.towers = towers;
   Eigen::Vector3d rod;
   for (int t = 0; t < kTowers; ++t) {

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 #include "tests/app/cell.h"
 #include "tests/io/store_content.h"
 #include "tests/support/text.h"

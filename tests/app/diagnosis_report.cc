@@ -1,5 +1,5 @@
 // The page of a diagnosis: what it says beside the verdict.
-#include "app/diagnosis_report.h"
+#include "app/report/diagnosis_report.h"
 
 #include <gmock/gmock.h>
 

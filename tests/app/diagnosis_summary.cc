@@ -1,10 +1,10 @@
 // The gap in words: what is named and everything found, each for what it is.
-#include "app/diagnosis_summary.h"
+#include "app/report/diagnosis_summary.h"
 
 #include <gmock/gmock.h>
 
-#include "app/diagnosis_json.h"
-#include "app/diagnosis_report.h"
+#include "app/report/diagnosis_json.h"
+#include "app/report/diagnosis_report.h"
 
 namespace selfcal {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "app/drift.h"
-#include "io/file.h"
-#include "io/robot_file.h"
+#include "app/report/drift.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
 #include "io/store/store.h"
 #include "tests/app/cell.h"
 

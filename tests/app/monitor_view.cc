@@ -1,13 +1,13 @@
 // The picture and the lines that a watcher reads, from messages made up.
-#include "app/monitor_view.h"
+#include "app/report/monitor_view.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "app/message_json.h"
-#include "app/monitor_news.h"
-#include "app/words.h"
+#include "app/report/format.h"
+#include "app/report/message_json.h"
+#include "app/report/monitor_news.h"
 
 namespace selfcal {
 namespace {

@@ -1,5 +1,5 @@
 // What a pretend robot sends is true at the moment at which it is sent.
-#include "app/paced_output.h"
+#include "app/report/paced_output.h"
 
 #include <gtest/gtest.h>
 

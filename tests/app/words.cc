@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "constraints/data_set.h"
+#include "constraints/methods/data_set.h"
 #include "kinematics/effect.h"
 #include "tests/app/cell.h"
 #include "tests/support/text.h"

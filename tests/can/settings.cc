@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "io/yaml.h"
+#include "io/files/yaml.h"
 #include "tests/io/scratch.h"
 
 namespace selfcal {

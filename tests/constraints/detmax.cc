@@ -1,5 +1,5 @@
 // The exchange algorithm against determinants computed as they are defined.
-#include "constraints/detmax.h"
+#include "constraints/planning/detmax.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "constraints/observability.h"
+#include "constraints/identifiability/observability.h"
 
 namespace selfcal {
 namespace {

@@ -1,5 +1,5 @@
 // Ranks of columns made by hand: one that depends on others, one that is zero.
-#include "constraints/identifiability.h"
+#include "constraints/identifiability/identifiability.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The answer: many small gains do not outvote one great loss, no row is excused by the model on
 // trial, and angles are judged as lengths are.
-#include "constraints/judgement.h"
+#include "constraints/estimation/judgement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // A row that is less certain than its set weighs less.
 #include <gtest/gtest.h>
 
-#include "constraints/identification.h"
-#include "constraints/noise.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/estimation/noise.h"
 #include "tests/sim/pretend.h"
 #include "tests/support/end_position.h"
 

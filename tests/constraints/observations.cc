@@ -1,4 +1,4 @@
-#include "constraints/observations.h"
+#include "constraints/methods/observations.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // R of rows in pieces against the rows themselves.
-#include "constraints/streaming_qr.h"
+#include "constraints/equations/streaming_qr.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Planned touches lie where they should.
-#include "constraints/touch_plan.h"
+#include "constraints/planning/touch_plan.h"
 
 #include <gmock/gmock.h>
 

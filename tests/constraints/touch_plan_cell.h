@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "constraints/touch_plan.h"
+#include "constraints/planning/touch_plan.h"
 #include "tests/sim/pretend.h"
 #include "tests/support/end_position.h"
 

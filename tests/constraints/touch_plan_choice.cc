@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/configurations.h"
-#include "constraints/equations.h"
-#include "constraints/spread.h"
+#include "constraints/equations/equations.h"
+#include "constraints/planning/d_optimal.h"
+#include "constraints/sampling/configurations.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/constraints/touch_plan_cell.h"
 
@@ -34,14 +34,14 @@ Eigen::MatrixXd information(const PlannedCell& cell, const std::vector<Eigen::Ve
   equations.start(state);
   Weighting weighting;
   weighting.scale.assign(cell.sets.size(), {2e-5, 1});
-  weighting.put_aside.assign(rows.size(), 0);
+  weighting.outlier.assign(rows.size(), 0);
   const Eigen::MatrixXd R = equations.linearise(state, weighting).R;
   const Eigen::Index columns = equations.columns();
   Eigen::MatrixXd A = R.leftCols(columns).transpose() * R.leftCols(columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
-    const bool own = i >= equations.robot_columns();
-    const Parameter* each = own ? nullptr : &rx90().parameters()[i];
-    const double sigma = own ? 1 : each->free ? each->tolerance : 1e-9;
+    const bool nuisance = i >= equations.robot_columns();
+    const Parameter* each = nuisance ? nullptr : &rx90().parameters()[i];
+    const double sigma = nuisance ? 1 : each->free ? each->tolerance : 1e-9;
     A(i, i) += 1 / (sigma * sigma);
   }
   return A;
@@ -64,7 +64,7 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
     data.sets = cell.sets;
     SampleRequest request;
     request.rows = kTouches;
-    request.own = cell.sets[0].method->own_of(*cell.targets[0].plane);
+    request.nuisance = cell.sets[0].method->nuisance_of(*cell.targets[0].plane);
     request.patch = cell.targets[0].within;
     sample_rows(rx90(), values(rx90()), {request}, random, data);
     std::vector<Eigen::VectorXd> rows;

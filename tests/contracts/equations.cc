@@ -1,10 +1,10 @@
 // The whole system against a dense one from central differences: R^T R = W^T W once the groups'
 // columns are eliminated, that is the Schur complement.
-#include "constraints/equations.h"
+#include "constraints/equations/equations.h"
 
 #include <gtest/gtest.h>
 
-#include "constraints/excitation.h"
+#include "constraints/identifiability/excitation.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/contracts/equations_case.h"
 
@@ -65,7 +65,7 @@ TEST(Equations, HaveTheProductOfTheDenseSystemOfWholePoses) {
 TEST(Equations, WeighDownFarRowsAndLeaveOutThosePutAside) {
   EquationsCase made(2);
   made.weighting.soft_quantile = 0.5;  // about half of the rows are beyond
-  for (int row = 0; row < made.data.rows.rows(); row += 7) made.weighting.put_aside[row] = 1;
+  for (int row = 0; row < made.data.rows.rows(); row += 7) made.weighting.outlier[row] = 1;
   const Equations equations(*made.robot, made.data, Use::fit);
   const Eigen::VectorXd weights = made.root_weights(equations);
   ASSERT_TRUE((weights.array() == 0).any());
@@ -77,7 +77,7 @@ TEST(Equations, WeighDownFarRowsAndLeaveOutThosePutAside) {
 TEST(Equations, CostTheSquaresWithinTheQuantileAndLinesBeyond) {
   EquationsCase made(3);
   made.weighting.soft_quantile = 0.5;
-  made.weighting.put_aside[3] = 1;
+  made.weighting.outlier[3] = 1;
   const Equations equations(*made.robot, made.data, Use::fit);
   const Linearised at = equations.linearise(made.state, made.weighting);
   double cost = 0;
@@ -85,7 +85,7 @@ TEST(Equations, CostTheSquaresWithinTheQuantileAndLinesBeyond) {
   for (const RowResidual& row : equations.residuals(made.state)) {
     const int count = row.lengths + row.angles;
     rows += count;
-    if (made.weighting.put_aside[row.row]) continue;
+    if (made.weighting.outlier[row.row]) continue;
     const double t = row.sigmas(made.weighting.scale[row.set]), soft = chi_quantile(count, 0.5);
     cost += t <= soft ? t * t : 2 * soft * t - soft * soft;  // Huber
     scalars += count;
@@ -115,7 +115,7 @@ TEST(Equations, StepGroupsToWhereTheDenseSystemPutsThem) {
   const State found = equations.stepped(made.state, at, step.head(global));
   EXPECT_LT((found.xi - expected.xi).norm(), 1e-15);
   for (size_t s = 0; s < made.data.sets.size(); ++s) {
-    EXPECT_LT((found.own[s] - expected.own[s]).norm(), 1e-15) << made.data.sets[s].name;
+    EXPECT_LT((found.nuisance[s] - expected.nuisance[s]).norm(), 1e-15) << made.data.sets[s].name;
     // Differences of 5e-8 in W times steps of 0.1 m.
     if (found.groups[s].size() > 0) {
       EXPECT_LT((found.groups[s] - expected.groups[s]).norm(), 1e-7) << made.data.sets[s].name;
@@ -168,7 +168,7 @@ TEST(Equations, HaveAColumnForEachLengthThatAnEntryGives) {
   for (const auto& [set, text] : given) {
     EquationsCase shorter(9);
     shorter.data.sets[set].method = make_sets(text)[0].method;
-    if (set == 8) shorter.state.own[set][3] -= h;
+    if (set == 8) shorter.state.nuisance[set][3] -= h;
     const Equations then(*shorter.robot, shorter.data, Use::fit);
     const Eigen::VectorXd gain = (shorter.residuals(then, shorter.state) - r) / h;
     all.col(global + equations.known_at(set)) = made.root_weights(equations).cwiseProduct(gain);

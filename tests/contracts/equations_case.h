@@ -1,10 +1,10 @@
-// A small data set with every way in which equations hang together (own unknowns, a set that refers
-// to another, groups, linked groups, pairs), and its system from central differences.
+// A small data set with every way in which equations hang together (nuisance parameters, a set that
+// refers to another, groups, linked groups, pairs), and its system from central differences.
 #pragma once
 
 #include <vector>
 
-#include "constraints/configurations.h"
+#include "constraints/sampling/configurations.h"
 #include "constraints/statistics.h"
 #include "tests/contracts/arm.h"
 #include "tests/contracts/method_case.h"
@@ -41,7 +41,7 @@ struct EquationsCase {
     Random random(seed);
     state = sample_rows(*robot, values(*robot), requests, random, data).truth;
     weighting.scale.assign(data.sets.size(), {0.02, 0.03});
-    weighting.put_aside.assign(data.rows.rows(), 0);
+    weighting.outlier.assign(data.rows.rows(), 0);
     std::normal_distribution<double> normal(0, 0.01);
     for (double& v : state.xi) v += normal(random);
   }
@@ -53,8 +53,8 @@ struct EquationsCase {
     Eigen::Index at = equations.robot_columns();
     for (size_t s = 0; s < data.sets.size(); ++s) {
       const Method& method = *data.sets[s].method;
-      method.retract(next.own[s], step.segment(at, method.own_freedom()));
-      at += method.own_freedom();
+      method.retract(next.nuisance[s], step.segment(at, method.tangent_dimension()));
+      at += method.tangent_dimension();
     }
     for (size_t s = 0; s < data.sets.size(); ++s) {
       const Method& method = *data.sets[s].method;
@@ -73,7 +73,7 @@ struct EquationsCase {
     return count;
   }
 
-  /// Residuals over sigma: rows, then equations between own unknowns, then links.
+  /// Residuals over sigma: rows, then equations between nuisance parameters, then links.
   Eigen::VectorXd residuals(const Equations& equations, const State& at) const {
     std::vector<double> list;
     for (const RowResidual& row : equations.residuals(at)) {
@@ -83,10 +83,10 @@ struct EquationsCase {
     }
     for (size_t s = 0; s < data.sets.size(); ++s) {
       const Set& set = data.sets[s];
-      const Eigen::VectorXd* reference = set.reference < 0 ? nullptr : &at.own[set.reference];
-      for (const OwnEquation& each : set.method->own_equations(at.own[s], reference))
+      const Eigen::VectorXd* reference = set.reference < 0 ? nullptr : &at.nuisance[set.reference];
+      for (const OwnEquation& each : set.method->own_equations(at.nuisance[s], reference))
         list.push_back(each.residual / each.sigma);
-      for (const GroupLink& link : set.method->links()) {
+      for (const GroupDistance& link : set.method->links()) {
         Eigen::VectorXd D_a, D_b;
         list.push_back(set.method->link_residual(link, at.groups[s].col(link.a),
                                                  at.groups[s].col(link.b), D_a, D_b) /
@@ -103,7 +103,7 @@ struct EquationsCase {
       const int count = row.lengths + row.angles;
       const double t = row.sigmas(weighting.scale[row.set]);
       const double soft = chi_quantile(count, weighting.soft_quantile);
-      const double weight = weighting.put_aside[row.row] ? 0 : t > soft ? std::sqrt(soft / t) : 1;
+      const double weight = weighting.outlier[row.row] ? 0 : t > soft ? std::sqrt(soft / t) : 1;
       list.insert(list.end(), count, weight);
     }
     const Eigen::Index rows = static_cast<Eigen::Index>(list.size());

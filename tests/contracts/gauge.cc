@@ -28,7 +28,7 @@ Eigen::MatrixXd of_lane(const MethodOutput::Block& D, int lane, int equations) {
 void satisfy(Instance& at) {
   if (!at.method().constrains()) {
     for (int lane = 0; lane < kLanes; ++lane)
-      at.method().measure(at.now.at(lane), at.before.at(lane), at.own, at.data, lane);
+      at.method().measure(at.now.at(lane), at.before.at(lane), at.nuisance, at.data, lane);
     return;
   }
   for (int step = 0; step < 30; ++step) {
@@ -52,10 +52,10 @@ std::vector<Location> locations_of(const Instance& at, int group) {
 /// Own and group values that fit the locations best: the method's start, then Gauss-Newton steps.
 void fit_own(Instance& at) {
   const Eigen::VectorXd* reference = at.referred() ? &at.reference : nullptr;
-  at.own = at.method().start(locations_of(at, -1), at.rows, at.data, reference, {});
+  at.nuisance = at.method().start(locations_of(at, -1), at.rows, at.data, reference, {});
   for (Eigen::Index g = 0; g < at.groups.cols(); ++g)
     at.groups.col(g) = at.method().start_group(locations_of(at, static_cast<int>(g)));
-  const int m = at.method().own_freedom(), equations = at.equations();
+  const int m = at.method().tangent_dimension(), equations = at.equations();
   for (int step = 0; m > 0 && step < 30; ++step) {
     const MethodOutput out = at.evaluate();
     Eigen::MatrixXd J(kLanes * equations, m);
@@ -64,17 +64,17 @@ void fit_own(Instance& at) {
       J.middleRows(lane * equations, equations) = of_lane(out.D_own, lane, equations);
       r.segment(lane * equations, equations) = out.r.row(lane).matrix().transpose();
     }
-    at.method().retract(at.own, least_squares(J, -r));
+    at.method().retract(at.nuisance, least_squares(J, -r));
   }
 }
 
-/// Largest residual of rows, of equations between own unknowns and of links between groups.
+/// Largest residual of rows, of equations between nuisance parameters and of links between groups.
 double misfit(const Instance& at) {
   double most = at.evaluate().r.abs().maxCoeff();
   for (const OwnEquation& each :
-       at.method().own_equations(at.own, at.referred() ? &at.reference : nullptr))
+       at.method().own_equations(at.nuisance, at.referred() ? &at.reference : nullptr))
     most = std::max(most, std::abs(each.residual));
-  for (const GroupLink& link : at.method().links()) {
+  for (const GroupDistance& link : at.method().links()) {
     Eigen::VectorXd D_a, D_b;
     most = std::max(most, std::abs(at.method().link_residual(link, at.groups.col(link.a),
                                                              at.groups.col(link.b), D_a, D_b)));
@@ -86,7 +86,7 @@ double misfit(const Instance& at) {
 Instance satisfied_instance(const MethodCase& each, Random& random) {
   Instance at = random_instance(each, random);
   at.data.normal.rowwise() = Eigen::RowVector3d(0.6, 0, 0.8);
-  for (const GroupLink& link : at.method().links())
+  for (const GroupDistance& link : at.method().links())
     at.groups.col(link.b) = at.groups.col(link.a) + link.distance * Eigen::Vector3d::UnitY();
   satisfy(at);
   return at;
@@ -95,7 +95,8 @@ Instance satisfied_instance(const MethodCase& each, Random& random) {
 void shrink(Instance& at) {
   at.now.position *= kScale;
   at.before.position *= kScale;
-  if (at.referred() && at.referred()->own_freedom() > 0) at.reference[3] *= kScale;  // a plane's d
+  if (at.referred() && at.referred()->tangent_dimension() > 0)
+    at.reference[3] *= kScale;  // a plane's d
   fit_own(at);
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <random>
 
-#include "constraints/configurations.h"
-#include "constraints/excitation.h"
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/identifiability/excitation.h"
+#include "constraints/sampling/configurations.h"
 #include "tests/contracts/method_case.h"
 
 namespace selfcal {

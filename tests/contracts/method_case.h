@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "constraints/data_set.h"
-#include "io/yaml.h"
+#include "constraints/methods/data_set.h"
+#include "io/files/yaml.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -92,7 +92,7 @@ struct Instance {
   Observations data;
   std::vector<int> rows;
   Locations now, before;
-  Eigen::VectorXd own, reference;
+  Eigen::VectorXd nuisance, reference;
   Eigen::MatrixXd groups;
 
   const Method& method() const { return *sets[0].method; }
@@ -103,10 +103,10 @@ struct Instance {
 
   MethodOutput evaluate() const {
     MethodOutput out;
-    out.resize(equations(), method().own_freedom(), referred() ? referred()->own_freedom() : 0,
-               method().group_freedom());
+    out.resize(equations(), method().tangent_dimension(),
+               referred() ? referred()->tangent_dimension() : 0, method().group_freedom());
     const MethodInput in{
-        kLanes, &data, rows.data(), &now, &before, &own, referred() ? &reference : nullptr,
+        kLanes, &data, rows.data(), &now, &before, &nuisance, referred() ? &reference : nullptr,
         &groups};
     method().evaluate(in, out);
     return out;
@@ -146,7 +146,7 @@ inline Instance random_instance(const MethodCase& each, Random& random) {
   }
   if (made.referred())
     made.reference = made.referred()->through(random_location(random), nullptr, random);
-  made.own =
+  made.nuisance =
       method.through(random_location(random), made.referred() ? &made.reference : nullptr, random);
   for (int g = 0; method.group_freedom() > 0 && g < kGroups; ++g) {
     const Eigen::VectorXd values = method.start_group({random_location(random)});

@@ -1,5 +1,5 @@
 // Every method's derivatives against central differences of its residuals: to the locations, to its
-// own unknowns, to those of the set it refers to and to its groups'.
+// nuisance parameters, to those of the set it refers to and to its groups'.
 //
 // Step 1e-6: rounding leaves 2e-16 x 1 m / h = 2e-10; cut off is h^2 / 6 of the third derivative,
 // which reaches 1 / (pi - 2.5)^3 for angles and 1 / L^2 for a distance L: 1e-8 covers L down to 5
@@ -87,12 +87,12 @@ TEST_P(MethodDerivatives, ToItsOwnUnknownsAreTheDifferencesOfRetract) {
   for (int i = 0; i < kInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     const MethodOutput out = at.evaluate();
-    const int m = at.method().own_freedom();
+    const int m = at.method().tangent_dimension();
     for (int k = 0; k < m; ++k)
       expect_columns(out.D_own, m, k,
                      difference(at,
                                 [=](Instance& x, double h) {
-                                  x.method().retract(x.own, h * Eigen::VectorXd::Unit(m, k));
+                                  x.method().retract(x.nuisance, h * Eigen::VectorXd::Unit(m, k));
                                 }),
                      "own");
   }
@@ -104,7 +104,7 @@ TEST_P(MethodDerivatives, ToTheReferencesUnknownsAreTheDifferencesOfItsRetract) 
     const Instance at = random_instance(GetParam(), random);
     if (!at.referred()) return;
     const MethodOutput out = at.evaluate();
-    const int m = at.referred()->own_freedom();
+    const int m = at.referred()->tangent_dimension();
     for (int k = 0; k < m; ++k)
       expect_columns(out.D_reference, m, k,
                      difference(at,

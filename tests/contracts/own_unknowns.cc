@@ -1,4 +1,5 @@
-// What methods say of their own unknowns: reports, equations between them, links between groups.
+// What methods say of their nuisance parameters: reports, equations between them, links between
+// groups.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,9 +20,9 @@ void expect_near(double derivative, double difference, const std::string& what) 
 }
 
 /// Own values moved by h along freedom k.
-Eigen::VectorXd moved(const Method& method, Eigen::VectorXd own, int k, double h) {
-  method.retract(own, h * Eigen::VectorXd::Unit(method.own_freedom(), k));
-  return own;
+Eigen::VectorXd moved(const Method& method, Eigen::VectorXd nuisance, int k, double h) {
+  method.retract(nuisance, h * Eigen::VectorXd::Unit(method.tangent_dimension(), k));
+  return nuisance;
 }
 
 class OwnUnknowns : public testing::TestWithParam<MethodCase> {
@@ -35,14 +36,15 @@ TEST_P(OwnUnknowns, AreReportedWithTheirGradients) {
   Random random(71);
   for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
-    const auto reports = at.method().report(at.own, reference_of(at));
-    for (int k = 0; k < at.method().own_freedom(); ++k) {
-      const auto plus = at.method().report(moved(at.method(), at.own, k, kStep), reference_of(at));
+    const auto reports = at.method().report(at.nuisance, reference_of(at));
+    for (int k = 0; k < at.method().tangent_dimension(); ++k) {
+      const auto plus =
+          at.method().report(moved(at.method(), at.nuisance, k, kStep), reference_of(at));
       const auto minus =
-          at.method().report(moved(at.method(), at.own, k, -kStep), reference_of(at));
+          at.method().report(moved(at.method(), at.nuisance, k, -kStep), reference_of(at));
       ASSERT_EQ(plus.size(), reports.size());
       for (size_t n = 0; n < reports.size(); ++n) {
-        ASSERT_EQ(reports[n].D_own.size(), at.method().own_freedom());
+        ASSERT_EQ(reports[n].D_own.size(), at.method().tangent_dimension());
         expect_near(reports[n].D_own[k], (plus[n].value - minus[n].value) / (2 * kStep),
                     reports[n].name);
       }
@@ -55,11 +57,12 @@ TEST_P(OwnUnknowns, AreReportedWithTheirGradientsToTheReference) {
   for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
     if (!at.referred()) return;
-    const auto reports = at.method().report(at.own, &at.reference);
-    for (int k = 0; k < at.referred()->own_freedom(); ++k) {
+    const auto reports = at.method().report(at.nuisance, &at.reference);
+    for (int k = 0; k < at.referred()->tangent_dimension(); ++k) {
       const Eigen::VectorXd up = moved(*at.referred(), at.reference, k, kStep);
       const Eigen::VectorXd down = moved(*at.referred(), at.reference, k, -kStep);
-      const auto plus = at.method().report(at.own, &up), minus = at.method().report(at.own, &down);
+      const auto plus = at.method().report(at.nuisance, &up),
+                 minus = at.method().report(at.nuisance, &down);
       for (size_t n = 0; n < reports.size(); ++n)
         expect_near(reports[n].D_reference[k], (plus[n].value - minus[n].value) / (2 * kStep),
                     reports[n].name);
@@ -71,31 +74,31 @@ TEST_P(OwnUnknowns, AreReportedUnderNamesOfTheirOwnIfThereAreAny) {
   Random random(73);
   const Instance at = random_instance(GetParam(), random);
   std::set<std::string> names;
-  const auto reports = at.method().report(at.own, reference_of(at));
-  for (const OwnReport& each : reports) names.insert(each.name);
+  const auto reports = at.method().report(at.nuisance, reference_of(at));
+  for (const NuisanceReport& each : reports) names.insert(each.name);
   EXPECT_EQ(names.size(), reports.size());
   EXPECT_FALSE(names.contains(""));
-  EXPECT_EQ(reports.empty(), at.method().own_freedom() == 0);
+  EXPECT_EQ(reports.empty(), at.method().tangent_dimension() == 0);
 }
 
 TEST_P(OwnUnknowns, HaveEquationsWithTheirDerivatives) {
   Random random(74);
   for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
-    const auto equations = at.method().own_equations(at.own, reference_of(at));
+    const auto equations = at.method().own_equations(at.nuisance, reference_of(at));
     for (size_t n = 0; n < equations.size(); ++n) {
       EXPECT_GT(equations[n].sigma, 0);
-      for (int k = 0; k < at.method().own_freedom(); ++k) {
+      for (int k = 0; k < at.method().tangent_dimension(); ++k) {
         const auto value = [&](double h) {
-          const Eigen::VectorXd own = moved(at.method(), at.own, k, h);
-          return at.method().own_equations(own, reference_of(at))[n].residual;
+          const Eigen::VectorXd nuisance = moved(at.method(), at.nuisance, k, h);
+          return at.method().own_equations(nuisance, reference_of(at))[n].residual;
         };
         expect_near(equations[n].D_own[k], (value(kStep) - value(-kStep)) / (2 * kStep), "own");
       }
-      for (int k = 0; at.referred() && k < at.referred()->own_freedom(); ++k) {
+      for (int k = 0; at.referred() && k < at.referred()->tangent_dimension(); ++k) {
         const auto value = [&](double h) {
           const Eigen::VectorXd reference = moved(*at.referred(), at.reference, k, h);
-          return at.method().own_equations(at.own, &reference)[n].residual;
+          return at.method().own_equations(at.nuisance, &reference)[n].residual;
         };
         expect_near(equations[n].D_reference[k], (value(kStep) - value(-kStep)) / (2 * kStep),
                     "reference");
@@ -108,7 +111,7 @@ TEST_P(OwnUnknowns, OfLinkedGroupsHaveResidualsWithTheirDerivatives) {
   Random random(75);
   for (int i = 0; i < kOwnInstances; ++i) {
     const Instance at = random_instance(GetParam(), random);
-    for (const GroupLink& link : at.method().links()) {
+    for (const GroupDistance& link : at.method().links()) {
       const Eigen::VectorXd a = at.groups.col(link.a), b = at.groups.col(link.b);
       const auto value = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
         Eigen::VectorXd D_a, D_b;
@@ -135,12 +138,12 @@ TEST_P(OwnUnknowns, OfLinkedGroupsHaveResidualsWithTheirDerivatives) {
 TEST_P(OwnUnknowns, OfATouchedPlaneAreThoseOfThatPlane) {
   Random random(77);
   const Instance at = random_instance(GetParam(), random);
-  const auto plane = at.method().plane(at.own, reference_of(at));
+  const auto plane = at.method().plane(at.nuisance, reference_of(at));
   EXPECT_EQ(plane.has_value(), at.method().touches() == TouchedSurface::plane);
   if (!plane || at.referred()) return;
   const Plane turned{-plane->n, plane->d ? std::optional(-*plane->d) : std::nullopt};
   for (const Plane& wanted : {*plane, turned}) {
-    const auto back = at.method().plane(at.method().own_of(wanted), nullptr);
+    const auto back = at.method().plane(at.method().nuisance_of(wanted), nullptr);
     ASSERT_TRUE(back);
     const double side = back->n.dot(wanted.n);
     EXPECT_NEAR(std::abs(side), 1, 1e-15);  // rounding
@@ -153,10 +156,10 @@ TEST_P(OwnUnknowns, OfATouchedPlaneAreThoseOfThatPlane) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, OwnUnknowns, testing::ValuesIn(method_cases()), title_of);
 
-std::vector<std::pair<std::string, double>> plane_report(const Eigen::VectorXd& own) {
+std::vector<std::pair<std::string, double>> plane_report(const Eigen::VectorXd& nuisance) {
   const std::vector<Set> sets = make_sets("s: {method: plane}");
   std::vector<std::pair<std::string, double>> list;
-  for (const OwnReport& each : sets[0].method->report(own, nullptr))
+  for (const NuisanceReport& each : sets[0].method->report(nuisance, nullptr))
     list.emplace_back(each.name, each.value);
   return list;
 }

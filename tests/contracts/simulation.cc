@@ -2,7 +2,7 @@
 // hold.
 #include <gtest/gtest.h>
 
-#include "constraints/configurations.h"
+#include "constraints/sampling/configurations.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/contracts/arm.h"
 #include "tests/contracts/method_case.h"
@@ -66,9 +66,9 @@ TEST_P(Simulation, MakesRowsFromWhichOwnAndGroupValuesAreFound) {
   for (int i = 0; i < 30; ++i) {
     const Linearised at = equations.linearise(state, weighting);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.columns());
-    const int own = equations.own_columns();
-    step.tail(own) =
-        least_squares(at.R.middleCols(equations.robot_columns(), own), at.R.rightCols(1));
+    const int nuisance = equations.nuisance_columns();
+    step.tail(nuisance) =
+        least_squares(at.R.middleCols(equations.robot_columns(), nuisance), at.R.rightCols(1));
     state = equations.stepped(state, at, step);
   }
   EXPECT_LT(largest(equations.residuals(state)), 1e-9);  // steps end at rounding, far below

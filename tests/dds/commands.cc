@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "io/dds/commander.h"
+#include "io/dds/clients/commander.h"
 #include "io/dds/messenger.h"
 #include "io/dds/names.h"
 #include "tests/support/domain.h"

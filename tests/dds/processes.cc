@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "io/dds/commander.h"
+#include "io/dds/clients/commander.h"
+#include "io/dds/clients/monitor.h"
 #include "io/dds/encoders.h"
-#include "io/dds/monitor.h"
 #include "io/dds/motion.h"
 #include "io/dds/trigger.h"
 #include "tests/dds/peer.h"

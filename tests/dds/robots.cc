@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/dds/discovery.h"
+#include "io/dds/clients/discovery.h"
 #include "io/dds/messenger.h"
 #include "tests/support/domain.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "app/message_json.h"
+#include "app/report/message_json.h"
+#include "io/dds/clients/monitor.h"
 #include "io/dds/messenger.h"
-#include "io/dds/monitor.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -81,7 +81,7 @@ TEST_F(DdsService, TellsItsProgress) {
                        .kind = "check",
                        .done = 4,
                        .planned = 240,
-                       .put_aside = 1,
+                       .outlier = 1,
                        .seconds_left = kNan,
                        .set = "table",
                        .index = 17,

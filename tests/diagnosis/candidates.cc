@@ -1,4 +1,4 @@
-#include "diagnosis/candidates.h"
+#include "diagnosis/evidence/candidates.h"
 
 #include <gtest/gtest.h>
 

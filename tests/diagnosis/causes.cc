@@ -1,8 +1,8 @@
-#include "diagnosis/causes.h"
+#include "diagnosis/search/causes.h"
 
 #include <gtest/gtest.h>
 
-#include "diagnosis/null.h"
+#include "diagnosis/search/sign_flip_test.h"
 
 namespace selfcal {
 namespace {

@@ -1,5 +1,5 @@
 // What changed between two sessions of one robot.
-#include "diagnosis/compare.h"
+#include "diagnosis/comparison/compare.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Each row judges once, and repeats stay together.
-#include "diagnosis/folds.h"
+#include "diagnosis/validation/folds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Rows to measure next are what their words say.
-#include "diagnosis/further_rows.h"
+#include "diagnosis/report/further_rows.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "diagnosis/diagnosis.h"
+#include "diagnosis/findings.h"
 #include "kinematics/rotation.h"
 #include "tests/diagnosis/two_sessions.h"
 
@@ -23,12 +23,12 @@ class Arm {
     data_.rows.velocity = Eigen::MatrixXd::Constant(rows, joints, 0.1);
     data_.rows.wrench.setZero(rows, 6);
     data_.rows.wrench.col(0).setConstant(30);
-    view_ = std::make_unique<View>(robot_, data_, DiagnosisOptions{}, Progress{});
-    all_ = further_rows(*view_, data_);
+    view_ = std::make_unique<LinearisedModel>(robot_, data_, DiagnosisOptions{}, Progress{});
+    all_ = candidate_rows(*view_, data_);
   }
 
   const DataSet& having(const std::string& words) const {
-    for (const FurtherRows& each : all_)
+    for (const CandidateRows& each : all_)
       if (each.what.find(words) != std::string::npos) return each.both;
     ADD_FAILURE() << words;
     return all_.front().both;
@@ -59,8 +59,8 @@ class Arm {
 
   DataSet data_;
   std::shared_ptr<const Robot> robot_;
-  std::unique_ptr<View> view_;
-  std::vector<FurtherRows> all_;
+  std::unique_ptr<LinearisedModel> view_;
+  std::vector<CandidateRows> all_;
 };
 
 class FurtherRowsOfAnArm : public testing::Test {

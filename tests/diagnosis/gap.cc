@@ -1,5 +1,5 @@
 // The figures of a gap, worked by hand on a few rows.
-#include "diagnosis/gap.h"
+#include "diagnosis/validation/gap.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is named closes so far, everything found so far: each is that of a fit of its own.
-#include "diagnosis/named.h"
+#include "diagnosis/report/named.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/closing.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/view.h"
-#include "io/robot_file.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/report/holdout_validation.h"
+#include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
 #include "tests/diagnosis/two_sessions.h"
 #include "tests/recovery/session.h"
@@ -110,11 +110,11 @@ TEST(Named, ClosesAsFarAsAFitOfTheNamedEffectsAlone) {
 TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   const TwoCauses of;
   const DiagnosisOptions options = quick();
-  const View view(of.robot, of.data, options, {});
+  const LinearisedModel view(of.robot, of.data, options, {});
   Node entry = recovery::entry({{"effect", "transmission_error"}, {"at", "j2"}, {"waves", "3"}});
   const auto closed = [&](bool named) {
-    return gap_of(close_gap(view.shared_geometry(), view.adjusted(), of.data,
-                            {{entry, {1e-3, 1e-3}, named}}, view.site(), kNoise, options)
+    return gap_of(validate_on_holdout(view.shared_geometry(), view.adjusted(), of.data,
+                                      {{entry, {1e-3, 1e-3}, named}}, view.site(), kNoise, options)
                       .judged,
                   1);
   };

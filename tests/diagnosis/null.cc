@@ -1,4 +1,4 @@
-#include "diagnosis/null.h"
+#include "diagnosis/search/sign_flip_test.h"
 
 #include <gtest/gtest.h>
 

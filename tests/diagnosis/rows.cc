@@ -1,4 +1,4 @@
-#include "diagnosis/rows.h"
+#include "diagnosis/evidence/rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
 // A robot against its simulator.
-#include "diagnosis/simulation.h"
+#include "diagnosis/comparison/simulation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "diagnosis/diagnosis.h"
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {

@@ -1,4 +1,4 @@
-#include "diagnosis/structures.h"
+#include "diagnosis/evidence/discrepancy.h"
 
 #include <gtest/gtest.h>
 
@@ -54,11 +54,11 @@ TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
-  for (const Structure& each : list) {
+  for (const DiscrepancyCovariance& each : list) {
     (each.kind == 0 ? noise : unknown) += each.probability;
     const Eigen::MatrixXd S = each.root * each.root.transpose();
     EXPECT_GE(S(1, 2), S(0, 1)) << "repeats are closest, whatever close means";
-    EXPECT_NE(each.kind, static_cast<int>(Closeness::time)) << "the rows carry no time";
+    EXPECT_NE(each.kind, static_cast<int>(KernelDomain::time)) << "the rows carry no time";
   }
   EXPECT_NEAR(noise, 1, 1e-12);
   EXPECT_NEAR(unknown, 1, 1e-12);
@@ -73,7 +73,8 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
   const auto of_time = [&] {
     const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
-    const auto found = std::ranges::find(list, static_cast<int>(Closeness::time), &Structure::kind);
+    const auto found =
+        std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
     return Eigen::MatrixXd(found->root * found->root.transpose());
   };
   EXPECT_NEAR(of_time()(0, 1), 0, 1e-12) << "one world's direction, two of the tool";
@@ -93,7 +94,8 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
   const auto list = structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), by_joint);
-  const auto found = std::ranges::find(list, static_cast<int>(Closeness::turned), &Structure::kind);
+  const auto found =
+      std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());
   const Eigen::MatrixXd S = found->root * found->root.transpose();
   // The first joint's column of mean square 1 is (3, 4) sqrt 2 / 5; its reading differs by a

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "diagnosis/diagnosis.h"
-#include "io/robot_file.h"
+#include "diagnosis/findings.h"
+#include "io/files/robot_file.h"
 #include "tests/recovery/session.h"
 
 namespace selfcal {

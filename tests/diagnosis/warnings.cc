@@ -1,10 +1,10 @@
 // What a diagnosis says of itself before one acts on it.
-#include "diagnosis/warnings.h"
+#include "diagnosis/report/warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "diagnosis/diagnosis.h"
+#include "diagnosis/findings.h"
 #include "kinematics/corrected_robot.h"
 #include "tests/diagnosis/two_sessions.h"
 

@@ -1,7 +1,7 @@
 // The evidence against the same integral worked out whole: with flat priors on the geometry,
 //   log p(y) = -1/2 log|S| - 1/2 log|A' S^-1 A| - nu/2 log(y' P y) + const,  nu = n - rank A
 // where S is the covariance of noise and causes, P = S^-1 - S^-1 A (A' S^-1 A)^-1 A' S^-1.
-#include "diagnosis/workbench.h"
+#include "diagnosis/evidence/marginal_likelihood.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,20 +29,20 @@ struct Case {
     rows.y = random_matrix(14, 1, random);
     structure.root = cholesky_root(Eigen::MatrixXd::Identity(14, 14));
   }
-  Workbench bench() const {
+  MarginalLikelihood bench() const {
     return {std::make_shared<const Whitened>(rows), structure,
             std::make_shared<const Groups>(Groups{first.columns, second.columns})};
   }
   Whitened rows;
-  Structure structure;
+  DiscrepancyCovariance structure;
   Block first{{0, 1}, Eigen::Vector2d(0.5, 2), 0};
   Block second{{3}, Eigen::VectorXd::Constant(1, 1.5), 1};
 };
 
 double worked_out_whole(const Whitened& rows, const Eigen::MatrixXd& noise,
-                        const std::vector<Workbench::Term>& terms) {
+                        const std::vector<MarginalLikelihood::Term>& terms) {
   Eigen::MatrixXd S = noise;
-  for (const Workbench::Term& term : terms)
+  for (const MarginalLikelihood::Term& term : terms)
     for (size_t k = 0; k < term.block->columns.size(); ++k) {
       const Eigen::VectorXd c = rows.C.col(term.block->columns[k]) * term.size *
                                 term.block->unit[static_cast<Eigen::Index>(k)];
@@ -59,11 +59,11 @@ double worked_out_whole(const Whitened& rows, const Eigen::MatrixXd& noise,
 
 constexpr double kRounding = 1e-9;
 
-TEST(Workbench, GivesTheEvidenceThatTheWholeIntegralGives) {
+TEST(MarginalLikelihood, GivesTheEvidenceThatTheWholeIntegralGives) {
   const Case one;
-  const Workbench bench = one.bench();
+  const MarginalLikelihood bench = one.bench();
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(14, 14);
-  const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
+  const std::vector<MarginalLikelihood::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
   EXPECT_NEAR(bench.log_evidence(none), worked_out_whole(one.rows, I, none), kRounding);
   EXPECT_NEAR(bench.log_evidence(both), worked_out_whole(one.rows, I, both), kRounding);
   EXPECT_NEAR(bench.log_evidence(both, bench.gram({0, 1, 3}, {0, 1, 3})), bench.log_evidence(both),
@@ -83,15 +83,15 @@ double share_of_large_noise(double Q, double nu, double least) {
   return std::log(above / all);
 }
 
-TEST(Workbench, TakesNoNoiseForLessThanItsDataSheetSays) {
+TEST(MarginalLikelihood, TakesNoNoiseForLessThanItsDataSheetSays) {
   Case one;
-  const std::vector<Workbench::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
-  const Workbench free = one.bench();
+  const std::vector<MarginalLikelihood::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
+  const MarginalLikelihood free = one.bench();
   const double nu = free.freedom();
   const double left = nu * free.estimate(both).variance;
   for (const double least : {0.5, 1.0, 2.0}) {
     one.rows.least = least * least;
-    const Workbench bound = one.bench();
+    const MarginalLikelihood bound = one.bench();
     EXPECT_NEAR(bound.log_evidence(none) - free.log_evidence(none),
                 share_of_large_noise(free.total(), nu, least), 1e-3);
     EXPECT_NEAR(bound.log_evidence(both) - free.log_evidence(both),
@@ -116,15 +116,15 @@ double worth_of_sign(double yy, double g, double G, double nu, double prior) {
   return std::log(signed_sum / even_sum);
 }
 
-TEST(Workbench, BelievesTheSignThatPhysicsAllows) {
+TEST(MarginalLikelihood, BelievesTheSignThatPhysicsAllows) {
   Case one;
   const Block even = one.second;
   one.second.positive = {0};
   for (const double truth : {0.8, 0.0, -0.8}) {
     std::mt19937_64 random(11);
     one.rows.y = truth * one.rows.C.col(3) + 0.7 * random_matrix(14, 1, random).col(0);
-    const Workbench bench = one.bench();
-    const std::vector<Workbench::Term> with{{&one.second, 1}}, without{{&even, 1}};
+    const MarginalLikelihood bench = one.bench();
+    const std::vector<MarginalLikelihood::Term> with{{&one.second, 1}}, without{{&even, 1}};
     const double worth = bench.log_evidence(with) - bench.log_evidence(without);
     EXPECT_NEAR(worth,
                 worth_of_sign(bench.total(), bench.right()[3], bench.gram({3}, {3})(0, 0),
@@ -138,27 +138,27 @@ TEST(Workbench, BelievesTheSignThatPhysicsAllows) {
   }
 }
 
-TEST(Workbench, WeighsStructureAsPartOfTheNoise) {
+TEST(MarginalLikelihood, WeighsStructureAsPartOfTheNoise) {
   Case one;
   std::mt19937_64 random(5);
   const Eigen::MatrixXd B = random_matrix(14, 14, random);
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(14, 14) + B * B.transpose() / 14;
   one.structure = {1, 1, cholesky_root(noise), 1, 1};
-  const Workbench bench = one.bench();
-  const std::vector<Workbench::Term> terms{{&one.first, 1}};
+  const MarginalLikelihood bench = one.bench();
+  const std::vector<MarginalLikelihood::Term> terms{{&one.first, 1}};
   EXPECT_NEAR(bench.log_evidence(terms), worked_out_whole(one.rows, noise, terms), kRounding);
 }
 
-TEST(Workbench, GivenSomeCausesWeighsOthersAsTogether) {
+TEST(MarginalLikelihood, GivenSomeCausesWeighsOthersAsTogether) {
   const Case one;
-  const Workbench bench = one.bench();
-  const std::vector<Workbench::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}};
-  std::vector<Workbench::Term> both = first;
+  const MarginalLikelihood bench = one.bench();
+  const std::vector<MarginalLikelihood::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}};
+  std::vector<MarginalLikelihood::Term> both = first;
   both.push_back(second.front());
   EXPECT_NEAR(bench.given(first).log_evidence(second), bench.log_evidence(both), kRounding);
 }
 
-TEST(Workbench, NeverExplainsMoreThanThereIs) {
+TEST(MarginalLikelihood, NeverExplainsMoreThanThereIs) {
   // A strong cause that pulls the geometry far from its priors: what it explains is taken from the
   // rows and from the strain on the priors.
   Case one;
@@ -166,22 +166,22 @@ TEST(Workbench, NeverExplainsMoreThanThereIs) {
   one.rows.pull.setConstant(20);
   one.rows.y = 50 * one.rows.C.col(0) + 40 * one.rows.A.col(1);
   one.first.unit = Eigen::Vector2d(100, 100);
-  const Workbench bench = one.bench();
-  const std::vector<Workbench::Term> first{{&one.first, 16}};
+  const MarginalLikelihood bench = one.bench();
+  const std::vector<MarginalLikelihood::Term> first{{&one.first, 16}};
   EXPECT_GT(bench.estimate(first).variance, 0);
   EXPECT_GE(bench.given(first).total(), 0);
   EXPECT_LT(bench.given(first).total(), bench.total());
 }
 
-TEST(Workbench, EstimatesACauseThatIsThereWithinItsSigma) {
+TEST(MarginalLikelihood, EstimatesACauseThatIsThereWithinItsSigma) {
   Case one;
   std::mt19937_64 random(7);
   one.rows.y = 3.0 * one.rows.C.col(0) - 1.0 * one.rows.C.col(1) +
                1e-3 * random_matrix(14, 1, random).col(0);
   one.first.unit = Eigen::Vector2d(1e5, 1e5);  // over the noise
-  const Workbench bench = one.bench();
-  const std::vector<Workbench::Term> terms{{&one.first, 1}};
-  const Workbench::Estimate estimate = bench.estimate(terms);
+  const MarginalLikelihood bench = one.bench();
+  const std::vector<MarginalLikelihood::Term> terms{{&one.first, 1}};
+  const MarginalLikelihood::Estimate estimate = bench.estimate(terms);
   const Eigen::VectorXd sigma =
       (estimate.variance * estimate.covariance.diagonal().array()).sqrt().matrix();
   EXPECT_NEAR(estimate.mean[0], 3, 4 * sigma[0]);

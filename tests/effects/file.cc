@@ -1,6 +1,6 @@
 // Effects in a robot file: there and back, what they say of themselves, what is refused at which
 // line.
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 #include "tests/effects/effect_case.h"
 
 namespace selfcal {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/diagnosis.h"
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 #include "tests/shared_data.h"
 
 namespace selfcal {

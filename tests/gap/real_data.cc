@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "diagnosis/diagnosis.h"
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 #include "tests/shared_data.h"
 
 namespace selfcal {

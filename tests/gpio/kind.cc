@@ -4,10 +4,10 @@
 #include <fstream>
 #include <regex>
 
+#include "io/files/yaml.h"
 #include "io/gpio/sim_line.h"
 #include "io/gpio/trigger.h"
 #include "io/triggers.h"
-#include "io/yaml.h"
 #include "tests/io/scratch.h"
 
 namespace selfcal {

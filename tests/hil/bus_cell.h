@@ -22,7 +22,7 @@ class BusCell : public Cell {
   void end_bus_robot();
   pid_t robot_pid() const { return robot_->pid(); }
   std::string robot_log() const;
-  /// One JSON object for each edge that the robot drove (app/paced_output.h).
+  /// One JSON object for each edge that the robot drove (app/report/paced_output.h).
   std::vector<std::string> driven() const;
 
  private:

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <random>
 
-#include "app/service/senses.h"
+#include "app/service/sensor_front_end.h"
 #include "io/can/encoders.h"
 #include "io/can/faults.h"
 #include "io/clock.h"
@@ -86,7 +86,7 @@ Pairs Pairing::pair(int touches, int step_every) {
   const auto trigger = must(GpioTrigger::open({.chip = wires.chip, .line = wires.line}, wakeup));
   const Ports ports{&clock, encoders.get(), trigger.get(), &motion, nullptr};
   Reflex reflex(ports, 2 * kMillisecond);
-  Senses senses(ports, reflex, 1e-4, kSecond);
+  SensorFrontEnd senses(ports, reflex, 1e-4, kSecond);
   Pairs pairs;
   std::deque<Edge> waiting;
   const Nanoseconds end = clock.now() + touches * 200 * kMillisecond;

@@ -1,5 +1,5 @@
 // CSV in every form that spreadsheets and loggers give it, and the words for what is broken.
-#include "io/csv.h"
+#include "io/files/csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

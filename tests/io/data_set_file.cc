@@ -1,5 +1,5 @@
 // dataset.yaml: what is read of it and what is refused.
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 #include "tests/io/scratch.h"
 
 namespace selfcal {

@@ -1,5 +1,5 @@
 // Whole files: atomic writes leave the old content or the new, and nothing else.
-#include "io/file.h"
+#include "io/files/file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

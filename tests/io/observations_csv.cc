@@ -1,5 +1,5 @@
 // The rows of a data set: what is kept, what is refused, and in which words.
-#include "io/observations_csv.h"
+#include "io/files/observations_csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 
 namespace selfcal {
 namespace {

@@ -1,5 +1,5 @@
 // Robots come back from their own text, and calibrating one does not change its hash.
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // result.json against the file format, key by key.
-#include "io/solution_json.h"
+#include "io/files/solution_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ Solution example() {
   set.name = "table";
   set.method = "plane";
   set.rows = 92;
-  set.own = {{"table.nx", 0.01, 1e-6}};
+  set.nuisance = {{"table.nx", 0.01, 1e-6}};
   solution.sets = {set};
   solution.rejected = {{17, "table", 4.1e-4, false, "outlier"},
                        {18, "table", 3.9e-4, true, "outlier among the check rows"}};

@@ -74,7 +74,7 @@ TEST(Store, GivesBackTouchesBitByBitInTheOrderTheyCame) {
   const std::int64_t id = store->begin(some_session(), some_plan(16, kMostJoints)).value();
   std::vector<TouchRecord> touches;
   for (const int step : {3, 1, 2, 0}) touches.push_back(some_touch(step, kMostJoints));
-  touches[1].outcome = TouchOutcome::put_aside;
+  touches[1].outcome = TouchOutcome::outlier;
   touches[1].why = "no edge within 2 s";
   touches[1].attempt = 300;
   touches[1].temperature = std::numeric_limits<double>::quiet_NaN();

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/file.h"
+#include "io/files/file.h"
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
 

@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-#include "io/file.h"
+#include "io/files/file.h"
 #include "tests/io/store_records.h"
 
 namespace selfcal {
@@ -29,7 +29,7 @@ inline std::int64_t session_with_robot(Store& store, const std::string& robot, i
   const std::int64_t id = store.begin(some_session(), some_plan(steps, 6)).value();
   for (int i = 0; i < steps; ++i) {
     TouchRecord touch = some_touch(i, 6, static_cast<std::uint64_t>(id));
-    if (i == 2) touch.outcome = TouchOutcome::put_aside, touch.why = "no edge within 2 s";
+    if (i == 2) touch.outcome = TouchOutcome::outlier, touch.why = "no edge within 2 s";
     EXPECT_TRUE(store.add(id, touch).has_value());
   }
   ResultRecord result = some_result(id);

@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-#include "io/file.h"
+#include "io/files/file.h"
 #include "io/store/schema.h"
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"

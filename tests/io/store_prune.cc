@@ -25,7 +25,7 @@ class StorePrune : public testing::Test {
 
 /// What is left of the store, counted.
 struct Left {
-  int events = 0, jsons = 0, postures = 0, raw = 0, put_aside = 0, labels = 0;
+  int events = 0, jsons = 0, postures = 0, raw = 0, outlier = 0, labels = 0;
 };
 
 Left left(Store& store) {
@@ -42,7 +42,7 @@ Left left(Store& store) {
     const auto touches = store.touches(session.id).value();
     for (const TouchRecord& touch : touches) {
       taken = taken || touch.outcome == TouchOutcome::taken;
-      left.put_aside += touch.outcome == TouchOutcome::put_aside ? 1 : 0;
+      left.outlier += touch.outcome == TouchOutcome::outlier ? 1 : 0;
     }
     left.raw += taken ? 1 : 0;
   }
@@ -56,7 +56,7 @@ std::unique_ptr<Store> store_of_sessions(const Scratch& scratch) {
     const std::int64_t id = store->begin(some_session(), some_plan(kSteps, 6)).value();
     for (int step = 0; step < kSteps; ++step) {
       TouchRecord touch = some_touch(step, 6);
-      if (step == 5) touch.outcome = TouchOutcome::put_aside;
+      if (step == 5) touch.outcome = TouchOutcome::outlier;
       EXPECT_TRUE(store->add(id, touch).has_value());
     }
     ResultRecord result = some_result(id);
@@ -85,7 +85,7 @@ TEST_F(StorePrune, ForgetsEventsThenJsonThenPlansThenRawRowsOldestFirst) {
     if (now.postures < kSessions) {
       EXPECT_EQ(now.jsons, 2);
     }
-    EXPECT_EQ(now.put_aside, now.postures);
+    EXPECT_EQ(now.outlier, now.postures);
     if (now.raw < kSessions) {
       EXPECT_EQ(now.postures, 2);
     }

@@ -1,5 +1,5 @@
 // UTF-8 and what only looks like it.
-#include "io/utf8.h"
+#include "io/files/utf8.h"
 
 #include <gtest/gtest.h>
 

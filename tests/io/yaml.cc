@@ -1,5 +1,5 @@
 // YAML read with lines, written readably, and the same after a round trip.
-#include "io/yaml.h"
+#include "io/files/yaml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "io/yaml.h"
+#include "io/files/yaml.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {

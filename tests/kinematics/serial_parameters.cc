@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/shared_data.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/data_set_file.h"
+#include "io/files/data_set_file.h"
 #include "tests/io/scratch.h"
 #include "tests/mujoco/session.h"
 

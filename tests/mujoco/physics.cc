@@ -2,7 +2,7 @@
 // product's formula has it, before anything is asked of its touches.
 #include <gtest/gtest.h>
 
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 #include "tests/io/scratch.h"
 #include "tests/mujoco/cell.h"
 #include "tests/support/end_position.h"
@@ -10,8 +10,8 @@
 namespace selfcal::mujoco {
 namespace {
 
-struct Bench {
-  explicit Bench(double compliance) {
+struct EvidenceEvaluator {
+  explicit EvidenceEvaluator(double compliance) {
     Random random(7);
     arm = draw_built(draw_arm(random), random);
     for (const char* joint : {"j2", "j3"}) arm.frame(joint).compliance = compliance;
@@ -28,7 +28,7 @@ struct Bench {
 };
 
 TEST(MujocoArm, HasItsTipWhereTheRobotFileHasIt) {
-  Bench bench(0);
+  EvidenceEvaluator bench(0);
   Random random(1);
   for (int i = 0; i < 20; ++i) {
     Eigen::VectorXd q(6);
@@ -41,7 +41,7 @@ TEST(MujocoArm, HasItsTipWhereTheRobotFileHasIt) {
 
 TEST(MujocoArm, GivesWayByTheComplianceTimesTheTorqueOfItsWeight) {
   constexpr double kCompliance = 5e-6;
-  Bench bench(kCompliance);
+  EvidenceEvaluator bench(kCompliance);
   Random random(2);
   int touches = 0;
   for (int tries = 0; tries < 400 && touches < 12; ++tries) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "constraints/identification.h"
-#include "io/data_set_file.h"
+#include "constraints/estimation/identification.h"
+#include "io/files/data_set_file.h"
 #include "tests/shared_data.h"
 
 namespace selfcal::real {

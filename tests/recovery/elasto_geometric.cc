@@ -13,9 +13,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "constraints/detmax.h"
-#include "constraints/equations.h"
-#include "constraints/identifiability.h"
+#include "constraints/equations/equations.h"
+#include "constraints/identifiability/identifiability.h"
+#include "constraints/planning/detmax.h"
 #include "tests/recovery/kamali.h"
 #include "tests/recovery/kamali_plan.h"
 
@@ -48,7 +48,7 @@ struct Planning {
     equations.start(state);
     const Weighting weighting{{{1, 1}}, std::vector<char>(data.rows.check.size(), 0)};
     R = equations.linearise(state, weighting).R;
-    dense = equations.dense(state, weighting.scale, weighting.put_aside);
+    dense = equations.dense(state, weighting.scale, weighting.outlier);
   }
 
   /// Structural rank of the marked parameters.

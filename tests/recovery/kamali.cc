@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "io/robot_file.h"
+#include "io/files/robot_file.h"
 #include "tests/recovery/kamali_plan.h"
 
 namespace selfcal::recovery {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "constraints/identification.h"
+#include "constraints/solution.h"
 
 namespace selfcal::recovery {
 

@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "constraints/endpoint_sigma.h"
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/sampling/random_poses.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/session.h"
 #include "tests/support/end_position.h"

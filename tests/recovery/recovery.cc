@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "constraints/endpoint_sigma.h"
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/sampling/random_poses.h"
 #include "tests/recovery/kdl_robot.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/session.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/yaml.h"
+#include "io/files/yaml.h"
 #include "tests/recovery/session.h"
 
 namespace selfcal::recovery {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "constraints/configurations.h"
-#include "constraints/excitation.h"
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/identifiability/excitation.h"
+#include "constraints/sampling/configurations.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal::recovery {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/endpoint_sigma.h"
-#include "constraints/identification.h"
-#include "io/robot_file.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/identifiability/endpoint_sigma.h"
+#include "io/files/robot_file.h"
 #include "tests/recovery/session.h"
 #include "tests/support/end_position.h"
 

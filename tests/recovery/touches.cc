@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "constraints/identification.h"
-#include "io/robot_file.h"
+#include "constraints/estimation/identification.h"
+#include "io/files/robot_file.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/rx90.h"
 #include "tests/support/end_position.h"
@@ -114,7 +114,7 @@ TEST(Touches, PutFalseRowsAsideByNameAndOnlyThem) {
   }
   const Solution solution = identify(*robot, session.data);
   std::set<int> named;
-  for (const Rejected& r : solution.rejected) named.insert(r.row);
+  for (const Outlier& r : solution.rejected) named.insert(r.row);
   int missed = 0, innocent = 0;
   for (const int row : wrong) missed += named.count(row) == 0;
   for (const int row : named) innocent += wrong.count(row) == 0;

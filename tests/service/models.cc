@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/file.h"
-#include "io/robot_file.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
 #include "tests/sim/pretend.h"

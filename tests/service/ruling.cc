@@ -1,5 +1,5 @@
 // What becomes of a result.
-#include "app/service/ruling.h"
+#include "app/service/acceptance.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
 #include "tests/sim/pretend.h"
 
 namespace selfcal {
@@ -32,13 +32,13 @@ struct Case {
       return each.parameter.part == part && each.parameter.quantity == quantity;
     });
   }
-  Ruling rule() const { return rule_on_result(accept, rx90(), candidate, unchanged); }
+  AcceptanceDecision rule() const { return rule_on_result(accept, rx90(), candidate, unchanged); }
 };
 
-TEST(Ruling, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
+TEST(AcceptanceDecision, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   Case good;
   good.find(Part::link, Quantity::length).value += 1e-3;
-  const Ruling ruling = good.rule();
+  const AcceptanceDecision ruling = good.rule();
   EXPECT_TRUE(ruling.acceptable);
   EXPECT_EQ(ruling.answer, Answer::improved);
   EXPECT_EQ(ruling.check_before, 2e-4);
@@ -47,7 +47,7 @@ TEST(Ruling, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   EXPECT_THAT(ruling.why, HasSubstr("(100 sigma)"));
 }
 
-TEST(Ruling, RefusesWhatTheVerdictDoesNotCallImproved) {
+TEST(AcceptanceDecision, RefusesWhatTheVerdictDoesNotCallImproved) {
   for (const Answer answer : {Answer::not_improved, Answer::not_determined}) {
     Case bad;
     bad.candidate.verdict = {answer, "the data do not tell", 0.5};
@@ -57,7 +57,7 @@ TEST(Ruling, RefusesWhatTheVerdictDoesNotCallImproved) {
   }
 }
 
-TEST(Ruling, RefusesWhatIsNotBetterByTheMargin) {
+TEST(AcceptanceDecision, RefusesWhatIsNotBetterByTheMargin) {
   Case one;
   one.accept.margin = 0.5;
   EXPECT_FALSE(one.rule().acceptable) << "exactly half is not better than half";
@@ -68,16 +68,16 @@ TEST(Ruling, RefusesWhatIsNotBetterByTheMargin) {
   EXPECT_FALSE(one.rule().acceptable) << "what is not a number is not better";
 }
 
-TEST(Ruling, ComparesTheSameRowsBeforeAndAfter) {
+TEST(AcceptanceDecision, ComparesTheSameRowsBeforeAndAfter) {
   Case one;
   one.unchanged.residual.check_rows = {{2e-4, false}, {9e-3, true}, {2e-4, false}};
   one.candidate.residual.check_rows = {{1e-4, false}, {1e-4, false}, {8e-3, true}};
-  const Ruling ruling = one.rule();
+  const AcceptanceDecision ruling = one.rule();
   EXPECT_DOUBLE_EQ(ruling.check_before, 2e-4) << "without what either rejects";
   EXPECT_DOUBLE_EQ(ruling.check_after, 1e-4);
 }
 
-TEST(Ruling, HasALimitOfItsOwnForEachPartOfTheMachine) {
+TEST(AcceptanceDecision, HasALimitOfItsOwnForEachPartOfTheMachine) {
   const ByPart limits{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
   const std::tuple<Part, Quantity, double> each[] = {
       {Part::link, Quantity::length, 1e-3}, {Part::link, Quantity::angle, 2e-3},
@@ -98,7 +98,7 @@ TEST(Ruling, HasALimitOfItsOwnForEachPartOfTheMachine) {
     }
 }
 
-TEST(Ruling, TakesALimitOfZeroAsNoChangeAtAll) {
+TEST(AcceptanceDecision, TakesALimitOfZeroAsNoChangeAtAll) {
   Case one;
   one.accept.largest_change.length = 0;
   EXPECT_TRUE(one.rule().acceptable) << "nothing has changed";
@@ -106,7 +106,7 @@ TEST(Ruling, TakesALimitOfZeroAsNoChangeAtAll) {
   EXPECT_FALSE(one.rule().acceptable);
 }
 
-TEST(Ruling, CountsAsPutAsideOnlyRowsThatWereNotToIdentify) {
+TEST(AcceptanceDecision, CountsAsPutAsideOnlyRowsThatWereNotToIdentify) {
   Case one;
   one.candidate.rejected = {{3, "table", 4e-4, false, "outlier"},
                             {7, "table", 3e-4, true, "outlier among the check rows"},
@@ -114,7 +114,7 @@ TEST(Ruling, CountsAsPutAsideOnlyRowsThatWereNotToIdentify) {
   EXPECT_EQ(rows_put_aside(one.candidate), 2);
 }
 
-TEST(Ruling, CountsTheParametersThatAreIdentified) {
+TEST(AcceptanceDecision, CountsTheParametersThatAreIdentified) {
   Case one;
   one.candidate.parameters[0].status = Status::held;
   one.candidate.parameters[1].status = Status::grouped;

@@ -32,7 +32,7 @@ inline std::string name_of(Action::Do what) {
       return "back_off";
     case Do::read:
       return "read";
-    case Do::put_aside:
+    case Do::outlier:
       return "put_aside";
     case Do::analyse:
       return "analyse";

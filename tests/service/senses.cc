@@ -1,5 +1,5 @@
 // What the service hears of a trigger that does not behave.
-#include "app/service/senses.h"
+#include "app/service/sensor_front_end.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ class HeardTrigger : public testing::Test {
   std::deque<Event> events;
   const Ports ports{nullptr, &encoders, &trigger, &motion, nullptr};
   Reflex reflex{ports, 2 * kMillisecond};
-  Senses senses{ports, reflex, 1e-4, kSecond};
+  SensorFrontEnd senses{ports, reflex, 1e-4, kSecond};
 };
 
 TEST_F(HeardTrigger, KeepsTheFirstContactOfAProbeThatBouncesWhileTheRobotBrakes) {

@@ -12,9 +12,9 @@ using testing::HasSubstr;
 
 // -------------------------------------------------------------------------- meaning
 
-TEST(Meaning, ReadsBackAsItWasWritten) {
+TEST(Decoding, ReadsBackAsItWasWritten) {
   const Config config = two_planes();
-  const Meaning meaning = meaning_of(config);
+  const Decoding meaning = meaning_of(config);
   EXPECT_EQ(meaning.target, config.target);
   EXPECT_EQ(meaning.delay, 0.001);
   ASSERT_EQ(meaning.scales.size(), 6u);
@@ -27,7 +27,7 @@ TEST(Meaning, ReadsBackAsItWasWritten) {
   EXPECT_EQ(meaning.outward[1], Eigen::Vector3d::UnitZ());
 }
 
-TEST(Meaning, KeepsLargeEncoderZerosToTheCount) {
+TEST(Decoding, KeepsLargeEncoderZerosToTheCount) {
   const std::vector<EncoderScale> scales(6, EncoderScale{-1e-9, -4'503'599'627'370'495});  // 2^52
   const auto meaning = read_meaning(meaning_text(two_planes(), scales));
   ASSERT_TRUE(meaning);
@@ -35,7 +35,7 @@ TEST(Meaning, KeepsLargeEncoderZerosToTheCount) {
   EXPECT_EQ(meaning->scales[0].step, -1e-9);
 }
 
-TEST(Meaning, RefusesATextThatIsNone) {
+TEST(Decoding, RefusesATextThatIsNone) {
   EXPECT_FALSE(read_meaning("target: 1.0e-3\n"));
   EXPECT_FALSE(read_meaning("{"));
   EXPECT_FALSE(read_meaning("sets: {a: {method: plane}}\n")) << "without target and delay";
@@ -55,10 +55,10 @@ TEST(NextStep, IsTheFirstThatNeedsAnotherTouch) {
 
 TEST(NextStep, PutsAStepAsideOnceItsAttemptsAreUsedUp) {
   Session session = session_of(3);
-  for (int i = 0; i < 2; ++i) session.touches.push_back(touch_of(0, TouchOutcome::put_aside));
+  for (int i = 0; i < 2; ++i) session.touches.push_back(touch_of(0, TouchOutcome::outlier));
   EXPECT_EQ(next_step(session, 1, 3), 0);
   EXPECT_EQ(steps_put_aside(session, 1, 3), 0);
-  session.touches.push_back(touch_of(0, TouchOutcome::put_aside));
+  session.touches.push_back(touch_of(0, TouchOutcome::outlier));
   EXPECT_EQ(next_step(session, 1, 3), 1);
   EXPECT_EQ(steps_put_aside(session, 1, 3), 1);
 }
@@ -92,7 +92,7 @@ Reading reading_out_by(const Robot& robot, const std::vector<double>& touch, dou
 }
 
 TEST(RuleOnTouch, PutsAsideATouchLongBeforeTheSurface) {
-  const Meaning meaning = meaning_of(two_planes());
+  const Decoding meaning = meaning_of(two_planes());
   const Session session = session_of(1);
   const StepRecord& step = session.plan[0];
   const auto rule = [&](double way) {
@@ -100,13 +100,13 @@ TEST(RuleOnTouch, PutsAsideATouchLongBeforeTheSurface) {
                          0.01, 1e-4);
   };
   EXPECT_EQ(rule(0.0099).outcome, TouchOutcome::taken);
-  EXPECT_EQ(rule(0.012).outcome, TouchOutcome::put_aside);
+  EXPECT_EQ(rule(0.012).outcome, TouchOutcome::outlier);
   EXPECT_EQ(rule(0.012).why, "touched 12 mm before the surface");
   EXPECT_EQ(rule(-0.009).outcome, TouchOutcome::taken) << "behind it the search has an end";
 }
 
 TEST(RuleOnTouch, FindsATouchThatDiffersFromTheOneBefore) {
-  const Meaning meaning = meaning_of(two_planes());
+  const Decoding meaning = meaning_of(two_planes());
   Session session = session_of(1);
   session.touches = {touch_of(0)};
   const StepRecord& step = session.plan[0];

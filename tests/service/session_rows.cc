@@ -12,9 +12,9 @@ TEST(RowsOf, HasTheGoodTouchesInTheOrderOfThePlanWithTheirRepeats) {
   const Config config = two_planes();
   Session session = session_of(4);
   session.touches = {
-      touch_of(2, TouchOutcome::taken, 0.2), touch_of(0, TouchOutcome::put_aside, 0.9),
+      touch_of(2, TouchOutcome::taken, 0.2), touch_of(0, TouchOutcome::outlier, 0.9),
       touch_of(0, TouchOutcome::taken, 0.1), touch_of(0, TouchOutcome::taken, 0.1),
-      touch_of(1, TouchOutcome::taken, 0.3), touch_of(3, TouchOutcome::put_aside, 0.9)};
+      touch_of(1, TouchOutcome::taken, 0.3), touch_of(3, TouchOutcome::outlier, 0.9)};
   const DataSet data = rows_of(rx90(), session, meaning_of(config));
   ASSERT_EQ(data.rows.rows(), 4);
   constexpr double kHalfCount = kStep / 2;
@@ -90,7 +90,7 @@ TEST(RowsOf, MakesNoRowsOfNoTouches) {
 }
 
 TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
-  const Meaning meaning = meaning_of(two_planes());
+  const Decoding meaning = meaning_of(two_planes());
   Session base = session_of(4), check = session_of(2);
   for (int i = 0; i < 4; ++i) base.touches.push_back(touch_of(i, TouchOutcome::taken, 0.1 * i));
   for (int i = 0; i < 2; ++i) check.touches.push_back(touch_of(i, TouchOutcome::taken, 0.7));
@@ -105,7 +105,7 @@ TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
 }
 
 TEST(Joined, KeepsAColumnThatOnlyOneOfThemHas) {
-  const Meaning meaning = meaning_of(two_planes());
+  const Decoding meaning = meaning_of(two_planes());
   Session session = session_of(2);
   for (StepRecord& step : session.plan) step.check = false;
   session.touches = {touch_of(0), touch_of(1)};
@@ -118,7 +118,7 @@ TEST(Joined, KeepsAColumnThatOnlyOneOfThemHas) {
 }
 
 TEST(Joined, MeansTheSameSocketByTheSameName) {
-  Meaning meaning = meaning_of(two_planes());
+  Decoding meaning = meaning_of(two_planes());
   Session base = session_of(2), check = session_of(2);
   base.plan[0].group = check.plan[1].group = "g1";
   base.plan[1].group = check.plan[0].group = "g0";

@@ -26,7 +26,7 @@ inline Config two_planes() {
   return *config;
 }
 
-inline Meaning meaning_of(const Config& config) {
+inline Decoding meaning_of(const Config& config) {
   auto meaning = read_meaning(meaning_text(config, kScales));
   EXPECT_TRUE(meaning) << meaning.error().what;
   return *meaning;

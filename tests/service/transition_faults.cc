@@ -155,7 +155,7 @@ TEST(Transition, PutsATouchAsideThatMeetsNothingAndGoesOn) {
   Script script = script_at(ServiceState::collecting, Phase::touch);
   script.s.felt = true;  // an earlier one was
   EXPECT_EQ(script.on(What::moved).done(), "put_aside");
-  EXPECT_THAT(script.why(Do::put_aside), HasSubstr("no touch"));
+  EXPECT_THAT(script.why(Do::outlier), HasSubstr("no touch"));
   EXPECT_EQ(script.read(false, 0, "no touch").done(), "go_back");  // an attempt is left
   EXPECT_EQ(script.on(What::moved).done(), "go_touch");
   EXPECT_EQ(script.on(What::moved).done(), "put_aside");

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "constraints/identification.h"
+#include "constraints/estimation/identification.h"
 #include "tests/sim/pretend.h"
 
 namespace selfcal {
@@ -31,10 +31,10 @@ double rms(const std::vector<RowResidual>& residuals, bool angles = false) {
   return std::sqrt(sum / count);
 }
 
-double own_of(const Solution& solution, const std::string& name) {
+double nuisance_of(const Solution& solution, const std::string& name) {
   for (const SetResult& set : solution.sets)
-    for (const OwnResult& own : set.own)
-      if (own.name == name) return own.value;
+    for (const NuisanceResult& nuisance : set.nuisance)
+      if (nuisance.name == name) return nuisance.value;
   return std::nan("");
 }
 
@@ -204,10 +204,10 @@ TEST(DataSetMaker, PutsAParallelPlaneBeyondTheOtherOneUnlessItsTruthSaysNearer) 
                                                              {", truth: {d: 0.2}}\n", 0.2}};
   for (const auto& [truth, d] : cases) {
     const Simulated simulated = made(kErrors + sets + truth);
-    EXPECT_NEAR(simulated.truth.own[1][0], d, 1e-9);
+    EXPECT_NEAR(simulated.truth.nuisance[1][0], d, 1e-9);
     EXPECT_LT(rms(residuals_at_truth(simulated)), 1e-9);
     // What identifies starts from the rows: they say on which side they lie.
-    EXPECT_NEAR(own_of(identify(rx90(), simulated.data), "step.d"), d, 0.02) << truth;
+    EXPECT_NEAR(nuisance_of(identify(rx90(), simulated.data), "step.d"), d, 0.02) << truth;
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/service/reading.h"
-#include "constraints/touch_plan.h"
+#include "constraints/planning/touch_plan.h"
 #include "sim/machine.h"
 #include "tests/sim/pretend.h"
 

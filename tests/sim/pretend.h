@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "io/robot_file.h"
-#include "io/yaml.h"
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
 #include "sim/data_set_maker.h"
 
 namespace selfcal {

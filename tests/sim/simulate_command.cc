@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "io/data_set_file.h"
-#include "io/file.h"
+#include "io/files/data_set_file.h"
+#include "io/files/file.h"
 #include "tests/io/scratch.h"
 #include "tests/sim/pretend.h"
 

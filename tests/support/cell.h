@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "app/pretend.h"
+#include "app/commands/simulated_robot.h"
 #include "app/service/config.h"
-#include "io/dds/commander.h"
-#include "io/dds/monitor.h"
+#include "io/dds/clients/commander.h"
+#include "io/dds/clients/monitor.h"
 #include "io/store/store.h"
 #include "tests/support/domain.h"
 #include "tests/support/process.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "constraints/endpoint_sigma.h"
+#include "constraints/sampling/random_poses.h"
 
 namespace selfcal {
 

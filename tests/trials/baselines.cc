@@ -1,8 +1,8 @@
 // The textbook methods on a gap that nobody can miss.
 #include <gtest/gtest.h>
 
-#include "diagnosis/baselines.h"
-#include "sim/trial_machine.h"
+#include "diagnosis/trials/baselines.h"
+#include "sim/trials/trial_machine.h"
 
 namespace selfcal {
 namespace {

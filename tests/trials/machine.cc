@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "constraints/equations.h"
-#include "constraints/identification.h"
-#include "sim/trial_machine.h"
+#include "constraints/equations/equations.h"
+#include "constraints/estimation/identification.h"
+#include "sim/trials/trial_machine.h"
 
 namespace selfcal {
 namespace {
@@ -56,7 +56,7 @@ double visible_again(const MadeTrial& made) {
   const Equations equations(*made.robot, made.data, Use::fit);
   State state{values(*made.robot), {}, {}};
   for (const Set& set : made.data.sets) {
-    state.own.emplace_back(Eigen::VectorXd::Zero(set.name == "tracker" ? 0 : 4));
+    state.nuisance.emplace_back(Eigen::VectorXd::Zero(set.name == "tracker" ? 0 : 4));
     state.groups.emplace_back();
   }
   equations.start(state);
@@ -74,8 +74,8 @@ double visible_again(const MadeTrial& made) {
     const int axis = i > 0 && dense.row[static_cast<size_t>(i - 1)] == row
                          ? (i > 1 && dense.row[static_cast<size_t>(i - 2)] == row ? 2 : 1)
                          : 0;
-    const Eigen::VectorXd& own = state.own[static_cast<size_t>(made.data.rows.set[row])];
-    seen[i] = (own.size() == 4 ? own.head<3>().dot(shift) : shift[axis]) / noise;
+    const Eigen::VectorXd& nuisance = state.nuisance[static_cast<size_t>(made.data.rows.set[row])];
+    seen[i] = (nuisance.size() == 4 ? nuisance.head<3>().dot(shift) : shift[axis]) / noise;
   }
   const Eigen::VectorXd left = seen - dense.W * N.ldlt().solve(dense.W.transpose() * seen).eval();
   return left.norm() / std::sqrt(static_cast<double>(seen.size()));

@@ -1,7 +1,7 @@
 // The table, worked by hand on a few answers.
 #include <gtest/gtest.h>
 
-#include "diagnosis/trials.h"
+#include "diagnosis/trials/trials.h"
 
 namespace selfcal {
 namespace {

@@ -1,0 +1,147 @@
+// selfcal diagnose DATASET: where the gap lies, which effect causes it, how far it closes.
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "app/commands/subcommand.h"
+#include "app/report/diagnosis_json.h"
+#include "app/report/diagnosis_report.h"
+#include "app/report/diagnosis_summary.h"
+#include "app/report/progress_line.h"
+#include "diagnosis/diagnosis.h"
+#include "io/files/data_set_file.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+struct DiagnoseArguments {
+  std::string data_set, since, simulated, next, out;
+  bool json = false;
+};
+
+std::function<void(std::string_view, double)> shown_on(ProgressLine& line) {
+  return [&line](std::string_view stage, double share) { line.show(stage, share); };
+}
+
+struct Inputs {
+  LoadedDataSet measured;
+  std::shared_ptr<const Robot> robot;
+  std::optional<LoadedDataSet> before, simulated;
+};
+
+Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const Robot& robot) {
+  if (path.empty()) return std::nullopt;
+  auto other = load_data_set(path);
+  if (!other) return tl::unexpected(other.error());
+  if (const std::string why = incomparable(*other->robot, robot); !why.empty())
+    return bad_input(path + " " + why);
+  print_notices(*other);
+  return std::optional(*std::move(other));
+}
+
+/// All of them, before anything that takes long.
+Result<Inputs> load(const DiagnoseArguments& arguments) {
+  auto measured = load_data_set(arguments.data_set);
+  if (!measured) return tl::unexpected(measured.error());
+  print_notices(*measured);
+  const std::shared_ptr<const Robot> robot = std::move(measured->robot);
+  auto before = load_other(arguments.since, *robot);
+  if (!before) return tl::unexpected(before.error());
+  auto simulated = load_other(arguments.simulated, *robot);
+  if (!simulated) return tl::unexpected(simulated.error());
+  return Inputs{*std::move(measured), robot, *std::move(before), *std::move(simulated)};
+}
+
+Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) {
+  const DataSet& data = inputs.measured.data;
+  ProgressLine line;
+  Findings found{inputs.measured.name, diagnose(inputs.robot, data, {}, shown_on(line)), {}, {}};
+  if (!found.diagnosis.problem.empty())
+    return bad_input(arguments.data_set + ": " + found.diagnosis.problem);
+  if (inputs.before)
+    found.since = {inputs.before->name, compare(inputs.robot, inputs.before->data, data,
+                                                Between::sessions, {}, shown_on(line))};
+  if (!inputs.simulated) return found;
+  const DataSet& simulated = inputs.simulated->data;
+  const Diagnosis other = diagnose(inputs.robot, simulated, {}, shown_on(line));
+  if (!other.problem.empty()) return bad_input(arguments.simulated + ": " + other.problem);
+  found.sim = {inputs.simulated->name, differences(found.diagnosis, other,
+                                                   compare(inputs.robot, simulated, data,
+                                                           Between::machines, {}, shown_on(line)))};
+  return found;
+}
+
+std::string json_of(const Findings& findings) {
+  nlohmann::ordered_json whole = to_json(findings.diagnosis);
+  if (findings.since) whole["since"] = to_json(findings.since->comparison);
+  if (findings.sim) whole["sim"] = to_json(findings.sim->differences);
+  return whole.dump(1);
+}
+
+std::string words_of(const Findings& findings) {
+  std::string text = summary(findings.diagnosis);
+  if (findings.since)
+    text += "Since " + findings.since->name + ": " + findings.since->comparison.why + "\n";
+  if (findings.sim)
+    for (const std::string& each : findings.sim->differences.sentences)
+      text += "Against " + findings.sim->name + ": " + each + "\n";
+  return text;
+}
+
+Result<void> write_folder(const std::filesystem::path& out, const Findings& findings) {
+  if (auto made = make_folder(out); !made) return made;
+  const Diagnosis& diagnosis = findings.diagnosis;
+  const std::pair<const char*, std::string> files[] = {
+      {"diagnosis.json", json_of(findings) + "\n"},
+      {"report.html", html_report(findings)},
+      {"corrected.robot.yaml", robot_text(*diagnosis.model, diagnosis.values)}};
+  for (const auto& [name, text] : files)
+    if (auto done = write_file_atomically(out / name, text); !done) return done;
+  return {};
+}
+
+/// Writes what is asked for to be kept.
+Result<void> write_findings(const DiagnoseArguments& arguments, const Inputs& inputs,
+                            const Findings& findings) {
+  if (!arguments.out.empty())
+    if (auto done = write_folder(arguments.out, findings); !done) return done;
+  if (arguments.next.empty()) return {};
+  return write_file_atomically(arguments.next,
+                               next_json(findings.diagnosis, inputs.measured.data).dump(1) + "\n");
+}
+
+int diagnose_command(const DiagnoseArguments& arguments) {
+  const auto inputs = load(arguments);
+  if (!inputs) return tell(inputs.error());
+  const auto findings = find(arguments, *inputs);
+  if (!findings) return tell(findings.error());
+  std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
+  if (const auto written = write_findings(arguments, *inputs, *findings); !written)
+    return tell(written.error());
+  return findings->diagnosis.converged ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "Where the gap between model and machine lies, what causes it, how far it closes");
+  command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
+  command->add_option("--sim", arguments->simulated,
+                      "Data set of the robot's simulator: in what the two differ");
+  command->add_option("--since", arguments->since,
+                      "Earlier data set of the same robot: what changed");
+  command->add_option("--next", arguments->next, "File for the rows to measure next");
+  command->add_option("--out", arguments->out,
+                      "Folder for diagnosis.json, report.html and corrected.robot.yaml");
+  command->add_flag("--json", arguments->json, "Print diagnosis.json alone on standard output");
+  command->callback([arguments, &status] { status = diagnose_command(*arguments); });
+}
+
+}  // namespace selfcal

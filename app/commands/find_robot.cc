@@ -1,0 +1,61 @@
+#include "app/commands/find_robot.h"
+
+#include "app/commands/signals.h"
+#include "app/report/format.h"
+#include "io/clock.h"
+#include "io/dds/clients/discovery.h"
+
+namespace selfcal {
+namespace {
+
+// Participants answer a newcomer at once; after the first, others have this long.
+constexpr Nanoseconds kOthers = kSecond / 2;
+
+Result<std::optional<std::string>> only_one(const std::vector<std::string>& robots,
+                                            const Whom& whom) {
+  if (robots.size() == 1) return robots.front();
+  if (robots.empty())
+    return device_failed(
+        printed("no service was heard in DDS domain %d within %g s; is `selfcal serve` running "
+                "there? (--domain, CYCLONEDDS_URI)",
+                whom.domain, whom.wait));
+  std::string list;
+  for (const std::string& robot : robots) list += (list.empty() ? "" : ", ") + one_line(robot);
+  return tl::unexpected<Failure>(
+      {kWrongUsage, printed("%zu robots are in DDS domain %d: ", robots.size(), whom.domain) +
+                        list + "; choose one with --robot"});
+}
+
+}  // namespace
+
+void add_whom(CLI::App& command, Whom& whom, const std::string& what_waits) {
+  command.add_option("--robot", whom.robot, "Id of the robot (default: the only one heard)");
+  command.add_option("--domain", whom.domain, "DDS domain")
+      ->envname("ROS_DOMAIN_ID")
+      ->check(CLI::Range(0, static_cast<int>(kMostDdsDomain)))
+      ->capture_default_str();
+  command.add_option("--wait", whom.wait, what_waits)
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command.add_flag("--json", whom.json, "JSON for programs");
+}
+
+Result<std::optional<std::string>> find_robot(const DdsParticipant& participant, const Whom& whom) {
+  if (!whom.robot.empty()) return whom.robot;
+  Wakeup wakeup;
+  auto discovery = DdsRobots::open(participant, wakeup);
+  if (!discovery) return tl::unexpected(discovery.error());
+  Nanoseconds end = monotonic_now() + nanoseconds(whom.wait);
+  std::vector<std::string> robots;
+  for (Nanoseconds now = 0; (now = monotonic_now()) < end;) {
+    wakeup.wait(std::min(kSignalWait, end - now));
+    if (told_to_stop()) return std::nullopt;
+    auto heard = (*discovery)->heard();
+    if (!heard) return tl::unexpected(heard.error());
+    if (robots.empty() && !heard->empty()) end = std::min(end, monotonic_now() + kOthers);
+    robots = *std::move(heard);
+  }
+  return only_one(robots, whom);
+}
+
+}  // namespace selfcal

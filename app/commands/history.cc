@@ -1,0 +1,289 @@
+// selfcal history: past sessions and results, how the parameters drifted, which slots are filled.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <set>
+
+#include "app/commands/session_export.h"
+#include "app/commands/subcommand.h"
+#include "app/report/drift.h"
+#include "app/report/format.h"
+#include "app/report/message_json.h"
+#include "app/service/config.h"
+#include "io/files/json_parts.h"
+#include "io/files/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kDrifting = 8;  // parameters shown
+constexpr int kAll = 1'000'000;       // more than any store has
+
+struct HistoryArguments {
+  std::string where;
+  std::vector<std::string> exported;  // session, folder
+  int newest = 20;
+  bool json = false, events = false;
+};
+
+/// Where the store is, and the robot's file when a configuration names it.
+struct Source {
+  std::filesystem::path state;
+  std::string robot_text;
+};
+
+/// A session with its result, if it has one.
+struct Past {
+  SessionRecord session;
+  std::optional<ResultRecord> result;
+};
+
+/// Of a damaged session nothing is known but its number (Store::sessions).
+bool is_damaged(const Past& past) { return past.session.kind.empty(); }
+
+Result<Source> find_source(const std::string& where) {
+  std::error_code error;
+  if (where.empty()) {
+    const char* folder = std::getenv("STATE_DIRECTORY");
+    return Source{folder ? folder : "/var/lib/selfcal", ""};
+  }
+  if (std::filesystem::is_directory(where, error)) return Source{where, ""};
+  auto config = load_config(where);
+  if (!config) return tl::unexpected(config.error());
+  return Source{config->state, std::move(config->robot_text)};
+}
+
+Result<std::vector<Past>> read_past(Store& store, int newest) {
+  auto sessions = store.sessions(newest);
+  if (!sessions) return tl::unexpected(sessions.error());
+  const auto results = store.results(newest);
+  if (!results) return tl::unexpected(results.error());
+  std::vector<Past> past;
+  for (SessionRecord& session : *sessions) {
+    const auto found = std::ranges::find(*results, session.id, &ResultRecord::session);
+    past.push_back({std::move(session), std::nullopt});
+    if (found != results->end() && !is_damaged(past.back())) past.back().result = *found;
+  }
+  return past;
+}
+
+/// Accepted parameters, oldest first; those of another machine than the newest's are left out.
+Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
+  const auto results = store.results(kAll);
+  if (!results) return tl::unexpected(results.error());
+  std::vector<AcceptedParameters> newest_first;
+  for (const ResultRecord& each : *results) {
+    if (each.decision != ResultDecision::applied) continue;
+    const auto result = store.result(each.session);
+    if (!result) return tl::unexpected(result.error());
+    if (!*result || (*result)->robot_text.empty()) continue;
+    auto robot = robot_of((*result)->robot_text, "session " + std::to_string(each.session));
+    if (!robot) continue;  // of a robot that this program does not know
+    if (!newest_first.empty() && newest_first.front().robot->identity() != (*robot)->identity())
+      continue;
+    newest_first.push_back({each.session, each.unix_ms, std::move(*robot)});
+  }
+  std::ranges::reverse(newest_first);
+  return newest_first;
+}
+
+std::string state_of(const Past& past) {
+  if (is_damaged(past)) return "damaged";
+  switch (past.session.state) {
+    case SessionState::collecting:
+    case SessionState::collected:
+      return "unfinished";
+    case SessionState::aborted:
+      return "aborted";
+    case SessionState::finished:
+      return past.result ? "finished" : "damaged result";
+  }
+  return "";
+}
+
+void print_sessions(const std::vector<Past>& past) {
+  std::printf("%7s  %-16s  %-5s  %-14s  %-9s  %8s %8s %8s  %7s %5s %4s\n", "session", "when",
+              "kind", "answer", "decision", "before", "after", "end pos", "touches", "aside",
+              "par");
+  std::printf("%61s%8s %8s %8s\n", "", "mm", "mm", "mm");
+  for (const Past& each : past) {
+    const auto& r = each.result;
+    std::printf("%7lld  %-16s  %-5s  ", static_cast<long long>(each.session.id),
+                date_time(r ? r->unix_ms : each.session.started_ms).c_str(),
+                one_line(each.session.kind).c_str());
+    if (!r) {
+      std::printf("%-14s  %s\n", state_of(each).c_str(), one_line(each.session.reason).c_str());
+      continue;
+    }
+    const bool full = each.session.kind != "check", failed = r->answer == ResultAnswer::failed;
+    const auto figure = [&](bool known, double value) { return known ? mm(value) : "-"; };
+    std::printf(
+        "%-14s  %-9s  %8s %8s %8s  %7d %5d %4s\n", std::string(to_string(r->answer)).c_str(),
+        std::string(to_string(r->decision)).c_str(), figure(!failed, r->check_before).c_str(),
+        figure(!failed, r->check_after).c_str(), figure(full && !failed, r->endpoint_sigma).c_str(),
+        r->touches, r->rejected, full ? std::to_string(r->identified).c_str() : "-");
+  }
+}
+
+Result<void> print_slots(Store& store) {
+  std::printf("\nSlots\n");
+  std::string empty = "the factory's";
+  for (const Slot slot : {Slot::active, Slot::previous, Slot::candidate}) {
+    const auto record = store.slot(slot);
+    const bool damaged = !record && !store.met().empty();
+    if (!record && !damaged) return tl::unexpected(record.error());
+    std::string text = damaged ? "damaged: a start of the service sets it aside" : empty;
+    if (record && *record && (*record)->session > 0)
+      text = "session " + std::to_string((*record)->session) + ", since " +
+             date_time((*record)->since_ms);
+    // Before the first accepted parameters were the factory's; before those there is nothing.
+    if (!damaged && (!*record || slot == Slot::previous)) empty = "none";
+    std::printf("  %-10s %s\n", std::string(to_string(slot)).c_str(), text.c_str());
+  }
+  return {};
+}
+
+/// What is damaged: as the service has found it at its starts, and what was met just now.
+Result<void> print_damage(Store& store, std::FILE* out) {
+  auto all = store.damage();
+  if (!all) return tl::unexpected(all.error());
+  std::set<std::string> noted;
+  for (const DamageRecord& note : *all) noted.insert(note.what);
+  for (const std::string& what : store.met())
+    if (!noted.contains(what)) all->insert(all->begin(), {0, "", what, ""});
+  if (!all->empty()) std::fprintf(out, "\nDamaged and not used, with the day it was found\n");
+  for (const DamageRecord& each : *all)
+    std::fprintf(out, "  %-16s  %s\n", each.unix_ms == 0 ? "now" : date_time(each.unix_ms).c_str(),
+                 one_line(each.what).c_str());
+  return {};
+}
+
+Result<void> print_events(Store& store, const HistoryArguments& arguments) {
+  const auto events = store.events(arguments.newest);
+  if (!events) return tl::unexpected(events.error());
+  auto list = Json::array();
+  for (const EventRecord& event : *events) {
+    if (arguments.json)
+      list.push_back({{"unix_ms", event.unix_ms}, {"level", event.level}, {"text", event.text}});
+    else
+      std::printf("%s %s  %-7s  %s\n", date_time(event.unix_ms).substr(0, 10).c_str(),
+                  clock_time(event.unix_ms).c_str(), event.level.c_str(),
+                  one_line(event.text).c_str());
+  }
+  if (arguments.json) std::printf("%s\n", line_of(list).c_str());
+  return {};
+}
+
+Json record_of(const Past& past) {
+  const auto ended = past.session.ended_ms > 0 ? Json(past.session.ended_ms) : Json(nullptr);
+  Json json = {{"session", past.session.id},
+               {"kind", past.session.kind},
+               {"state", state_of(past)},
+               {"reason", past.session.reason},
+               {"started_ms", past.session.started_ms},
+               {"ended_ms", ended},
+               {"model_hash", past.session.model_hash},
+               {"result", nullptr}};
+  if (!past.result) return json;
+  const ResultRecord& r = *past.result;
+  json["result"] = {{"unix_ms", r.unix_ms},
+                    {"answer", to_string(r.answer)},
+                    {"decision", to_string(r.decision)},
+                    {"why", r.why},
+                    {"p_value", finite(r.p_value)},
+                    {"check_before", finite(r.check_before)},
+                    {"check_after", finite(r.check_after)},
+                    {"endpoint_sigma", finite(r.endpoint_sigma)},
+                    {"touches", r.touches},
+                    {"rejected", r.rejected},
+                    {"identified", r.identified}};
+  return json;
+}
+
+Result<void> print_history(Store& store, const HistoryArguments& arguments) {
+  const auto past = read_past(store, arguments.newest);
+  if (!past) return tl::unexpected(past.error());
+  if (arguments.json) {
+    auto records = Json::array();
+    for (const Past& each : *past) records.push_back(record_of(each));
+    std::printf("%s\n", line_of(records).c_str());
+    return print_damage(store, stderr);
+  }
+  if (past->empty())
+    std::printf("No session yet.\n");
+  else
+    print_sessions(*past);
+  const auto calibrations = read_calibrations(store);
+  if (!calibrations) return tl::unexpected(calibrations.error());
+  if (!calibrations->empty())
+    std::printf(
+        "\nDrift of the parameters that moved most: since the factory (since the one "
+        "before)\n%s",
+        drift_table(*calibrations, drifts(*calibrations, kDrifting)).c_str());
+  if (auto printed = print_slots(store); !printed) return printed;
+  return print_damage(store, stdout);
+}
+
+Result<void> print_export(Store& store, const HistoryArguments& arguments, const Source& source) {
+  const auto session = std::atoll(arguments.exported[0].c_str());
+  const std::string& folder = arguments.exported[1];
+  const auto rows = export_session(store, session, source.robot_text, folder);
+  if (!rows) return tl::unexpected(rows.error());
+  for (const std::string& what : store.met())
+    if (what.ends_with(" of session " + std::to_string(session)))
+      std::fprintf(stderr, "selfcal: %s is damaged and left out\n", what.c_str());
+  if (arguments.json)
+    std::printf("%s\n",
+                line_of({{"session", session}, {"folder", folder}, {"rows", *rows}}).c_str());
+  else
+    std::printf("%s: %d rows of session %lld; solve them again by: selfcal identify %s\n",
+                folder.c_str(), *rows, session, folder.c_str());
+  return {};
+}
+
+int history_command(const HistoryArguments& arguments) {
+  if (!arguments.exported.empty()) {
+    const std::string& id = arguments.exported[0];
+    if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != std::string::npos)
+      return wrong_usage("--export SESSION FOLDER: expected a session's number, got '" + id + "'");
+  }
+  const auto source = find_source(arguments.where);
+  if (!source) return tell(source.error());
+  const auto store = Store::open_to_read(source->state);
+  if (!store) return tell(store.error());
+  const auto done = !arguments.exported.empty() ? print_export(**store, arguments, *source)
+                    : arguments.events          ? print_events(**store, arguments)
+                                                : print_history(**store, arguments);
+  return done ? kDone : tell(done.error());
+}
+
+}  // namespace
+
+void add_history(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<HistoryArguments>();
+  CLI::App* command = app.add_subcommand(
+      "history", "Show past sessions, drift and slots; a service may be running");
+  command->add_option("WHERE", arguments->where,
+                      "CONFIG.yaml or the state's folder (default: $STATE_DIRECTORY, or "
+                      "/var/lib/selfcal)");
+  CLI::Option* newest =
+      command->add_option("--newest", arguments->newest, "So many sessions or events")
+          ->check(CLI::Range(1, kAll))
+          ->capture_default_str();
+  CLI::Option* events =
+      command->add_flag("--events", arguments->events, "The log of the service instead");
+  command
+      ->add_option("--export", arguments->exported,
+                   "SESSION FOLDER: its rows as a data set, to be solved again")
+      ->type_name("SESSION FOLDER")
+      ->expected(2)
+      ->excludes(newest)
+      ->excludes(events);
+  command->add_flag("--json", arguments->json, "JSON for programs, SI units");
+  command->callback([arguments, &status] { status = history_command(*arguments); });
+}
+
+}  // namespace selfcal

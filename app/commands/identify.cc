@@ -1,0 +1,119 @@
+// selfcal identify DATASET: identifies, tells, and writes result.json and calibrated.robot.yaml.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands/subcommand.h"
+#include "app/report/progress_line.h"
+#include "app/report/summary.h"
+#include "constraints/estimation/identification.h"
+#include "constraints/site.h"
+#include "diagnosis/search/shapes.h"
+#include "io/files/data_set_file.h"
+#include "io/files/file.h"
+#include "io/files/robot_file.h"
+#include "io/files/solution_json.h"
+#include "kinematics/corrected_robot.h"
+
+namespace selfcal {
+namespace {
+
+struct IdentifyArguments {
+  std::string data_set, out;
+  Options options;
+  std::vector<std::string> effects;
+  bool json = false;
+};
+
+/// The first name that no parameter has, or empty.
+std::string unknown_name(const Robot& robot, const Options& options) {
+  for (const auto* names : {&options.fix, &options.free})
+    for (const std::string& name : *names)
+      if (match_parameters(robot, name).empty()) return name;
+  return {};
+}
+
+Result<void> write_solution(const IdentifyArguments& arguments, const Robot& robot,
+                            const Solution& solution, const std::string& json) {
+  const std::filesystem::path out(arguments.out);
+  if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
+  return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
+}
+
+/// Whether the effect of a robot file's `entry` is one of those asked for (EFFECT or EFFECT@PLACE).
+bool is_asked(const Node& entry, const std::vector<std::string>& asked) {
+  const std::string effect = entry.find("effect")->text;
+  const Node* at = entry.find("at");
+  return std::ranges::count(asked, effect) > 0 ||
+         (at && std::ranges::count(asked, effect + "@" + at->text) > 0);
+}
+
+/// The robot of a data set with the effects that are asked for beside its own, or why not.
+tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
+    std::shared_ptr<const Robot> robot, const DataSet& data, const IdentifyArguments& arguments) {
+  if (arguments.effects.empty()) return robot;
+  ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
+  if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
+  Problems problems;
+  const auto geometry = geometry_of(robot);
+  std::vector<Node> entries = effect_entries(*robot);
+  std::erase_if(entries, [&](const Node& each) { return is_asked(each, arguments.effects); });
+  entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
+  std::shared_ptr<const Robot> corrected =
+      correct(geometry, entries, site_of(*geometry, data), problems);
+  if (!corrected) return tl::unexpected(problems.list.front());
+  return corrected;
+}
+
+int identify_command(const IdentifyArguments& arguments) {
+  auto loaded = load_data_set(arguments.data_set);
+  if (!loaded) return tell(loaded.error());
+  print_notices(*loaded);
+  const auto model = with_effects(std::move(loaded->robot), loaded->data, arguments);
+  if (!model) return wrong_usage(model.error());
+  const Robot& robot = **model;
+  Options options = arguments.options;
+  if (!arguments.effects.empty())
+    for (const Parameter& p : robot.parameters())
+      if (p.part == Part::effect) options.free.push_back(p.name);
+  if (const std::string name = unknown_name(robot, options); !name.empty())
+    return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
+                       "'; names are like theta2, K3 or j2.theta, * stands for any text");
+  if (!arguments.out.empty())
+    if (const auto made = make_folder(arguments.out); !made) return tell(made.error());
+  Solution solution;
+  {
+    ProgressLine line;
+    solution = identify(robot, loaded->data, options,
+                        [&](std::string_view stage, double share) { line.show(stage, share); });
+  }
+  const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
+  if (arguments.json)
+    std::printf("%s\n", json.c_str());
+  else
+    std::fputs(summary(loaded->data, solution).c_str(), stdout);
+  if (!arguments.out.empty())
+    if (const auto written = write_solution(arguments, robot, solution, json); !written)
+      return tell(written.error());
+  return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<IdentifyArguments>();
+  CLI::App* command =
+      app.add_subcommand("identify", "Identify a robot's parameters from a data set");
+  command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
+  command->add_option("--fix", arguments->options.fix,
+                      "Parameters held at the model's value (theta2, j2.theta, d*)");
+  command->add_option("--free", arguments->options.free, "Parameters freed (K3, K*)");
+  command->add_option("--effects", arguments->effects,
+                      "Effects identified with it: EFFECT or EFFECT@PLACE (joint_compliance@j2)");
+  command->add_option("--out", arguments->out, "Folder for result.json and calibrated.robot.yaml");
+  command->add_flag("--json", arguments->json, "Print result.json alone on standard output");
+  command->callback([arguments, &status] { status = identify_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,223 @@
+// selfcal monitor: what a service publishes, live: a picture on a terminal, lines elsewhere, JSON
+// for programs.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/find_robot.h"
+#include "app/commands/signals.h"
+#include "app/report/format.h"
+#include "app/report/message_json.h"
+#include "app/report/monitor_news.h"
+#include "app/report/monitor_view.h"
+#include "app/report/screen.h"
+#include "io/clock.h"
+#include "io/dds/clients/monitor.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kRedraw = kSecond / 20;       // at most so often
+constexpr Nanoseconds kRest = 1200 * kMillisecond;  // for what follows a first status: health, once
+                                                    // a second, and the last result
+
+struct MonitorArguments {
+  Whom whom;
+  bool once = false;
+};
+
+std::int64_t unix_ms() { return realtime_now() / kMillisecond; }
+
+/// One line for each message, in the order in which they were sent.
+class Output {
+ public:
+  explicit Output(bool json) : json_(json) {}
+
+  template <class Message>
+  void add(const Message& message) {
+    put(message.unix_ms, json_ ? line_of(to_json(message)) : news_.of(message));
+  }
+  void add(const std::string& robot, const HealthReport& report) {
+    if (json_) return put(report.unix_ms, line_of(to_json(robot, report.unix_ms, report.lines)));
+    for (const HealthMessage& line : report.lines) put(report.unix_ms, news_.of(line));
+  }
+  void add_silence(const Watched& watched) {
+    const std::string text = news_.of_silence(watched);
+    if (text.empty() || !json_) return put(unix_ms(), text);
+    put(unix_ms(), line_of({{"topic", "silence"},
+                            {"unix_ms", unix_ms()},
+                            {"robot", watched.robot},
+                            {"silent", watched.silent >= kSilence}}));
+  }
+  /// False when nobody reads any more.
+  bool flush() {
+    std::ranges::stable_sort(lines_, {}, &Entry::first);
+    for (const auto& [when, text] : lines_)
+      std::printf("%s%s\n", json_ ? "" : (clock_time(when) + " ").c_str(), text.c_str());
+    lines_.clear();
+    if (std::fflush(stdout) == 0) return true;
+    if (errno == EPIPE) std::clearerr(stdout);  // a reader who has seen enough is no failure
+    return false;
+  }
+
+ private:
+  using Entry = std::pair<std::int64_t, std::string>;
+  void put(std::int64_t when, std::string text) {
+    if (!text.empty()) lines_.emplace_back(when, std::move(text));
+  }
+
+  bool json_;
+  News news_;
+  std::vector<Entry> lines_;
+};
+
+/// Takes what has come, keeps the last of it, and hands each message to `each`.
+class Listener {
+ public:
+  Listener(DdsMonitor& monitor, const std::string& robot) : monitor_(monitor) {
+    watched_.robot = robot;
+  }
+
+  template <class Each>
+  bool take(Each each) {
+    const bool status = take_all<StatusMessage>(each);
+    const bool others =
+        static_cast<int>(take_all<ProgressMessage>(each)) + take_all<ResultMessage>(each) > 0;
+    std::vector<HealthReport> reports;
+    monitor_.take(reports);
+    for (const HealthReport& report : reports) {
+      watched_.health = report.lines;
+      each(report);
+    }
+    const Nanoseconds now = monotonic_now();
+    if (status) heard_ = now;
+    watched_.silent = seconds(now - heard_);
+    return status || others || !reports.empty();
+  }
+  const Watched& watched() const { return watched_; }
+
+ private:
+  template <class Message, class Each>
+  bool take_all(Each& each) {
+    std::vector<Message> messages;
+    monitor_.take(messages);
+    for (const Message& message : messages) {
+      note(watched_, message);
+      each(message);
+    }
+    return !messages.empty();
+  }
+
+  DdsMonitor& monitor_;
+  Watched watched_;
+  Nanoseconds heard_ = monotonic_now();
+};
+
+void watch_on_terminal(Listener& listener, Wakeup& wakeup) {
+  Screen screen;
+  ScreenSize drawn_for;
+  Nanoseconds drawn = 0;
+  bool news = true;
+  while (!told_to_stop()) {
+    news = listener.take([](const auto&) {}) || news;
+    const Nanoseconds now = monotonic_now();
+    const ScreenSize size = Screen::size();
+    if ((news && now - drawn >= kRedraw) || now - drawn >= kSecond || size != drawn_for) {
+      screen.draw(picture(listener.watched(), unix_ms(), size.columns - 1, size.rows - 1), size);
+      drawn = now;
+      drawn_for = size;
+      news = false;
+    }
+    wakeup.wait(news ? kRedraw : kSignalWait);
+  }
+}
+
+void watch_in_lines(Listener& listener, Wakeup& wakeup, bool json) {
+  Output output(json);
+  const std::string robot = listener.watched().robot;
+  const auto add = [&](const auto& message) {
+    if constexpr (std::is_same_v<decltype(message), const HealthReport&>)
+      output.add(robot, message);
+    else
+      output.add(message);
+  };
+  while (!told_to_stop()) {
+    listener.take(add);
+    output.add_silence(listener.watched());
+    if (!output.flush()) return;
+    wakeup.wait(kSignalWait);
+  }
+}
+
+/// Everything that a late joiner is told, or what there is when the time is over.
+void listen_once(Listener& listener, Wakeup& wakeup, Nanoseconds end) {
+  const Watched& watched = listener.watched();
+  for (Nanoseconds now = 0; (now = monotonic_now()) < end && !told_to_stop();) {
+    const bool had_status = watched.status.has_value();
+    listener.take([](const auto&) {});
+    if (!had_status && watched.status) end = std::min(end, now + kRest);
+    if (watched.status && watched.result && !watched.health.empty()) return;
+    wakeup.wait(std::min(kSignalWait, end - now));
+  }
+}
+
+int show_once(Listener& listener, Wakeup& wakeup, const Whom& whom) {
+  listen_once(listener, wakeup, monotonic_now() + nanoseconds(whom.wait));
+  const Watched& watched = listener.watched();
+  if (told_to_stop()) return kDone;
+  if (!watched.status)
+    return tell({kDeviceIsBad, printed("no service of robot %s was heard in DDS domain %d within "
+                                       "%g s",
+                                       watched.robot.c_str(), whom.domain, whom.wait)});
+  if (whom.json) {
+    Output output(true);
+    output.add(*watched.status);
+    if (watched.result) output.add(*watched.result);
+    if (!watched.health.empty())
+      output.add(watched.status->robot, HealthReport{unix_ms(), "", watched.health});
+    output.flush();
+    return kDone;
+  }
+  constexpr int kNoLimit = 10000;
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  const int columns = terminal ? Screen::size().columns - 1 : kNoLimit;
+  for (const Line& line : picture(watched, unix_ms(), columns, kNoLimit))
+    std::printf("%s\n", terminal ? painted(line).c_str() : line.text.c_str());
+  return kDone;
+}
+
+int monitor_command(const MonitorArguments& arguments) {
+  listen_to_signals();
+  const Whom& whom = arguments.whom;
+  const auto participant =
+      DdsParticipant::open(static_cast<std::uint32_t>(whom.domain), "selfcal monitor");
+  if (!participant) return tell(participant.error());
+  const auto robot = find_robot(*participant, whom);
+  if (!robot) return tell(robot.error());
+  if (!*robot) return kDone;
+  Wakeup wakeup;
+  const auto monitor = DdsMonitor::open(*participant, **robot, wakeup);
+  if (!monitor) return tell(monitor.error());
+  Listener listener(**monitor, **robot);
+  if (arguments.once) return show_once(listener, wakeup, whom);
+  if (!whom.json && isatty(STDOUT_FILENO) != 0)
+    watch_on_terminal(listener, wakeup);
+  else
+    watch_in_lines(listener, wakeup, whom.json);
+  return kDone;
+}
+
+}  // namespace
+
+void add_monitor(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<MonitorArguments>();
+  CLI::App* command = app.add_subcommand("monitor", "Show what a service publishes, live");
+  add_whom(*command, arguments->whom, "Most seconds to wait for a service to be found");
+  command->add_flag("--once", arguments->once, "Show what there is, and end");
+  command->callback([arguments, &status] { status = monitor_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,99 @@
+// What is stored with a session is the description of a data set and what the raw counts mean;
+// dataset.yaml is the former. It is written last: a folder without it is no data set.
+#include "app/commands/session_export.h"
+
+#include <system_error>
+
+#include "app/report/format.h"
+#include "app/service/session.h"
+#include "io/files/file.h"
+#include "io/files/observations_text.h"
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+
+namespace selfcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string session_name(std::int64_t session) { return "session " + std::to_string(session); }
+
+Result<void> make_empty_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) &&
+      (!fs::is_directory(folder, error) || !fs::is_empty(folder, error)))
+    return bad_input(folder.string() + ": is not an empty folder: choose a new one");
+  return make_folder(folder);
+}
+
+/// The file of the robot that the session measured, as its maker gives it.
+Result<std::string> nominal_text(Store& store, const SessionRecord& record,
+                                 const std::string& given) {
+  const auto result = store.result(record.id);
+  if (!result && given.empty()) return tl::unexpected(result.error());
+  const bool stored = result && *result && !(*result)->robot_text.empty();
+  if (!stored && given.empty())
+    return bad_input(session_name(record.id) +
+                     ": no robot is stored with it (it is a check, or came to no result): give "
+                     "CONFIG.yaml in place of the state's folder");
+  const auto robot = robot_of(stored ? (*result)->robot_text : given, session_name(record.id));
+  if (!robot) return tl::unexpected(robot.error());
+  if (model_hash(**robot) != record.model_hash)
+    return bad_input(session_name(record.id) + ": measured another robot than this one");
+  return robot_text(**robot, nominal_values(**robot));
+}
+
+/// dataset.yaml of a stored description.
+Result<std::string> description_text(const SessionRecord& record) {
+  const Result<Node> stored = parse_yaml(record.config, session_name(record.id));
+  if (!stored) return tl::unexpected(stored.error());
+  Node node = Node::map();
+  node.set("robot", Node::of(std::string("robot.yaml")));
+  node.set("observations", Node::of(std::string("observations.csv")));
+  for (const char* key : {"target", "sets"})
+    if (const Node* value = stored->find(key)) node.set(key, *value);
+  return "# Session " + std::to_string(record.id) + " (" + record.kind + "), begun " +
+         date_time(record.started_ms) + ".\n" + write_yaml(node);
+}
+
+Result<Session> stored_session(Store& store, const SessionRecord& record) {
+  auto plan = store.plan(record.id);
+  if (!plan) return tl::unexpected(plan.error());
+  auto touches = store.touches(record.id);
+  if (!touches) return tl::unexpected(touches.error());
+  Session session{record, std::move(*plan), std::move(*touches)};
+  for (const StepRecord& step : session.plan)
+    if (!good_touches(session, step.index).empty()) return session;
+  return bad_input(session_name(record.id) +
+                   ": has no rows (none were taken, or they were pruned)");
+}
+
+}  // namespace
+
+Result<int> export_session(Store& store, std::int64_t session, const std::string& robot_text,
+                           const fs::path& folder) {
+  const auto record = store.session(session);
+  if (!record) return tl::unexpected(record.error());
+  const auto kept = stored_session(store, *record);
+  if (!kept) return tl::unexpected(kept.error());
+  const auto meaning = read_meaning(record->config);
+  if (!meaning) return tl::unexpected(meaning.error());
+  const auto robot_file = nominal_text(store, *record, robot_text);
+  if (!robot_file) return tl::unexpected(robot_file.error());
+  const auto robot = robot_of(*robot_file, session_name(session));
+  if (!robot) return tl::unexpected(robot.error());
+  const DataSet data = rows_of(**robot, *kept, *meaning);
+  const auto description = description_text(*record);
+  if (!description) return tl::unexpected(description.error());
+  if (auto made = make_empty_folder(folder); !made) return tl::unexpected(made.error());
+  const std::pair<const char*, std::string> files[] = {
+      {"robot.yaml", *robot_file},
+      {"observations.csv", observations_text(data)},
+      {"dataset.yaml", *description}};
+  for (const auto& [name, text] : files)
+    if (auto written = write_file_atomically(folder / name, text); !written)
+      return tl::unexpected(written.error());
+  return data.rows.rows();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,21 @@
+#include "app/commands/signals.h"
+
+#include <csignal>
+
+namespace selfcal {
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+void on_signal(int) { stop_asked = 1; }
+
+}  // namespace
+
+bool told_to_stop() { return stop_asked != 0; }
+
+void listen_to_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,72 @@
+#include "app/report/drift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/format.h"
+
+namespace selfcal {
+namespace {
+
+constexpr std::size_t kMostColumns = 3;  // of the table: what fits 80 characters
+
+/// Most that it moved from one calibration to the next; of an only one, from the factory's.
+double moved(const Drift& drift) {
+  double most = 0;
+  const std::size_t first = drift.since_last.size() > 1 ? 1 : 0;
+  for (std::size_t i = first; i < drift.since_last.size(); ++i)
+    most = std::max(most, std::abs(drift.since_last[i]));
+  return most;
+}
+
+const char* shown_unit(Quantity quantity) {
+  return quantity == Quantity::length ? "mm" : quantity == Quantity::angle ? "mrad" : "1e-3";
+}
+
+}  // namespace
+
+std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, std::size_t most) {
+  if (calibrations.empty()) return {};
+  const std::vector<Parameter>& parameters = calibrations.front().robot->parameters();
+  std::vector<Drift> all;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    Drift drift;
+    drift.name = full_name(parameters[p]);
+    drift.quantity = parameters[p].quantity;
+    double before = parameters[p].nominal;
+    for (const AcceptedParameters& calibration : calibrations) {
+      const Parameter& now = calibration.robot->parameters()[p];
+      drift.since_factory.push_back(now.value - now.nominal);
+      drift.since_last.push_back(now.value - before);
+      before = now.value;
+    }
+    if (moved(drift) > 0) all.push_back(std::move(drift));
+  }
+  std::ranges::stable_sort(all, std::greater<>(), moved);
+  if (all.size() > most) all.resize(most);
+  return all;
+}
+
+std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
+                        const std::vector<Drift>& drifts) {
+  const std::size_t count = calibrations.size();
+  const std::size_t first = count > kMostColumns ? count - kMostColumns : 0;
+  std::string text = padded("", 30);
+  for (std::size_t c = first; c < count; ++c)
+    text += printed(
+        "%20s", printed("session %lld", static_cast<long long>(calibrations[c].session)).c_str());
+  text += "\n" + padded("", 30);
+  for (std::size_t c = first; c < count; ++c)
+    text += printed("%20s", date_time(calibrations[c].unix_ms).substr(0, 10).c_str());
+  for (const Drift& drift : drifts) {
+    text += "\n  " + padded(drift.name, 23) + padded(shown_unit(drift.quantity), 5);
+    for (std::size_t c = first; c < count; ++c) {
+      const std::string change = c > 0 ? printed("(%+.3f)", 1e3 * drift.since_last[c]) : "";
+      text += printed("%+10.3f%10s", 1e3 * drift.since_factory[c], change.c_str());
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+  }
+  return text + "\n";
+}
+
+}  // namespace selfcal

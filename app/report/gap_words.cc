@@ -1,0 +1,73 @@
+// Where rows judge each other by thirds, each third is judged by what the others name and find, so
+// that the two figures may differ though all that is found of the whole is named.
+#include "app/report/gap_words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/format.h"
+
+namespace selfcal {
+namespace {
+
+bool only_named(const Diagnosis& diagnosis) {
+  return diagnosis.gap.judged_on == "check" &&
+         std::ranges::all_of(diagnosis.found, &FoundEffect::named);
+}
+
+/// Whole ones, without the sign of a zero.
+double percent(double share) { return std::round(100 * share) + 0.0; }
+
+std::string closed_by(const Closed& closed, const std::string& words) {
+  return printed("%.0f %% ", percent(*closed.fraction)) + words +
+         printed(" (%.0f to %.0f %%)", percent(closed.least), percent(closed.most));
+}
+
+}  // namespace
+
+std::string effect_in_words(std::string effect) {
+  std::ranges::replace(effect, '_', ' ');
+  return effect;
+}
+
+std::string places_in_words(const std::vector<std::string>& where) {
+  std::string text;
+  for (size_t i = 0; i < where.size(); ++i)
+    text += (i == 0 ? " at " : i + 1 == where.size() ? " and " : ", ") + where[i];
+  return text;
+}
+
+std::string named_in_words(const Diagnosis& diagnosis) {
+  const CauseResult& verdict = diagnosis.verdict;
+  if (!names_effect(verdict.effect)) return "";
+  return effect_in_words(verdict.effect) + places_in_words(verdict.where) +
+         (only_named(diagnosis) ? " (named; nothing else was found)" : " (named)");
+}
+
+std::string found_in_words(const Diagnosis& diagnosis) {
+  const Correction& found = diagnosis.found;
+  if (found.empty() || only_named(diagnosis)) return "";
+  const auto unnamed = static_cast<size_t>(std::ranges::count(found, false, &FoundEffect::named));
+  const std::string which = unnamed == 0              ? "all named"
+                            : unnamed == found.size() ? "none named"
+                                                      : printed("%zu of them not named", unnamed);
+  return printed("everything found (%zu effect%s, ", found.size(), found.size() == 1 ? "" : "s") +
+         which + ")";
+}
+
+std::string closed_in_words(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  const bool named = names_effect(diagnosis.verdict.effect);
+  const bool found = !found_in_words(diagnosis).empty();
+  std::string text;
+  if (named && gap.closed.fraction)
+    text = closed_by(gap.closed, found ? "of what calibration leaves is closed by what is named"
+                                       : "of what calibration leaves is closed");
+  if (found && gap.closed_all.fraction)
+    text += text.empty() ? closed_by(gap.closed_all,
+                                     "of what calibration leaves is closed by everything found")
+                         : ", " + closed_by(gap.closed_all, "by everything found");
+  return text;
+}
+
+}  // namespace selfcal

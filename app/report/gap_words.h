@@ -1,0 +1,27 @@
+// The two figures to which the gap of a diagnosis closes, each called by its name.
+#pragma once
+
+#include <string>
+
+#include "diagnosis/findings.h"
+
+namespace selfcal {
+
+/// "joint compliance at j2 and j3 (named)", "… (named; nothing else was found)"; empty where no
+/// effect is named.
+std::string named_in_words(const Diagnosis& diagnosis);
+
+/// "everything found (13 effects, 10 of them not named)"; empty where that is the named effects,
+/// or nothing.
+std::string found_in_words(const Diagnosis& diagnosis);
+
+/// "40 % of what calibration leaves is closed by what is named (35 to 44 %), 91 % by everything
+/// found (88 to 93 %)"; empty where nothing can be said.
+std::string closed_in_words(const Diagnosis& diagnosis);
+
+/// " at j1, j2 and j3"; empty for the whole robot.
+std::string places_in_words(const std::vector<std::string>& where);
+/// "joint compliance".
+std::string effect_in_words(std::string effect);
+
+}  // namespace selfcal

@@ -1,0 +1,207 @@
+// An identification in words.
+#include "app/report/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+constexpr size_t kMostListedItems = 12;
+constexpr double kAlone = 0.9;  ///< share of the scale that one length carries alone
+
+[[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
+  char text[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// "touches" when every row that identifies is one, else "rows".
+const char* noun(const DataSet& data, const Solution& solution) {
+  for (size_t s = 0; s < data.sets.size(); ++s)
+    if (solution.sets.size() > s && solution.sets[s].identifies &&
+        data.sets[s].method->touches() == TouchedSurface::none)
+      return "rows";
+  return "touches";
+}
+
+std::string carried(const ParameterResult& p) {
+  std::string text = p.parameter.name + " grouped with ";
+  for (size_t i = 0; i < p.grouped_with.size() && i < 2; ++i)
+    text += (i ? ", " : "") + p.grouped_with[i].name;
+  return text + (p.grouped_with.size() > 2 ? "…" : "");
+}
+
+std::string first_line(const DataSet& data, const Solution& solution) {
+  const auto count = std::count_if(solution.parameters.begin(), solution.parameters.end(),
+                                   [](const auto& p) { return p.status == Status::identified; });
+  int rows = 0;
+  for (const SetResult& set : solution.sets)
+    if (set.identifies) rows += set.rows;
+  std::string text =
+      phrase("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
+  const Figures& check = solution.residual.check;
+  const Figures& fit = solution.residual.fit;
+  if (check.rows > 0) {
+    text += phrase("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
+                   1e3 * check.rms_after, check.rows);
+    // False rows among those kept aside count; say what is left without them.
+    if (check.rms_without_rejected < 0.9 * check.rms_after)
+      text += phrase(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+  } else {
+    text += phrase("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
+                   1e3 * fit.rms_before, 1e3 * fit.rms_after);
+  }
+  size_t told = 0;
+  const std::vector<Note>& held = solution.gauge;
+  for (size_t i = 0; i < held.size() && told < 2; ++i) {
+    if (i > 0 && held[i].text == held[i - 1].text) continue;  // one of several for one reason
+    const bool alone = i + 1 == held.size() || held[i + 1].text != held[i].text;
+    text += (told++ ? ", " : "; ") + held[i].parameter + (alone ? "" : "…") + " held";
+  }
+  for (const ParameterResult& p : solution.parameters)
+    if (p.status == Status::grouped && !p.grouped_with.empty() && told < 4)
+      text += (told++ ? ", " : "; ") + carried(p);
+  return text + "\n";
+}
+
+/// Value in the unit that a person reads.
+struct Shown {
+  double factor;
+  const char* unit;
+};
+Shown shown(const Parameter& parameter) {
+  switch (parameter.quantity) {
+    case Quantity::length:
+      return {1e3, "mm"};
+    case Quantity::angle:
+      return {1e3, "mrad"};
+    case Quantity::ratio:
+      return {1e6, "ppm"};
+    case Quantity::other:
+      break;
+  }
+  return {1, parameter.other_unit.c_str()};
+}
+
+std::string parameter_table(const Solution& solution) {
+  std::string text = "\n  parameter             change      sigma   (mm, mrad, ppm)\n";
+  int grouped = 0, without_effect = 0;
+  for (const ParameterResult& p : solution.parameters) {
+    grouped += p.status == Status::grouped;
+    without_effect += p.status == Status::no_effect;
+    if (p.status != Status::identified) continue;
+    const Shown unit = shown(p.parameter);
+    const std::string name = full_name(p.parameter);
+    text += phrase(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
+                                                    : "  %-18s %9.4f  %9.4f %s\n",
+                   name.c_str(), unit.factor * (p.value - p.parameter.nominal),
+                   unit.factor * p.sigma, unit.unit);
+  }
+  if (grouped + without_effect > 0)
+    text += phrase(
+        "  and %d grouped with these, %d without effect on these rows (result.json says "
+        "which)\n",
+        grouped, without_effect);
+  return text;
+}
+
+template <class Items, class Line>
+void list(std::string& text, const char* title, const Items& items, Line line) {
+  if (items.empty()) return;
+  text += std::string("\n") + title + "\n";
+  for (size_t i = 0; i < items.size() && i < kMostListedItems; ++i)
+    text += "  " + line(items[i]) + "\n";
+  if (items.size() > kMostListedItems)
+    text += phrase("  and %d more\n", static_cast<int>(items.size() - kMostListedItems));
+}
+
+std::string set_line(const SetResult& set) {
+  std::string text = set.name + " (" + set.method + "): ";
+  if (!set.identifies)
+    text += phrase("%d rows judge%s", set.rows,
+                   set.aligned ? ", own unknowns fitted to them (aligned)" : "");
+  else
+    text += phrase("%d of %d rows used", set.used, set.rows);
+  if (set.noise_sigma > 0) text += phrase(", noise %.3g um", 1e6 * set.noise_sigma);
+  if (set.noise_angle_sigma > 0) text += phrase(" and %.3g urad", 1e6 * set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) text += phrase(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
+  return text;
+}
+
+/// Of a length given: what hangs on it, and from what size on an error in it is noticed.
+std::string scale_line(const ScaleLength& each, bool alone) {
+  std::string text =
+      phrase("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
+  text += alone ? ", alone" : phrase(" (%.0f %% of it)", 100 * each.share);
+  text += phrase(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
+  return text + phrase(
+                    "; the maker's lengths expect %.6g +- %.2g mm and notice an error from %.2g mm "
+                    "on",
+                    1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
+}
+
+std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
+  std::vector<std::string> steps;
+  if (!solution.converged)
+    steps.push_back("Not converged: " + solution.stop_reason +
+                    ". Check that the nominal model, units and joint signs belong to these rows.");
+  if (solution.endpoint.poses == 0)
+    steps.push_back("Leave free (--fix holds) what these rows are to identify.");
+  else if (solution.residual.check.rows == 0)
+    steps.push_back(
+        "Mark about a third of the rows `check` (column part): a result is judged on rows "
+        "it has not seen.");
+  else if (solution.scale.against_maker)
+    steps.push_back(
+        "Measure the length given once more, or give another one: on a wrong one the whole robot "
+        "is "
+        "too large or too small.");
+  else if (solution.endpoint.rms > data.target)
+    steps.push_back(
+        phrase("The end position is known to %.3g mm only. Add rows that move the joints "
+               "named above%s.",
+               1e3 * solution.endpoint.rms,
+               solution.gauge.empty() ? "" : ", and a known length for the scale"));
+  else if (solution.verdict.answer == Answer::not_improved)
+    steps.push_back("The maker's figures explain the check rows as well: keep them.");
+  else if (solution.converged)
+    steps.push_back(
+        "The result is a candidate: look at the changes, then use "
+        "calibrated.robot.yaml.");
+  return steps;
+}
+
+}  // namespace
+
+std::string summary(const DataSet& data, const Solution& solution) {
+  const bool without_rows = solution.sets.empty();
+  std::string text = without_rows ? "" : first_line(data, solution);
+  text += std::string(to_string(solution.verdict.answer)) + ": " + solution.verdict.why + "\n";
+  if (without_rows) return text;
+  text += parameter_table(solution);
+  list(text, "Sets", solution.sets, set_line);
+  const std::vector<ScaleLength>& lengths = solution.scale.stands_on;
+  const bool alone = lengths.size() == 1 && lengths.front().share > kAlone;
+  list(text, "The scale stands on", lengths,
+       [alone](const ScaleLength& each) { return scale_line(each, alone); });
+  list(text, "Held", solution.gauge,
+       [](const Note& note) { return note.parameter + ": " + note.text; });
+  list(text, "Not excited by these rows", solution.unexcited,
+       [](const Note& note) { return note.parameter + ": " + note.text; });
+  list(text, "Rows beyond the noise", solution.rejected, [](const Outlier& r) {
+    const std::string of_row = phrase("row %d (%s): ", r.row, r.set.c_str());
+    return std::isfinite(r.residual) ? of_row + phrase("%.3g mm, ", 1e3 * r.residual) + r.why
+                                     : of_row + r.why;
+  });
+  list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
+  list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });
+  return text;
+}
+
+}  // namespace selfcal

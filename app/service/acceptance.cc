@@ -1,0 +1,132 @@
+#include "app/service/acceptance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+#include <utility>
+
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+template <class... Values>
+std::string sentence(const char* format, Values... values) {
+  char text[240];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+struct ParameterChange {
+  const ParameterResult* parameter = nullptr;
+  double change = 0;
+};
+
+/// The parameter that changes most against its limit, and the one that changes most against its
+/// sigma.
+std::pair<ParameterChange, ParameterChange> largest_changes(const ByPart& limits,
+                                                            const Robot& active,
+                                                            const Solution& candidate) {
+  ParameterChange against_limit, against_sigma;
+  double most = 0, most_sigmas = 0;
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    const ParameterResult& each = candidate.parameters[i];
+    const double change = each.value - active.parameters()[i].value;
+    const double share = std::abs(change) / limits.of(each.parameter);
+    if (share > most) {
+      most = share;
+      against_limit = {&each, change};
+    }
+    if (each.sigma > 0 && each.status == Status::identified &&
+        std::abs(change) / each.sigma > most_sigmas) {
+      most_sigmas = std::abs(change) / each.sigma;
+      against_sigma = {&each, change};
+    }
+  }
+  return {against_limit, against_sigma};
+}
+
+/// Rms of the check rows before and after, on the same rows: those that neither rejects.
+std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& before,
+                                               const std::vector<CheckRow>& after) {
+  double squares_before = 0, squares_after = 0, rows = 0;
+  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
+    if (before[i].rejected || after[i].rejected) continue;
+    squares_before += before[i].residual * before[i].residual;
+    squares_after += after[i].residual * after[i].residual;
+    ++rows;
+  }
+  if (rows == 0) return {0, 0};
+  return {std::sqrt(squares_before / rows), std::sqrt(squares_after / rows)};
+}
+
+}  // namespace
+
+AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
+                                  const Solution& candidate, const Solution& unchanged) {
+  AcceptanceDecision ruling;
+  ruling.answer = candidate.verdict.answer;
+  std::tie(ruling.check_before, ruling.check_after) =
+      rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
+  if (candidate.verdict.answer != Answer::improved) {
+    ruling.why = candidate.verdict.why;
+    return ruling;
+  }
+  if (!(ruling.check_after < (1 - accept.margin) * ruling.check_before)) {
+    ruling.why =
+        sentence("the active parameters explain the check rows as well: %.4g mm against %.4g",
+                 1e3 * ruling.check_before, 1e3 * ruling.check_after);
+    return ruling;
+  }
+  const auto [limit, sigma] = largest_changes(accept.largest_change, active, candidate);
+  if (limit.parameter) {
+    const double most = accept.largest_change.of(limit.parameter->parameter);
+    if (std::abs(limit.change) > most) {
+      ruling.why =
+          sentence("%s changes by %.4g m%s, more than the limit of %.4g: look at the robot first",
+                   limit.parameter->parameter.name.c_str(), 1e3 * limit.change,
+                   std::string(unit(limit.parameter->parameter.quantity)).c_str(), 1e3 * most);
+      return ruling;
+    }
+  }
+  ruling.acceptable = true;
+  ruling.why = sentence("check residual %.4g to %.4g mm", 1e3 * ruling.check_before,
+                        1e3 * ruling.check_after);
+  if (sigma.parameter)
+    ruling.why += sentence("; surest change: %s by %.3g m%s (%.0f sigma)",
+                           sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
+                           std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
+                           std::abs(sigma.change) / sigma.parameter->sigma);
+  return ruling;
+}
+
+int parameters_identified(const Solution& solution) {
+  return static_cast<int>(
+      std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
+}
+
+int rows_put_aside(const Solution& solution) {
+  return static_cast<int>(std::ranges::count(solution.rejected, false, &Outlier::check));
+}
+
+CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p) {
+  CheckRuling ruling;
+  const Figures& before = then.residual.check;
+  const Figures& after = now.residual.check;
+  ruling.rms = after.rms_after;
+  ruling.expected = before.rms_without_rejected;
+  if (before.rows == 0 || after.rows == 0 || !(ruling.expected > 0) || !std::isfinite(ruling.rms)) {
+    ruling.why = "nothing to compare with";
+    return ruling;
+  }
+  ruling.p_value = f_exceeds(std::pow(ruling.rms / ruling.expected, 2), after.rows, before.rows);
+  ruling.explained = ruling.p_value >= least_p;
+  ruling.why = sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s",
+                        after.rows, 1e3 * ruling.rms, 1e3 * ruling.expected, ruling.p_value,
+                        ruling.explained ? "the active model explains them"
+                                         : "the active model does not explain them");
+  return ruling;
+}
+
+}  // namespace selfcal

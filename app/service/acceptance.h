@@ -1,0 +1,48 @@
+// What becomes of a result: a candidate is applied, shown to a person, or rejected with its reason.
+#pragma once
+
+#include <string>
+
+#include "app/service/config.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+struct AcceptanceDecision {
+  bool acceptable = false;
+  Answer answer = Answer::not_determined;  ///< the verdict's
+  std::string why;
+  double check_before = 0;  ///< m, rms of the check rows with the active parameters
+  double check_after = 0;   ///< m, with the candidate's
+};
+
+/// Judges a candidate, identified from rows starting at `active`, against the active parameters;
+/// `unchanged` is what the same rows say with every parameter of the robot held at them. It is
+/// acceptable when its verdict is improved, its check residual (rows that either finds beyond the
+/// noise left out of both) is better by the margin, and no parameter changes by more than its
+/// limit.
+AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
+                                  const Solution& candidate, const Solution& unchanged);
+
+/// Parameters that the rows determine.
+int parameters_identified(const Solution& solution);
+/// Rows put aside, from which nothing was identified. Outliers among the check rows are named in
+/// the result, but count all the same.
+int rows_put_aside(const Solution& solution);
+
+/// Whether the active model explains the touches of a quick check.
+struct CheckRuling {
+  bool explained = false;
+  double p_value = 0;
+  double rms = 0;       ///< m, of the new touches
+  double expected = 0;  ///< m, of the rows that judged the session behind the active parameters
+  std::string why;
+};
+
+/// `then` is the session behind the active parameters, `now` the same fit rows with the new touches
+/// as check rows; both with every parameter of the robot held. The mean squares of the new touches
+/// and of the session's check rows have the same expectation as long as nothing has changed: their
+/// ratio is compared with F.
+CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p);
+
+}  // namespace selfcal

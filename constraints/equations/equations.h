@@ -1,0 +1,199 @@
+// The system of equations that a data set gives: from rows and a state to R of [W | Delta Y].
+//
+// Columns of the system: every parameter of the robot, then the own freedoms of each set, then (on
+// demand, beside the unknowns) the six motions of the world and the known lengths, then Delta Y.
+// The unknowns of a group of rows (a shared point) are eliminated as its rows pass by Householder
+// reflections on the group's columns, so that the system stays small however many groups there are.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+class StreamingQr;
+
+/// What is estimated: the robot's parameters, each set's own values, each set's group values
+/// (one column a group).
+struct State {
+  Eigen::VectorXd xi;
+  std::vector<Eigen::VectorXd> nuisance;
+  std::vector<Eigen::MatrixXd> groups;
+};
+
+/// 1 sigma of one scalar residual of a set, by quantity (m, rad).
+struct Scale {
+  double length = 1, angle = 1;
+  double of(Quantity quantity) const { return quantity == Quantity::angle ? angle : length; }
+};
+
+/// Residual of one row: the length of its length and angle parts and the scalars of each. Infinite
+/// where the robot, as it is, cannot take the row's configuration.
+struct RowResidual {
+  int row = 0, set = 0;
+  double length = 0, angle = 0;  ///< norms (m, rad)
+  int lengths = 0, angles = 0;   ///< counts of scalars
+  double factor = 1;             ///< of its noise over its set's
+  std::array<double, kMostEquations>
+      scalars{};  ///< lengths + angles entries, in the method's order
+  /// Distance from zero in sigmas of the set's noise and the row's factor.
+  double sigmas(const Scale& scale) const;
+};
+
+/// Weights of the rows.
+struct Weighting {
+  std::vector<Scale> scale;     ///< by set
+  std::vector<char> outlier;    ///< by row of the data set; 1 weighs nothing
+  double soft_quantile = 0.99;  ///< rows beyond this chi quantile are weighed down (Huber)
+  bool structural = false;  ///< links and equations between nuisance parameters have a sigma of 1
+};
+
+enum class Use { fit, check, align };
+
+/// A row whose configuration the robot cannot take, as far as its maker's figures go: no equation.
+struct OpenRow {
+  int row = 0, set = 0;
+  std::string why;
+};
+
+/// The factor of one cluster of groups: enough to get its unknowns back from the global step.
+struct ClusterFactor {
+  Eigen::MatrixXd rows;  ///< local freedoms x [local | global | Delta Y], upper triangular in local
+};
+
+struct Linearised {
+  Eigen::MatrixXd R;  ///< [W | Delta Y], whitened and weighed, square upper triangular
+  double cost = 0;    ///< sum of the rows' Huber costs and of the squares of the own equations
+  int equations = 0;  ///< scalars that took part
+  std::vector<RowResidual> residuals;  ///< of every row of the use, put aside or not
+  std::vector<ClusterFactor> clusters;
+};
+
+/// Every equation of some rows, for data sets small enough to hold them: whitened, not weighed.
+struct DenseEquations {
+  Eigen::MatrixXd W;      ///< equations x [columns() | freedoms of the groups, set by set]
+  Eigen::VectorXd y;      ///< Delta Y
+  Eigen::MatrixXd shift;  ///< equations x 3, derivative to a shift of the world (1/sigma per m)
+  std::vector<int> row;   ///< of the data set, by equation; -1 of an equation that no row carries
+};
+
+/// Rows of one set in the order of evaluation, and how its groups hang together.
+struct SetPlan {
+  struct Item {
+    int row, previous;  ///< previous row of the group for paired methods, else -1
+  };
+  struct Cluster {
+    int first, last;          ///< items, one past the end
+    std::vector<int> groups;  ///< group indices; empty when the method has no group unknowns
+    std::vector<GroupDistance> links;
+    /// Position of `group` in groups, which are in ascending order.
+    int place(int group) const {
+      return static_cast<int>(std::lower_bound(groups.begin(), groups.end(), group) -
+                              groups.begin());
+    }
+  };
+  std::vector<Item> items;
+  std::vector<Cluster> clusters;
+};
+
+/// The equations of the rows of one use. `fit`: rows that identify. `align`: `check` rows of the
+/// sets and groups that have no `fit` rows. `check`: all rows that judge.
+class Equations {
+ public:
+  Equations(const Robot& robot, const DataSet& data, Use use);
+
+  const Robot& robot() const { return robot_; }
+  const DataSet& data() const { return data_; }
+  const SetPlan& plan(int set) const { return plans_[set]; }
+  /// Rows of the use that are left out.
+  const std::vector<OpenRow>& open_rows() const { return open_rows_; }
+  /// Whether the robot can take the configurations of up to kLanes rows with parameters `xi`.
+  Closure closure_at(const std::vector<int>& rows, Body body, const Eigen::VectorXd& xi) const;
+
+  int robot_columns() const { return static_cast<int>(robot_.parameters().size()); }
+  int nuisance_columns() const { return nuisance_end_ - robot_columns(); }
+  /// First column of the own freedoms of `set`, and their count (0 for a set without rows here).
+  int own_at(int set) const { return nuisance_at_[set]; }
+  int tangent_dimension(int set) const { return nuisance_count_[set]; }
+  /// Columns before Delta Y, without those beside the unknowns.
+  int columns() const { return nuisance_end_; }
+  /// Lengths that the entries of sets with rows here give (Method::known_lengths), and the place of
+  /// the first one of `set` among their columns.
+  int known_lengths() const { return known_end_; }
+  int known_at(int set) const { return known_at_[set]; }
+  int group_freedoms(int set) const;
+  /// Freedoms of all nuisance parameters, those of groups included.
+  int nuisance_dimensions() const;
+
+  /// Own and group values that fit the rows best with parameters xi; other entries of `state` stay.
+  void start(State& state) const;
+
+  /// `beside`: with the columns beside the unknowns. That of a known length is what the rows say
+  /// when the length were shorter than its entry says, over their sigma.
+  Linearised linearise(const State& state, const Weighting& weighting, bool beside = false) const;
+  /// R of [W | -r_vv] at `state`, r_vv the second derivative of the rows along `step` (which gives
+  /// the unweighed rows' second difference over a tenth of the step); `at` is the linearisation at
+  /// `state`.
+  Eigen::MatrixXd geodesic_acceleration(const State& state, const Weighting& weighting,
+                                        const Linearised& at, const Eigen::VectorXd& step) const;
+  std::vector<RowResidual> residuals(const State& state) const;
+  /// `scale` by set. Rows that are put aside in `outlier` (by row of the data set) are left out.
+  DenseEquations dense(const State& state, const std::vector<Scale>& scale,
+                       const std::vector<char>& outlier) const;
+
+  /// The state after a step of the global columns (columns() entries).
+  State stepped(const State& state, const Linearised& at, const Eigen::VectorXd& step) const;
+
+ private:
+  struct Block;
+  struct GeodesicStep;
+  class Gatherer;
+
+  void make_plan(int set, Use use);
+  /// By item, why the robot cannot take it with its maker's figures; empty where it can.
+  std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;
+  void evaluate(int set, int first, int count, const State& state, Block& block,
+                bool jacobian) const;
+  /// Takes the vectors of a method that has such in the axes of the first moving link.
+  void into_axes(Block& block) const;
+  void chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const;
+  /// Writes the columns beside the unknowns.
+  void beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const;
+  void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
+             Linearised& out) const;
+  void gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
+              const Eigen::MatrixXd& W, Gatherer& gatherer) const;
+  /// Writes the derivatives of a link's residual over `sigma` to its groups, whose columns begin at
+  /// `at_a` and `at_b`, and returns it.
+  double link_row(int set, const GroupDistance& link, double sigma, const State& state,
+                  Eigen::Index at_a, Eigen::Index at_b,
+                  Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
+  void gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
+                    const Weighting& weighting, bool bent, Gatherer& gatherer,
+                    Linearised& out) const;
+  Linearised sweep(const State& state, const Weighting& weighting, bool beside,
+                   const GeodesicStep* geodesic_acceleration) const;
+  void sweep_set(int set, const State& state, const Weighting& weighting, bool beside,
+                 const GeodesicStep* geodesic_acceleration, StreamingQr& qr, Gatherer& gatherer,
+                 Linearised& out) const;
+  void bend_right_side(int set, int first, int count, const GeodesicStep& geodesic_acceleration,
+                       Eigen::MatrixXd& W) const;
+  void own_equations(const State& state, bool structural, Linearised& out,
+                     Eigen::MatrixXd& rows) const;
+
+  const Robot& robot_;
+  const DataSet& data_;
+  bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
+  std::vector<SetPlan> plans_;
+  std::vector<OpenRow> open_rows_;
+  std::vector<int> nuisance_at_, nuisance_count_, known_at_;
+  int nuisance_end_ = 0, known_end_ = 0;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,160 @@
+// Which rows of a data set take part, in which order, and which groups share unknowns.
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "constraints/equations/equations.h"
+
+namespace selfcal {
+namespace {
+
+using Item = SetPlan::Item;
+
+/// Rows of one set in file order, with their predecessors in the group for paired methods.
+std::vector<Item> all_items(const DataSet& data, int set) {
+  const bool paired = data.sets[set].method->paired();
+  std::vector<Item> items;
+  std::map<int, int> last;  // group -> row
+  for (int row = 0; row < data.rows.rows(); ++row) {
+    if (data.rows.set[row] != set) continue;
+    if (!paired) {
+      items.push_back({row, -1});
+      continue;
+    }
+    const auto before = last.find(data.rows.group[row]);
+    if (before != last.end()) items.push_back({row, before->second});
+    last[data.rows.group[row]] = row;
+  }
+  return items;
+}
+
+bool is_check(const DataSet& data, const Item& item) {
+  return data.rows.check[item.row] || (item.previous >= 0 && data.rows.check[item.previous]);
+}
+
+/// Groups of the set that have at least one `fit` item.
+std::vector<char> fitted_groups(const DataSet& data, int set, const std::vector<Item>& items) {
+  std::vector<char> fitted(data.sets[set].groups.size(), 0);
+  for (const Item& item : items)
+    if (!is_check(data, item) && data.rows.group[item.row] >= 0)
+      fitted[data.rows.group[item.row]] = 1;
+  return fitted;
+}
+
+/// A link may name a group that has no row at all.
+bool has_rows(const std::vector<char>& fitted, int group) {
+  return group < static_cast<int>(fitted.size()) && fitted[group];
+}
+
+/// Smallest index reachable from each group through links.
+std::vector<int> components(int groups, const std::vector<GroupDistance>& links) {
+  std::vector<int> root(groups);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int g) {
+    while (root[g] != g) g = root[g] = root[root[g]];
+    return g;
+  };
+  for (const GroupDistance& link : links) {
+    const int a = find(link.a), b = find(link.b);
+    root[std::max(a, b)] = std::min(a, b);
+  }
+  for (int g = 0; g < groups; ++g) root[g] = find(g);
+  return root;
+}
+
+void make_clusters(const DataSet& data, const std::vector<GroupDistance>& links, SetPlan& plan,
+                   int groups) {
+  const std::vector<int> root = components(groups, links);
+  const auto group = [&](const Item& item) { return data.rows.group[item.row]; };
+  std::stable_sort(plan.items.begin(), plan.items.end(), [&](const Item& a, const Item& b) {
+    return std::pair(root[group(a)], group(a)) < std::pair(root[group(b)], group(b));
+  });
+  std::map<int, int> cluster_of;  // root -> cluster
+  for (int i = 0; i < static_cast<int>(plan.items.size()); ++i) {
+    const int g = group(plan.items[i]);
+    if (plan.clusters.empty() || root[plan.clusters.back().groups.front()] != root[g]) {
+      cluster_of[root[g]] = static_cast<int>(plan.clusters.size());
+      plan.clusters.push_back({i, i, {}, {}});
+    }
+    SetPlan::Cluster& cluster = plan.clusters.back();
+    cluster.last = i + 1;
+    if (cluster.groups.empty() || cluster.groups.back() != g) cluster.groups.push_back(g);
+  }
+  for (const GroupDistance& link : links)
+    plan.clusters[cluster_of.at(root[link.a])].links.push_back(link);
+}
+
+}  // namespace
+
+Closure Equations::closure_at(const std::vector<int>& rows, Body body,
+                              const Eigen::VectorXd& xi) const {
+  ConfigurationBlock block{Eigen::ArrayXXd(kLanes, data_.rows.q.cols()),
+                           static_cast<int>(rows.size())};
+  for (size_t lane = 0; lane < kLanes; ++lane)
+    block.q.row(static_cast<Eigen::Index>(lane)) =
+        data_.rows.q.row(rows[std::min(lane, rows.size() - 1)]).array();
+  if (conditions_matter_) {
+    std::vector<int> lanes(rows);
+    lanes.resize(kLanes, rows.back());
+    block.conditions = conditions(data_.rows, lanes);
+  }
+  Locations X;
+  return robot_.locate(block, xi, body, X, nullptr);
+}
+
+std::vector<std::string> Equations::why_open(int set,
+                                             const std::vector<SetPlan::Item>& items) const {
+  std::vector<std::string> why(items.size());
+  const Body body = data_.sets[set].method->body();
+  const Eigen::VectorXd xi = nominal_values(robot_);
+  for (size_t first = 0; robot_.has_loops() && first < items.size(); first += kLanes) {
+    const size_t count = std::min<size_t>(kLanes, items.size() - first);
+    std::vector<int> now, before;
+    for (size_t i = first; i < first + count; ++i) {
+      now.push_back(items[i].row);
+      before.push_back(items[i].previous < 0 ? items[i].row : items[i].previous);
+    }
+    Closure closure = closure_at(now, body, xi);
+    closure.add(closure_at(before, body, xi));
+    for (size_t lane = 0; lane < count; ++lane)
+      if (!closure.closes(static_cast<int>(lane))) why[first + lane] = closure.why[lane];
+  }
+  return why;
+}
+
+void Equations::make_plan(int set, Use use) {
+  const Method& method = *data_.sets[set].method;
+  SetPlan& plan = plans_[set];
+  const std::vector<Item> all = all_items(data_, set);
+  const std::vector<std::string> open = why_open(set, all);
+  std::vector<Item> items;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (open[i].empty()) items.push_back(all[i]);
+  const std::vector<char> fitted = fitted_groups(data_, set, items);
+  const bool any_fit = std::any_of(items.begin(), items.end(),
+                                   [&](const Item& item) { return !is_check(data_, item); });
+  const bool grouped = method.group_freedom() > 0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const Item& item = all[i];
+    const bool check = is_check(data_, item);
+    bool take = use == Use::fit ? !check : check;
+    if (use == Use::align)
+      take = check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
+    if (take && open[i].empty())
+      plan.items.push_back(item);
+    else if (take)
+      open_rows_.push_back({item.row, set, open[i]});
+  }
+  if (plan.items.empty()) return;
+  if (!grouped || use == Use::check) {
+    plan.clusters.push_back({0, static_cast<int>(plan.items.size()), {}, {}});
+    return;
+  }
+  std::vector<GroupDistance> links;
+  if (use == Use::fit)
+    for (const GroupDistance& link : method.links())
+      if (has_rows(fitted, link.a) && has_rows(fitted, link.b)) links.push_back(link);
+  make_clusters(data_, links, plan, static_cast<int>(fitted.size()));
+}
+
+}  // namespace selfcal

@@ -1,0 +1,205 @@
+// What is free, how far the nominal robot is off, the fit and its doubts, the gauge, the priors'
+// own test.
+#include "constraints/estimation/adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "constraints/identifiability/gauge.h"
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kOtherStarts = 4;
+constexpr double kClearlyBetter = 6;  // of -2 log posterior
+constexpr double kPriorTest = 0.01;   // probability under which the priors are widened
+
+class Adjustment {
+ public:
+  Adjustment(const Equations& equations, const Options& options, const Progress& progress)
+      : robot_(equations.robot()), equations_(equations), options_(options), progress_(progress) {
+    adjusted_.prior.use = options.priors;
+    adjusted_.prior.centre = nominal_values(robot_);
+    adjusted_.prior.sigma.resize(adjusted_.prior.centre.size());
+    for (Eigen::Index i = 0; i < adjusted_.prior.sigma.size(); ++i)
+      adjusted_.prior.sigma[i] = robot_.parameters()[i].tolerance;
+    const auto effects = static_cast<Eigen::Index>(options.effect_sigma.size());
+    adjusted_.prior.sigma.tail(effects) =
+        Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
+    choose_free();
+  }
+
+  Adjusted run() {
+    State start{starting_values(), {}, {}};
+    equations_.start(start);
+    adjusted_.before = fit_placed(start);
+    start_ = start;
+    hold_scale(quietest() * adjusted_.before.at.R, adjusted_.before.state.xi);
+    adjusted_.before.at.clusters.clear();
+    adjusted_.fitted = fit_all();
+    doubt();
+    if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
+    widen_priors();
+    return std::move(adjusted_);
+  }
+
+ private:
+  const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
+
+  void choose_free() {
+    for (const Parameter& p : parameters())
+      adjusted_.prior.free.push_back(p.free || (options_.gears && p.part == Part::gear));
+    for (const std::string& name : options_.free)
+      for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 1;
+    for (const std::string& name : options_.fix)
+      for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 0;
+    adjusted_.candidate = adjusted_.prior.free;
+    for (const Note& note : held_base(robot_, equations_)) hold(note);
+    for (const Note& note : held_orientation(robot_, equations_)) hold(note);
+  }
+
+  void hold(const Note& note) {
+    const int i = find_parameter(robot_, note.parameter);
+    if (!adjusted_.prior.free[i]) return;
+    adjusted_.prior.free[i] = 0;
+    adjusted_.gauge.push_back(note);
+  }
+
+  /// Maker's figures for what is free, the model's own values for the rest.
+  Eigen::VectorXd starting_values() const {
+    Eigen::VectorXd xi = values(robot_);
+    for (size_t i = 0; i < adjusted_.prior.free.size(); ++i)
+      if (adjusted_.prior.free[i]) xi[static_cast<Eigen::Index>(i)] = adjusted_.prior.centre[i];
+    return xi;
+  }
+
+  Fit run_fit(const State& start, const Prior& prior, std::string_view stage) {
+    FitRule rule;
+    rule.most_iterations = options_.most_iterations;
+    rule.most_rejected = options_.most_rejected;
+    return fit(equations_, start, prior, rule, [&](int iteration) {
+      if (progress_) progress_(stage, 1 - std::exp(-iteration / 8.0));
+    });
+  }
+
+  /// Base, tool and the sets' nuisance parameters alone: the robot as its maker says.
+  Fit fit_placed(const State& start) {
+    Prior prior = adjusted_.prior;
+    for (size_t i = 0; i < parameters().size(); ++i)
+      prior.free[i] = adjusted_.prior.free[i] && is_placed(parameters()[i]);
+    return run_fit(start, prior, "placing the nominal robot");
+  }
+
+  Fit fit_all() { return run_fit(start_, adjusted_.prior, "identifying"); }
+
+  /// A fit that strains the maker's tolerances, or does not converge, may sit in a wrong minimum:
+  /// it is tried from the placed robot and from robots drawn from the tolerances, and the most
+  /// probable one is kept.
+  void doubt() {
+    const bool strained = widening(moved()) > 1;
+    if (!options_.priors || (adjusted_.fitted.converged && !strained)) return;
+    std::mt19937_64 random(options_.seed);
+    std::normal_distribution<double> normal;
+    State best_start = start_;
+    for (int attempt = 0; attempt < kOtherStarts; ++attempt) {
+      State other = attempt == 0 ? adjusted_.before.state : start_;
+      for (size_t i = 0; attempt > 0 && i < adjusted_.prior.free.size(); ++i)
+        if (adjusted_.prior.free[i])
+          other.xi[static_cast<Eigen::Index>(i)] +=
+              (parameters()[i].part == Part::effect ? 0 : parameters()[i].tolerance) *
+              normal(random);
+      if (attempt > 0) equations_.start(other);
+      const Fit tried = run_fit(other, adjusted_.prior, "identifying from another start");
+      const bool better = tried.objective < adjusted_.fitted.objective - kClearlyBetter;
+      if (!tried.converged || (adjusted_.fitted.converged && !better)) continue;
+      adjusted_.fitted = tried;
+      best_start = other;
+    }
+    start_ = best_start;
+  }
+
+  /// How much more the rows could weigh than in the placed fit, were their noise the least that it
+  /// can be.
+  double quietest() const {
+    double most = 1;
+    for (size_t s = 0; s < equations_.data().sets.size(); ++s) {
+      if (equations_.plan(static_cast<int>(s)).items.empty()) continue;
+      const Set& set = equations_.data().sets[s];
+      const Scale& used = adjusted_.before.noise.used[s];
+      most = std::max(most, used.length / std::max(set.noise, kLeastNoise));
+      if (set.method->has_angles())
+        most = std::max(most, used.angle / std::max(set.noise_angle, kLeastNoise));
+    }
+    return most;
+  }
+
+  /// Holds a length where R says that the scale is free. Asked before the first fit, too: a robot
+  /// that may shrink takes many iterations to do so, the more the more rows there are.
+  bool hold_scale(const Eigen::MatrixXd& R, const Eigen::VectorXd& xi) {
+    const std::optional<int> length = held_scale(equations_, R, xi, adjusted_.prior.free);
+    if (!length) return false;
+    adjusted_.scale = *length;
+    start_.xi[*length] = adjusted_.prior.centre[*length];
+    hold({parameters()[*length].name,
+          "the touches leave the robot's scale free: its longest link length is held"});
+    return true;
+  }
+
+  Chi2 moved() const {
+    return prior_chi2(robot_, adjusted_.prior, adjusted_.fitted.state.xi,
+                      adjusted_.fitted.covariance.diagonal());
+  }
+
+  /// One factor for the robot's own priors when their chi-square says that they are too narrow: the
+  /// one that makes it one a degree of freedom. Not repeated: touches of a small patch would run
+  /// away.
+  void widen_priors() {
+    adjusted_.chi2 = moved();
+    if (options_.priors) adjusted_.widening = widening(adjusted_.chi2);
+    adjusted_.priors_fail = adjusted_.widening > 1;
+    if (!adjusted_.priors_fail) return;
+    for (size_t i = 0; i < parameters().size(); ++i)
+      if (is_own(parameters()[i]))
+        adjusted_.prior.sigma[i] = adjusted_.widening * parameters()[i].tolerance;
+    adjusted_.fitted =
+        run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
+  }
+
+  const Robot& robot_;
+  const Equations& equations_;
+  const Options& options_;
+  const Progress& progress_;
+  Adjusted adjusted_;
+  State start_;
+};
+
+}  // namespace
+
+bool is_placed(const Parameter& p) { return p.part == Part::base || p.part == Part::tool; }
+bool is_own(const Parameter& p) { return p.part == Part::link || p.part == Part::gear; }
+
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance) {
+  Chi2 chi2;
+  for (Eigen::Index i = 0; i < xi.size(); ++i) {
+    const Parameter& p = robot.parameters()[static_cast<size_t>(i)];
+    if (!prior.free[i] || !is_own(p)) continue;
+    chi2.value += std::pow((xi[i] - p.nominal) / p.tolerance, 2);
+    chi2.freedom += 1 - variance[i] / std::pow(prior.sigma[i], 2);
+  }
+  return chi2;
+}
+
+double widening(const Chi2& chi2) {
+  if (chi2.freedom < 0.5 || !(chi_square_exceeds(chi2.value, chi2.freedom) < kPriorTest)) return 1;
+  return std::sqrt(chi2.value / chi2.freedom);
+}
+
+Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress) {
+  return Adjustment(equations, options, progress).run();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,47 @@
+// The fits of an identification in their order: the placed nominal robot, the free one, again from
+// other starts when in doubt, with a length held when the scale is free, with wider priors when
+// these fail.
+#pragma once
+
+#include <vector>
+
+#include "constraints/estimation/fit.h"
+#include "constraints/estimation/options.h"
+#include "constraints/progress.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+/// Squares of the moves of the robot's own parameters over the maker's tolerances, and how many of
+/// these directions the rows determine.
+struct Chi2 {
+  double value = 0, freedom = 0;
+};
+
+struct Adjusted {
+  Fit before;  ///< base, tool and nuisance parameters alone, the robot as its maker says
+  Fit fitted;
+  Prior prior;                  ///< as used in `fitted`
+  std::vector<char> candidate;  ///< by parameter: not fixed by the user or by default
+  std::vector<Note> gauge;      ///< parameters held, and why
+  int scale = -1;               ///< the one of them that is held for the scale
+  Chi2 chi2;                    ///< with the maker's tolerances
+  bool priors_fail = false;     ///< chi2 is beyond 99 %
+  double widening = 1;          ///< common factor on the tolerances of the links and gears
+};
+
+/// True for parameters of base and tool frames, whose priors say where things were put up.
+bool is_placed(const Parameter& p);
+/// True for parameters of the links and gears, which the maker gives tolerances for.
+bool is_own(const Parameter& p);
+
+/// `variance` of the parameters is that of their posterior with `prior`.
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance);
+/// The factor on the tolerances that makes it one a degree of freedom where it is beyond 99 %; 1
+/// where it is not.
+double widening(const Chi2& chi2);
+
+Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress);
+
+}  // namespace selfcal

@@ -1,0 +1,288 @@
+// Iterative pseudo-inverse with damping behind it (Khalil and Dombre 11.31, 11.32, 11.4.3).
+//
+// Each iteration solves min |R_f s - z|^2 + |(xi + s - centre) / sigma|^2 + lambda |D s|^2 by a QR
+// of the stacked rows, lambda zero unless a step failed to lower the cost.
+#include "constraints/estimation/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "kinematics/description.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kOwnSigma = 100;
+constexpr double kOwnScale = 50e-3;  ///< m or rad, of own freedoms where a step must be short
+constexpr int kRegroupings = 20;
+constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
+constexpr double kRounding = 1e-13;  ///< a step this short (m or rad) is nothing
+constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
+
+/// What the noise is estimated from; it only goes forward.
+enum class NoiseStage {
+  robust,    ///< medians of all rows, one noise for all sets of a kind: the geometry still moves
+  pooled,    ///< far rows put aside, one noise for all sets of a kind
+  nuisance,  ///< far rows put aside, each set's own, which is then kept
+};
+
+class Iteration {
+ public:
+  Iteration(const Equations& equations, const State& start, const Prior& prior, const FitRule& rule)
+      : equations_(equations),
+        prior_(prior),
+        rule_(rule),
+        columns_(free_columns(equations, prior)) {
+    fit_.state = start;
+    const auto residuals = equations.residuals(start);
+    fit_.noise = estimate_noise(equations, residuals, noise_rule(stage_, 0));
+    relinearise();
+  }
+
+  Fit run(const OnIteration& on_iteration) {
+    while (!done_ && fit_.iterations < rule_.most_iterations) {
+      iterate();
+      if (on_iteration) on_iteration(fit_.iterations);
+    }
+    if (!done_)
+      fit_.stop_reason =
+          "no convergence within " + std::to_string(rule_.most_iterations) + " iterations";
+    fit_.covariance = covariance();
+    fit_.objective = cost_;
+    for (const RowResidual& r : fit_.at.residuals)
+      if (!fit_.noise.outlier[r.row])
+        fit_.objective += 2 * r.lengths * std::log(fit_.noise.used[r.set].length) +
+                          2 * r.angles * std::log(fit_.noise.used[r.set].angle);
+    NoiseRule told = noise_rule(stage_, freedom(fit_.covariance));
+    told.pool = false;  // each set's own
+    fit_.noise.estimated = estimate_noise(equations_, fit_.at.residuals, told).estimated;
+    return std::move(fit_);
+  }
+
+ private:
+  NoiseRule noise_rule(NoiseStage stage, double freedom) const {
+    NoiseRule rule;
+    rule.global_freedom = freedom;
+    rule.most_rejected = rule_.most_rejected;
+    rule.reject = stage != NoiseStage::robust;
+    rule.pool = stage != NoiseStage::nuisance;
+    return rule;
+  }
+
+  Weighting weighting() const { return {fit_.noise.used, fit_.noise.outlier}; }
+
+  void relinearise() {
+    fit_.at = equations_.linearise(fit_.state, weighting());
+    cost_ = fit_.at.cost + prior_cost(fit_.state);
+  }
+
+  double prior_cost(const State& state) const {
+    double cost = 0;
+    for (const int c : columns_)
+      if (c < equations_.robot_columns() && prior_.use)
+        cost += std::pow((state.xi[c] - prior_.centre[c]) / prior_.sigma[c], 2);
+    return cost;
+  }
+
+  /// Triangular [R | z] of the free columns of `R` and of the priors' rows; without `pull` the
+  /// priors' right side is zero.
+  Eigen::MatrixXd triangle(const Eigen::MatrixXd& R, bool pull) const {
+    const Eigen::Index n = static_cast<Eigen::Index>(columns_.size()), K = R.rows();
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(K + n, n + 1);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int c = columns_[i];
+      A.col(i).head(K) = R.col(c);
+      A(K + i, i) = prior_weight(equations_, prior_, c);
+      if (pull && c < equations_.robot_columns())
+        A(K + i, n) = A(K + i, i) * (prior_.centre[c] - fit_.state.xi[c]);
+    }
+    A.col(n).head(K) = R.col(K - 1);
+    triangularise(A);
+    return A.topRows(n + 1);
+  }
+
+  /// Least-squares step of a triangle, damped by lambda; spread to all columns.
+  Eigen::VectorXd step(const Eigen::MatrixXd& of, double lambda) const {
+    const Eigen::Index n = of.cols() - 1;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n + 1, n + 1);
+    A.topRows(n + 1) = of;
+    if (lambda > 0) {
+      A.block(n + 1, 0, n, n).diagonal() = std::sqrt(lambda) * damping();
+      triangularise(A);
+    }
+    const Eigen::VectorXd s =
+        A.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(A.col(n).head(n));
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(equations_.columns());
+    for (Eigen::Index i = 0; i < n; ++i) all[columns_[i]] = s[i];
+    return all;
+  }
+
+  /// `v` with half its geodesic acceleration (Transtrum and Sethna), which bends the step along a
+  /// curved valley of the residual; `v` alone where that is no small correction and so says little.
+  Eigen::VectorXd bent(const Eigen::VectorXd& v, double lambda) const {
+    const Eigen::MatrixXd R = equations_.geodesic_acceleration(fit_.state, weighting(), fit_.at, v);
+    const Eigen::VectorXd a = step(triangle(R, false), lambda);
+    return prior_length(a) < 0.75 * prior_length(v) ? Eigen::VectorXd(v + a / 2) : v;
+  }
+
+  /// Length of a step in units of the damping.
+  double prior_length(const Eigen::VectorXd& s) const {
+    return damping().cwiseProduct(s(columns_)).norm();
+  }
+
+  /// Scale of the damping: steps are held short against the priors, not against what the rows say,
+  /// so that a long move along a curved valley of the residual stays possible.
+  Eigen::VectorXd damping() const {
+    Eigen::VectorXd D(static_cast<Eigen::Index>(columns_.size()));
+    for (Eigen::Index i = 0; i < D.size(); ++i)
+      D[i] =
+          columns_[i] < equations_.robot_columns() ? 1 / prior_.sigma[columns_[i]] : 1 / kOwnScale;
+    return D;
+  }
+
+  /// Length of a step in the posterior sigmas of a triangle.
+  double whitened(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& step) const {
+    const Eigen::Index n = triangle.cols() - 1;
+    Eigen::VectorXd s(n);
+    for (Eigen::Index i = 0; i < n; ++i) s[i] = step[columns_[i]];
+    return (triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>() * s).norm();
+  }
+
+  void iterate() {
+    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
+    ++fit_.iterations;
+    const double free = std::sqrt(std::max<double>(1, static_cast<double>(columns_.size())));
+    // How far the minimum is: the step without damping, which a short damped one does not tell.
+    const Eigen::VectorXd whole = step(Rz, 0);
+    if (!whole.allFinite()) return stop(false, "the system of equations is singular");
+    const double distance = whitened(Rz, whole);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const Eigen::VectorXd s = lambda_ > 0 ? bent(step(Rz, lambda_), lambda_) : whole;
+      const State trial = equations_.stepped(fit_.state, fit_.at, s);
+      Linearised next = equations_.linearise(trial, weighting());
+      const double cost = next.cost + prior_cost(trial);
+      if (std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9) {
+        fit_.state = trial;
+        fit_.at = std::move(next);
+        cost_ = cost;
+        lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
+        // A tenth of a sigma a parameter left: the geometry has settled for these weights.
+        if (distance < 0.1 * free) settle(arrival(distance / free, whole));
+        return;
+      }
+      if (distance < kNear * free)
+        return settle("no step lowers the residual, and the minimum is within " +
+                      format_number(kNear) + " sigma");
+      lambda_ = lambda_ == 0 ? 1e-2 : lambda_ * 10;
+    }
+    stop(false, "no step lowers the residual");
+  }
+
+  /// Why a step of `distance` sigmas a parameter is the last one; nothing when it is not.
+  std::optional<std::string> arrival(double distance, const Eigen::VectorXd& step) const {
+    if (distance < rule_.step_tolerance)
+      return "step below " + format_number(rule_.step_tolerance) + " sigma";
+    if (step.norm() < kRounding) return "step below " + format_number(kRounding) + " m or rad";
+    return std::nullopt;
+  }
+
+  /// Re-estimates noise and rows put aside: one noise for all sets of a kind until the residuals
+  /// agree with it, then each set's own, once; then the noise is kept. Iterated further, the set
+  /// that happens to fit best would take the weight of all others. Ends when nothing changes and
+  /// the iteration has arrived, for that reason.
+  void settle(const std::optional<std::string>& arrived) {
+    const double freedoms = freedom(covariance());
+    const NoiseStage before = stage_;
+    if (before == NoiseStage::robust)
+      stage_ = NoiseStage::pooled;
+    else if (agrees(freedoms))
+      stage_ = NoiseStage::nuisance;
+    const Noise noise = estimate_noise(equations_, fit_.at.residuals, noise_rule(stage_, freedoms));
+    const bool keep = before == NoiseStage::nuisance;
+    const bool same_rows = noise.outlier == fit_.noise.outlier;
+    const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
+    if (arrived && same_rows && same_noise) return stop(true, *arrived);
+    if (keep && (same_rows || ++regroupings_ > kRegroupings)) return;
+    if (!keep) fit_.noise.used = noise.used;
+    fit_.noise.outlier = noise.outlier;
+    fit_.noise.at_bound = noise.at_bound;
+    relinearise();
+  }
+
+  /// The residuals are as large as the noise that they are weighed with.
+  bool agrees(double freedoms) const {
+    const double ratio = fit_.at.cost / std::max(fit_.at.equations - freedoms, 1.0);
+    return ratio > 0.8 && ratio < 1.25;
+  }
+
+  /// Largest relative change of a set's noise.
+  double change(const Noise& noise) const {
+    double largest = 0;
+    for (size_t s = 0; s < noise.used.size(); ++s) {
+      largest = std::max(largest, std::abs(noise.used[s].length / fit_.noise.used[s].length - 1));
+      largest = std::max(largest, std::abs(noise.used[s].angle / fit_.noise.used[s].angle - 1));
+    }
+    return largest;
+  }
+
+  void stop(bool converged, std::string reason) {
+    done_ = true;
+    fit_.converged = converged;
+    fit_.stop_reason = std::move(reason);
+  }
+
+  /// Freedoms that the rows determine: own ones, and of each parameter the share that is not the
+  /// prior's.
+  double freedom(const Eigen::MatrixXd& covariance) const {
+    double sum = equations_.nuisance_columns();
+    for (const int c : columns_)
+      if (c < equations_.robot_columns())
+        sum += 1 - covariance(c, c) * std::pow(prior_weight(equations_, prior_, c), 2);
+    return sum;
+  }
+
+  /// (R^T R)^-1 (11.35, whitened), spread to all columns.
+  Eigen::MatrixXd covariance() const {
+    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
+    const Eigen::Index n = Rz.cols() - 1;
+    const Eigen::MatrixXd inverse = inverse_of_triangle(Rz.topLeftCorner(n, n));
+    const Eigen::MatrixXd C = inverse * inverse.transpose();
+    Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(equations_.columns(), equations_.columns());
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) spread(columns_[i], columns_[j]) = C(i, j);
+    return spread;
+  }
+
+  const Equations& equations_;
+  const Prior& prior_;
+  const FitRule& rule_;
+  std::vector<int> columns_;
+  Fit fit_;
+  double cost_ = 0, lambda_ = 0;
+  NoiseStage stage_ = NoiseStage::robust;
+  bool done_ = false;
+  int regroupings_ = 0;  ///< changes of the rows put aside since the noise is kept
+};
+
+}  // namespace
+
+std::vector<int> free_columns(const Equations& equations, const Prior& prior) {
+  std::vector<int> columns;
+  for (int c = 0; c < equations.columns(); ++c)
+    if (c >= equations.robot_columns() || prior.free[c]) columns.push_back(c);
+  return columns;
+}
+
+double prior_weight(const Equations& equations, const Prior& prior, int column) {
+  if (column >= equations.robot_columns()) return 1 / kOwnSigma;
+  return prior.use ? 1 / prior.sigma[column] : 0;
+}
+
+Fit fit(const Equations& equations, const State& start, const Prior& prior, const FitRule& rule,
+        const OnIteration& on_iteration) {
+  return Iteration(equations, start, prior, rule).run(on_iteration);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,222 @@
+// The whole identification: the adjustment, then what is told of it: rank, certainty, the judge.
+#include "constraints/estimation/identification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+
+#include "constraints/estimation/adjustment.h"
+#include "constraints/estimation/angles.h"
+#include "constraints/estimation/judgement.h"
+#include "constraints/estimation/results.h"
+#include "constraints/estimation/robot_scale.h"
+#include "constraints/identifiability/endpoint_sigma.h"
+#include "constraints/identifiability/excitation.h"
+#include "constraints/identifiability/gauge.h"
+#include "constraints/identifiability/identifiability.h"
+#include "constraints/statistics.h"
+#include "kinematics/expects.h"
+
+namespace selfcal {
+namespace {
+
+/// Posterior of every parameter, with the prior of the length held for the scale carried along.
+Eigen::MatrixXd covariance(const Equations& equations, const Adjusted& adjusted,
+                           const Eigen::MatrixXd& R) {
+  Eigen::MatrixXd C = adjusted.fitted.covariance;
+  if (adjusted.scale < 0) return C;
+  Eigen::VectorXd follow =
+      -C * (R.leftCols(equations.columns()).transpose() * R.col(adjusted.scale));
+  follow[adjusted.scale] = 1;
+  const double sigma = adjusted.prior.sigma[adjusted.scale];
+  return C + sigma * sigma * follow * follow.transpose();
+}
+
+std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
+
+/// Moves beyond four tolerances; of an angle of the tool, where no row sees how it is turned,
+/// beyond one: it then imitates an offset.
+void warn_of_move(const ParameterResult& each, bool orientation_is_seen,
+                  std::vector<std::string>& warnings) {
+  const Parameter& p = each.parameter;
+  if (each.status == Status::fixed || p.part == Part::effect) return;
+  const double moved = std::abs(each.value - p.nominal) / p.tolerance;
+  const std::string in_frame = p.frame + "." + p.field;
+  const std::string name = p.name == in_frame ? p.name : p.name + " (" + in_frame + ")";
+  if (moved > 4) warnings.push_back(name + " moved by " + rounded(moved) + " tolerances");
+  if (moved > 1 && !orientation_is_seen && p.part == Part::tool && p.quantity == Quantity::angle)
+    warnings.push_back(name + " turns the tool by " + rounded(1e3 * (each.value - p.nominal)) +
+                       " mrad (" + rounded(moved) +
+                       " tolerances) where no row sees how it is turned, to imitate an offset: its "
+                       "orientation is false; give the tool as a whole pose (xyz, rpy)");
+}
+
+void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution& solution) {
+  if (adjusted.widening != 1)
+    solution.warnings.push_back(
+        "the robot differs from the maker's figures more than their tolerances allow (chi2 " +
+        format_number(std::round(adjusted.chi2.value)) + " for " +
+        format_number(std::round(adjusted.chi2.freedom)) +
+        " degrees of freedom): priors widened by " +
+        format_number(std::round(adjusted.widening * 100) / 100));
+  const bool seen = orientation_is_seen(equations);
+  for (const ParameterResult& each : solution.parameters)
+    warn_of_move(each, seen, solution.warnings);
+  if (!adjusted.before.converged)
+    solution.warnings.push_back(
+        "the figures before are of a nominal robot not placed to the end: " +
+        adjusted.before.stop_reason);
+  add_set_warnings(equations.data(), adjusted.fitted, solution);
+}
+
+/// The rows say something of the robot, but nothing against its maker's figures: the moves stay
+/// within the tolerances, and the fitted rows are no better than the extra parameters explain (F
+/// test), both at 99 %.
+bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, const Figures& fit) {
+  const double extra = adjusted.chi2.freedom;
+  const double left = adjusted.fitted.at.equations - 2 * extra;
+  if (adjusted.priors_fail || rank.total() == 0 || extra < 0.5 || left < 1) return false;
+  const double after = std::pow(fit.rms_after, 2);
+  const double gain = std::pow(fit.rms_before, 2) - after;
+  if (gain <= 0 || after <= 0) return gain <= 0;  // nothing left is no noise to compare with
+  return f_exceeds(gain / extra / (after / left), extra, left) > 0.01;
+}
+
+bool nothing_free(const Adjusted& adjusted) {
+  const std::vector<char>& free = adjusted.prior.free;
+  return std::find(free.begin(), free.end(), char{1}) == free.end();
+}
+
+EndpointQuestion endpoint_question(const Equations& equations, const Adjusted& adjusted,
+                                   const Eigen::MatrixXd& R, unsigned long long seed) {
+  EndpointQuestion question;
+  question.robot = &equations.robot();
+  question.xi = adjusted.fitted.state.xi;
+  question.unseen = unseen_motions(equations, R);
+  question.point_unknown = point_is_unknown(equations);
+  question.data = &equations.data().rows;
+  question.seed = seed;
+  return question;
+}
+
+/// What the fit itself tells.
+Solution fit_figures(const Adjusted& adjusted) {
+  const Fit& fitted = adjusted.fitted;
+  Solution solution;
+  solution.converged = fitted.converged;
+  solution.stop_reason = fitted.stop_reason;
+  solution.iterations = fitted.iterations;
+  solution.values = fitted.state.xi;
+  solution.gauge = adjusted.gauge;
+  solution.prior_chi2 = adjusted.chi2.value;
+  solution.prior_dof = adjusted.chi2.freedom;
+  solution.prior_widening = adjusted.widening;
+  return solution;
+}
+
+/// The posterior of every parameter: rank, sigma, covariance. `R` is whitened, with the columns
+/// beside the unknowns.
+Identifiability add_posterior(const Equations& equations, const Adjusted& adjusted,
+                              const Eigen::MatrixXd& R, const Eigen::MatrixXd& C,
+                              Solution& solution) {
+  const Fit& fitted = adjusted.fitted;
+  const Robot& robot = equations.robot();
+  Identifiability rank = identifiability(equations, R, fitted.state, adjusted.prior.free, {});
+  solution.parameters =
+      parameter_results(robot, fitted.state.xi, C, rank, adjusted.candidate, adjusted.prior.free);
+  std::tie(solution.covariance_order, solution.covariance) =
+      covariance_result(solution.parameters, C);
+  solution.observability = identified_observability(equations, R, rank, fitted.noise);
+  solution.unexcited = unexcited(robot, equations.data(), rank, adjusted.candidate);
+  return rank;
+}
+
+Solution assemble(const Equations& equations, const Adjusted& adjusted, const Options& options,
+                  const Progress& progress) {
+  const Robot& robot = equations.robot();
+  const DataSet& data = equations.data();
+  const Fit& fitted = adjusted.fitted;
+  if (progress) progress("judging", 0.9);
+  Solution solution = fit_figures(adjusted);
+
+  const Weighting weighting{fitted.noise.used, fitted.noise.outlier};
+  const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
+  Eigen::MatrixXd C = covariance(equations, adjusted, R);
+  EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
+  const bool nothing = nothing_free(adjusted);
+  const ScaleJudgement scale =
+      nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
+  for (const Eigen::VectorXd& doubt : scale.doubts) C += doubt * doubt.transpose();
+  solution.scale = scale.scale;
+  const Identifiability rank = add_posterior(equations, adjusted, R, C, solution);
+
+  const Judged before = judge(robot, data, equations, adjusted.before);
+  const Judged after = judge(robot, data, equations, fitted);
+  solution.residual = residual_figures(data, before, after, fitted.noise.outlier);
+  solution.rejected = outlier_rows(data, after, fitted.noise.outlier);
+  solution.sets = set_results(equations, fitted, C, after);
+  const std::vector<std::string> turned = gross_angles(robot, data, before, after);
+  add_warnings(equations, adjusted, solution);
+  std::ranges::copy(scale.scale.contradictions, std::back_inserter(solution.warnings));
+  std::ranges::copy(turned, std::back_inserter(solution.warnings));
+  if (progress) progress("done", 1);
+  if (nothing) {  // certain of what was given, not of what is true
+    solution.verdict.why = "nothing was identified: every parameter is fixed or held";
+    return solution;
+  }
+  question.covariance = C.topLeftCorner(equations.robot_columns(), equations.robot_columns());
+  solution.endpoint = endpoint_sigma(question);
+  Grounds grounds{solution.endpoint, data.target, fitted.converged,
+                  nominal_explains(adjusted, rank, solution.residual.fit), turned};
+  // Given lengths that only differ among themselves are a warning while the end position bears it.
+  if (scale.scale.against_maker || solution.endpoint.rms > data.target)
+    std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
+  solution.verdict = verdict(before, after, solution.residual, grounds);
+  return solution;
+}
+
+/// `open`: the rows that there would have been.
+Solution without_rows(const Robot& robot, const DataSet& data,
+                      const std::vector<OpenRow>& open = {}) {
+  Solution solution;
+  solution.stop_reason = "no rows to identify from";
+  if (!open.empty()) solution.stop_reason += ": " + open.front().why;
+  Judged judged;
+  judged.open = open;
+  solution.rejected = outlier_rows(data, judged, {});
+  solution.verdict.why = solution.stop_reason;
+  solution.values = values(robot);
+  const std::vector<char> none(robot.parameters().size(), 0);
+  solution.parameters = parameter_results(robot, solution.values, {}, {}, none, none);
+  return solution;
+}
+
+}  // namespace
+
+Solution identify(const Robot& robot, const DataSet& data, const Options& options,
+                  const Progress& progress) {
+  expects(data.rows.rows() == 0 ||
+              data.rows.q.cols() == static_cast<Eigen::Index>(robot.joints().size()),
+          "every row has a reading of every joint");
+  for (const std::vector<std::string>* names : {&options.fix, &options.free})
+    for (const std::string& name : *names)
+      expects(name == "*" || !match_parameters(robot, name).empty(),
+              "names in the options are parameters of the robot");
+  const auto& check = data.rows.check;
+  if (std::count(check.begin(), check.end(), char{0}) == 0) return without_rows(robot, data);
+  const Equations equations(robot, data, Use::fit);
+  bool any = false;
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
+    any = any || !equations.plan(s).items.empty();
+  if (!any) return without_rows(robot, data, equations.open_rows());
+  return assemble(equations, adjust(equations, options, progress), options, progress);
+}
+
+Solution judge_as_it_is(const Robot& robot, const DataSet& data, const Progress& progress) {
+  Options nothing_moves;
+  nothing_moves.fix = {"*"};
+  return identify(robot, data, nothing_moves, progress);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,238 @@
+// Residual figures and the answer: the end position must be known to the target, and a paired test
+// on the check rows (Wilcoxon's signed ranks of |before| - |after|) must say that they improved, at
+// 95 %; their squares must fall, and those of their angles must not rise. Where the end position is
+// not known to the target, but the check rows are no better and the fitted rows do not contradict
+// the maker's figures either, there is nothing to improve: that is an answer too.
+#include "constraints/estimation/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/estimation/figures.h"
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kSignificance = 0.05;
+/// Normal quantile of the same, and how much the squares of angles that say little may rise.
+constexpr double kRise = 1.645, kLittle = 0.1;
+/// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
+const double kFar = NoiseRule{}.far_quantile;
+
+struct Pair {
+  const RowResidual* before;
+  const RowResidual* after;
+};
+
+AngleFigures angle_figures(const std::vector<Pair>& pairs) {
+  AngleFigures f;
+  for (const Pair& pair : pairs) {
+    if (pair.after->angles == 0) continue;
+    const double b = pair.before->angle, a = pair.after->angle;
+    ++f.rows;
+    f.rms_before += b * b;
+    f.rms_after += a * a;
+    f.mean_after += a;
+    f.max_after = std::max(f.max_after, a);
+  }
+  if (f.rows == 0) return f;
+  f.rms_before = std::sqrt(f.rms_before / f.rows);
+  f.rms_after = std::sqrt(f.rms_after / f.rows);
+  f.mean_after /= f.rows;
+  return f;
+}
+
+Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_out) {
+  Figures f;
+  double kept = 0, kept_rows = 0;
+  for (const Pair& pair : pairs) {
+    ++f.rows;
+    const double b = pair.before->length, a = pair.after->length;
+    f.rms_before += b * b;
+    f.rms_after += a * a;
+    f.mean_after += a;
+    f.max_after = std::max(f.max_after, a);
+    if (left_out[pair.after->row]) continue;
+    kept += a * a;
+    ++kept_rows;
+  }
+  f.angle = angle_figures(pairs);
+  if (f.rows == 0) return f;
+  f.rms_before = std::sqrt(f.rms_before / f.rows);
+  f.rms_after = std::sqrt(f.rms_after / f.rows);
+  f.mean_after /= f.rows;
+  f.rms_without_rejected = kept_rows > 0 ? std::sqrt(kept / kept_rows) : 0;
+  return f;
+}
+
+bool is_outlier(const RowResidual& r, const Judged& judged) {
+  return r.sigmas(judged.check_scale[r.set]) > chi_quantile(r.lengths + r.angles, kFar);
+}
+
+}  // namespace
+
+Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
+             const Fit& fitted) {
+  Judged judged;
+  judged.state = fitted.state;
+  judged.fit = fit_equations.residuals(fitted.state);
+  judged.check_scale = fitted.noise.used;
+  judged.aligned.assign(data.sets.size(), 0);
+  const Equations align(robot, data, Use::align);
+  align.start(judged.state);
+  Prior held;
+  held.free.assign(robot.parameters().size(), 0);
+  FitRule rule;
+  rule.most_rejected = 0;  // all rows of a placement left out count
+  const Fit aligned = fit(align, judged.state, held, rule);
+  judged.state = aligned.state;
+  judged.align_noise = aligned.noise;
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    if (align.plan(static_cast<int>(s)).items.empty()) continue;
+    const Method& method = *data.sets[s].method;
+    judged.aligned[s] = method.tangent_dimension() + method.group_freedom() > 0;
+    if (fit_equations.plan(static_cast<int>(s)).items.empty())
+      judged.check_scale[s] = aligned.noise.used[s];
+  }
+  const Equations check(robot, data, Use::check);
+  judged.check = check.residuals(judged.state);
+  judged.open = fit_equations.open_rows();
+  judged.open_check = check.open_rows();
+  return judged;
+}
+
+Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
+                           const std::vector<char>& outlier) {
+  Residuals result;
+  std::vector<Pair> fit, check;
+  for (size_t i = 0; i < after.fit.size(); ++i)
+    if (!outlier[after.fit[i].row]) fit.push_back({&before.fit[i], &after.fit[i]});
+  std::vector<char> far(outlier.size(), 0);
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    check.push_back({&before.check[i], &after.check[i]});
+    far[after.check[i].row] = is_outlier(after.check[i], after);
+    result.check_rows.push_back({after.check[i].length, far[after.check[i].row] != 0});
+  }
+  result.fit = figures(fit, outlier);
+  result.check = figures(check, far);
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    std::vector<Pair> of_set;
+    for (const Pair& pair : check)
+      if (pair.after->set == static_cast<int>(s)) of_set.push_back(pair);
+    if (!of_set.empty())
+      result.check_by_set.push_back(
+          {data.sets[s].name, after.aligned[s] != 0, figures(of_set, far)});
+  }
+  return result;
+}
+
+std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
+                                  const std::vector<char>& outlier) {
+  std::vector<Outlier> list;
+  const auto add = [&](const RowResidual& r, bool check) {
+    list.push_back({r.row + 1, data.sets[r.set].name, r.length, check,
+                    check ? "outlier among the check rows: counted all the same" : "outlier"});
+  };
+  for (const RowResidual& r : after.fit)
+    if (outlier[r.row]) add(r, false);
+  for (const RowResidual& r : after.check)
+    if (is_outlier(r, after)) add(r, true);
+  for (const std::vector<OpenRow>* rows : {&after.open, &after.open_check})
+    for (const OpenRow& open : *rows)
+      list.push_back(
+          {open.row + 1, data.sets[open.set].name, HUGE_VAL, rows == &after.open_check, open.why});
+  std::sort(list.begin(), list.end(),
+            [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
+  return list;
+}
+
+namespace {
+
+/// A false reading: far under both models, each by its own noise, and no farther under the new one
+/// than the old one's noise explains. What the new model alone makes far counts, however far it is.
+bool is_false(size_t i, const Judged& before, const Judged& after) {
+  const RowResidual &b = before.check[i], &a = after.check[i];
+  return is_outlier(b, before) && is_outlier(a, after) &&
+         a.length - b.length <
+             chi_quantile(b.lengths, kFar) * b.factor * before.check_scale[b.set].length;
+}
+
+/// The rows' squares fall, of all and of each set that only judges: many small gains must not
+/// outvote one great loss. False readings say nothing of either model.
+bool lengths_fall(const Judged& before, const Judged& after) {
+  double all = 0;
+  std::vector<double> of_set(after.aligned.size(), 0);
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    if (is_false(i, before, after)) continue;
+    const double gain = std::pow(before.check[i].length, 2) - std::pow(after.check[i].length, 2);
+    all += gain;
+    if (after.aligned[after.check[i].set]) of_set[after.check[i].set] += gain;
+  }
+  return all > 0 && std::ranges::none_of(of_set, [](double gain) { return gain < 0; });
+}
+
+/// The squares of a set's angles rise by more than a tenth, and by more than chance explains:
+/// angles in which noise outweighs the robot may say nothing, but must not contradict.
+bool angles_rise(const Judged& before, const Judged& after) {
+  struct Sum {
+    double before = 0, loss = 0, squares = 0;
+  };
+  std::vector<Sum> of_set(after.aligned.size());
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    if (is_false(i, before, after)) continue;
+    const double b = std::pow(before.check[i].angle, 2), a = std::pow(after.check[i].angle, 2);
+    Sum& sum = of_set[after.check[i].set];
+    sum.before += b;
+    sum.loss += a - b;
+    sum.squares += std::pow(a - b, 2);
+  }
+  return std::ranges::any_of(of_set, [](const Sum& sum) {
+    return sum.loss > kLittle * sum.before && sum.loss > kRise * std::sqrt(sum.squares);
+  });
+}
+
+/// What became of the check rows, and how well the end position is known.
+std::string change(const Figures& check, double p_value, const EndpointSigma& endpoint) {
+  std::string text =
+      with_figures("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
+  if (check.angle.rows > 0)
+    text += with_figures(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
+                         1e3 * check.angle.rms_after);
+  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : with_figures("= %.2g", p_value)) +
+         "); end position known to " + with_figures("%.3g mm", 1e3 * endpoint.rms);
+}
+
+}  // namespace
+
+Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
+                const Grounds& grounds) {
+  Verdict v;
+  if (residual.check.rows == 0) {
+    v.why = "no check rows to judge by";
+    return v;
+  }
+  std::vector<double> gain;
+  for (size_t i = 0; i < after.check.size(); ++i)
+    gain.push_back(before.check[i].length - after.check[i].length);
+  v.p_value = signed_rank_p(gain);
+  v.why = change(residual.check, v.p_value, grounds.endpoint);
+  const bool worse_turned = angles_rise(before, after);
+  const bool better = v.p_value < kSignificance && lengths_fall(before, after) && !worse_turned;
+  if (!grounds.converged) {
+    v.why = "the identification did not converge; " + v.why;
+  } else if (!grounds.contradictions.empty()) {
+    for (const std::string& each : grounds.contradictions) v.why += "; " + each;
+  } else if (grounds.endpoint.rms <= grounds.target) {
+    v.answer = better ? Answer::improved : Answer::not_improved;
+    if (worse_turned) v.why += "; the angles are met worse than before";
+  } else {
+    v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
+    if (better || !grounds.nominal_explains) return v;
+    v.answer = Answer::not_improved;
+    v.why += "; the rows ask for no other robot than the maker's";
+  }
+  return v;
+}
+
+}  // namespace selfcal

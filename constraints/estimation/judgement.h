@@ -1,0 +1,50 @@
+// The judge: residual figures before and after, on rows that identified and on rows kept aside, and
+// the answer that follows from them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "constraints/estimation/fit.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+/// Residuals of one model (before or after) on every row that counts.
+struct Judged {
+  std::vector<RowResidual> fit, check;
+  std::vector<OpenRow> open, open_check;  ///< rows that gave no equation
+  std::vector<Scale> check_scale;         ///< by set: the noise that a check row is compared with
+  std::vector<char> aligned;  ///< by set: nuisance parameters were fitted to the check rows
+  State state;                ///< with the aligned unknowns filled in
+  Noise align_noise;
+};
+
+/// Fits the unknowns of sets and groups that have only `check` rows with the robot of `fit` held,
+/// and takes the residuals of all rows.
+Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
+             const Fit& fit);
+
+Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
+                           const std::vector<char>& outlier);
+
+/// Rows beyond the noise: those put aside, and `check` rows that would have been (they still
+/// count).
+std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
+                                  const std::vector<char>& outlier);
+
+/// What else the answer hangs on.
+struct Grounds {
+  EndpointSigma endpoint;
+  double target = 0;  ///< m
+  bool converged = false;
+  /// The moves of the parameters stay within what the maker's tolerances allow.
+  bool nominal_explains = false;
+  /// What the data contradict themselves in, in words: with any of it nothing is determined.
+  std::vector<std::string> contradictions = {};
+};
+
+Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
+                const Grounds& grounds);
+
+}  // namespace selfcal

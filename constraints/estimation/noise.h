@@ -1,0 +1,44 @@
+// The noise of each set from its residuals, and the rows that are none of it.
+#pragma once
+
+#include <vector>
+
+#include "constraints/equations/equations.h"
+
+namespace selfcal {
+
+/// What the estimate needs beside the residuals.
+struct NoiseRule {
+  double global_freedom = 0;  ///< parameters that the rows determine, spread over all equations
+  double most_rejected = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
+  bool reject = false;        ///< false until the geometry has settled
+  /// One noise for all sets of one method and data sheet: until the geometry has settled, a set
+  /// that happens to fit well must not take the weight of the others.
+  bool pool = false;
+  /// A row beyond this chi quantile of its set's robust noise is put aside: one good row in a
+  /// million.
+  double far_quantile = 1 - 1e-6;
+};
+
+struct Noise {
+  std::vector<Scale> estimated;  ///< by set, floored at kLeastNoise
+  std::vector<Scale> used;       ///< the larger of estimated and declared
+  std::vector<char> outlier;     ///< by row
+  std::vector<char> at_bound;    ///< by set: more rows were far than may be put aside
+};
+
+/// Residuals below this are rounding, not noise (m, rad): noise-free data are weighed by it.
+inline constexpr double kLeastNoise = 1e-9;
+
+/// Noise of every set with rows, and its rows that lie beyond it.
+Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>& residuals,
+                     const NoiseRule& rule);
+
+/// 1 sigma of one length residual of `set` from the spread of immediate repeats alone; negative
+/// without repeats. The pure error of a regression with replicates: the residuals of one
+/// configuration and approach differ by the measurement's own noise only. `outlier` rows are left
+/// out.
+double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
+                    const std::vector<char>& outlier);
+
+}  // namespace selfcal

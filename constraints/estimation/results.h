@@ -1,0 +1,36 @@
+// From the fit to what the user is told: each parameter, each set, each warning.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constraints/estimation/fit.h"
+#include "constraints/estimation/judgement.h"
+#include "constraints/identifiability/identifiability.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+/// `C` is the posterior of all columns, `candidate` tells what is not fixed, `free` what is not
+/// held either.
+std::vector<ParameterResult> parameter_results(const Robot& robot, const Eigen::VectorXd& xi,
+                                               const Eigen::MatrixXd& C,
+                                               const Identifiability& rank,
+                                               const std::vector<char>& candidate,
+                                               const std::vector<char>& free);
+
+/// Names and covariance of the parameters that have a sigma.
+std::pair<std::vector<std::string>, Eigen::MatrixXd> covariance_result(
+    const std::vector<ParameterResult>& parameters, const Eigen::MatrixXd& C);
+
+Observability identified_observability(const Equations& equations, const Eigen::MatrixXd& R,
+                                       const Identifiability& rank, const Noise& noise);
+
+std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
+                                   const Eigen::MatrixXd& C, const Judged& after);
+
+/// Noise far above the data sheet's or the repeats', rows put aside up to the bound.
+void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution);
+
+}  // namespace selfcal

@@ -1,0 +1,111 @@
+// Excitation (Khalil and Dombre, 11.4.2.2): structural rank against the rank of the rows at hand.
+#include "constraints/identifiability/excitation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "constraints/sampling/configurations.h"
+
+namespace selfcal {
+namespace {
+
+/// Range of joint j over the rows that identify, and over what it could do.
+struct Movement {
+  double moved = 0, possible = 0;
+  double share() const { return moved / possible; }
+};
+
+Movement movement(const Robot& robot, const DataSet& data, size_t j) {
+  double lower = HUGE_VAL, upper = -HUGE_VAL;
+  for (int row = 0; row < data.rows.rows(); ++row) {
+    if (data.rows.check[row]) continue;
+    lower = std::min(lower, data.rows.q(row, static_cast<Eigen::Index>(j)));
+    upper = std::max(upper, data.rows.q(row, static_cast<Eigen::Index>(j)));
+  }
+  return {upper - lower, robot.joints()[j].range()};
+}
+
+/// The joint whose movement parameter `p` needs most: of its own frame and the ones around it, the
+/// one that moved least of what it could.
+size_t missing_joint(const Robot& robot, const DataSet& data, const Parameter& p) {
+  const int nuisance = find_joint(robot, p.frame);
+  size_t at = nuisance < 0 ? 0 : static_cast<size_t>(nuisance);
+  if (const Statics* statics = robot.statics(); statics && nuisance < 0)
+    for (const Link& link : statics->mechanics().links) {
+      if (link.frame == p.frame) break;
+      if (link.joint >= 0) ++at;
+    }
+  size_t best = std::min(at, robot.joints().size() - 1);
+  for (size_t j = at > 0 ? at - 1 : 0; j <= at + 1 && j < robot.joints().size(); ++j)
+    if (movement(robot, data, j).share() < movement(robot, data, best).share()) best = j;
+  return best;
+}
+
+std::string what_is_missing(const Robot& robot, const DataSet& data, const Parameter& p,
+                            const std::vector<Carrier>& carriers) {
+  const size_t j = missing_joint(robot, data, p);
+  const Joint& joint = robot.joints()[j];
+  const Movement m = movement(robot, data, j);
+  char text[200];
+  if (m.share() < 0.1) {
+    std::snprintf(text, sizeof text, "%s moved through %.2g %s only", joint.name.c_str(), m.moved,
+                  unit(joint.quantity).data());
+    return text;
+  }
+  std::string names;
+  for (size_t i = 0; i < carriers.size() && i < 3; ++i) names += (i ? ", " : "") + carriers[i].name;
+  std::snprintf(text, sizeof text, "more movement of %s (%.0f %% of its range so far)",
+                joint.name.c_str(), 100 * m.share());
+  return (names.empty() ? std::string("hardly seen by these rows; ")
+                        : "not told from " + names + " by these rows; ") +
+         text + " would help";
+}
+
+}  // namespace
+
+StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
+                          const std::vector<char>& candidate, int rows, unsigned long long seed,
+                          const std::vector<char>& used) {
+  DataSet data;
+  std::vector<SampleRequest> requests;
+  for (size_t s = 0; s < sets.size(); ++s) {
+    data.sets.push_back(sets[s]);
+    data.sets.back().groups.clear();
+    SampleRequest request;
+    request.set = static_cast<int>(s);
+    request.rows = used.empty() || used[s] ? rows : 0;
+    requests.push_back(request);
+  }
+  Random random(seed);
+  const Eigen::VectorXd xi = nominal_values(robot);
+  const Sampled sampled = sample_rows(robot, xi, requests, random, data);
+  const Equations equations(robot, data, Use::fit);
+  State state = sampled.truth;
+  state.xi = xi;
+  Weighting weighting{std::vector<Scale>(sets.size()), std::vector<char>(data.rows.rows(), 0)};
+  weighting.structural = true;  // among rows of sigma 1, others would bring rounding above tau
+  const Linearised at = equations.linearise(state, weighting);
+  RankRule rule;
+  rule.rows = at.equations;
+  return {identifiability(equations, at.R, state, candidate, rule), equations.nuisance_dimensions(),
+          sampled.unreached};
+}
+
+std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
+                            const std::vector<char>& candidate) {
+  std::vector<char> used(data.sets.size(), 0);
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
+  constexpr int kRows = 80;
+  const Identifiability possible = structural(robot, data.sets, candidate, kRows, 1, used).rank;
+  std::vector<Note> notes;
+  for (size_t i = 0; i < robot.parameters().size(); ++i)
+    if (possible.status[i] == Status::identified &&
+        (rank.status[i] == Status::grouped || rank.status[i] == Status::no_effect))
+      notes.push_back({robot.parameters()[i].name,
+                       what_is_missing(robot, data, robot.parameters()[i], rank.grouped_with[i])});
+  return notes;
+}
+
+}  // namespace selfcal

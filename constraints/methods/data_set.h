@@ -1,0 +1,49 @@
+// A data set: rows, and for each set of rows the method that says what they mean.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constraints/methods/method.h"
+#include "constraints/methods/observations.h"
+
+namespace selfcal {
+
+/// Rows of one method with one set of nuisance parameters.
+struct Set {
+  std::string name;
+  std::shared_ptr<const Method> method;
+  double noise = 0;        ///< 1 sigma of one scalar residual as the data sheet says (m); 0 unknown
+  double noise_angle = 0;  ///< the same for angles (rad); 0 unknown
+  int reference = -1;      ///< index of the set whose nuisance parameters it shares
+  std::vector<std::string> groups;  ///< names, indexed by Observations::group
+};
+
+struct DataSet {
+  std::vector<Set> sets;
+  Observations rows;
+  bool speeds = true;      ///< dq are velocities; false: only their signs mean something
+  double target = 1.0e-3;  ///< end-position accuracy wanted (m, 1 sigma)
+};
+
+/// Reads one entry of `sets`: the method, its options and the noise. Known groups are appended to
+/// `set.groups` as the options name them. The set is without a method after a problem.
+Set make_set(const std::string& name, const Node& node, Problems& problems);
+
+/// Reads the mapping `sets`, NAME: ENTRY, and ties sets together that share unknowns. Sets are
+/// without a method or not tied after a problem.
+std::vector<Set> read_sets(const Node& node, Problems& problems);
+
+/// The set among `sets` of the same name and method as `set`; -1 without.
+int same_set(const std::vector<Set>& sets, const Set& set);
+
+/// Rows of two sessions with one robot, the first ones first. Sets of one name and method become
+/// one, as `before` has it; groups and repeats stay apart, and the second begins when the first
+/// ends.
+DataSet merged(const DataSet& before, const DataSet& after);
+
+/// The methods that make_set knows.
+std::vector<std::string_view> method_names();
+
+}  // namespace selfcal

@@ -1,0 +1,98 @@
+#include "constraints/methods/observations.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace selfcal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+template <class Column>
+Column picked(const Column& column, const std::vector<int>& rows) {
+  return column.rows() > 0 ? Column(column(rows, Eigen::all)) : Column();
+}
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& column, const std::vector<int>& rows) {
+  std::vector<T> list;
+  for (const int row : rows)
+    if (!column.empty()) list.push_back(column[row]);
+  return list;
+}
+
+/// Two parts of one column, of n and m rows.
+template <class Column>
+Column stacked(const Column& a, const Column& b, Eigen::Index n, Eigen::Index m, double absent) {
+  if (a.rows() == 0 && b.rows() == 0) return {};
+  Column all = Column::Constant(n + m, std::max(a.cols(), b.cols()), absent);
+  if (a.rows() > 0) all.topRows(n) = a;
+  if (b.rows() > 0) all.bottomRows(m) = b;
+  return all;
+}
+
+template <class T>
+std::vector<T> stacked(std::vector<T> a, std::vector<T> b, int n, int m, T absent) {
+  if (a.empty() && b.empty()) return {};
+  a.resize(static_cast<size_t>(n), absent);
+  b.resize(static_cast<size_t>(m), absent);
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+Observations taken(const Observations& data, const std::vector<int>& rows) {
+  Observations some;
+  some.q = picked(data.q, rows);
+  some.position = picked(data.position, rows);
+  some.orientation = picked(data.orientation, rows);
+  some.distance = picked(data.distance, rows);
+  some.normal = picked(data.normal, rows);
+  some.wrench = picked(data.wrench, rows);
+  some.velocity = picked(data.velocity, rows);
+  some.temperature = picked(data.temperature, rows);
+  some.time = picked(data.time, rows);
+  some.noise_factor = picked(data.noise_factor, rows);
+  some.set = picked(data.set, rows);
+  some.group = picked(data.group, rows);
+  some.repeat = picked(data.repeat, rows);
+  some.check = picked(data.check, rows);
+  return some;
+}
+
+Observations joined(const Observations& a, const Observations& b) {
+  const int n = a.rows(), m = b.rows();
+  const auto both = [&](auto column, double absent = kNaN) {
+    return stacked(a.*column, b.*column, n, m, absent);
+  };
+  Observations all;
+  all.q = both(&Observations::q);
+  all.position = both(&Observations::position);
+  all.orientation = both(&Observations::orientation);
+  all.distance = both(&Observations::distance);
+  all.normal = both(&Observations::normal);
+  all.wrench = both(&Observations::wrench);
+  all.velocity = both(&Observations::velocity);
+  all.temperature = both(&Observations::temperature);
+  all.time = both(&Observations::time);
+  all.noise_factor = both(&Observations::noise_factor, 1);
+  all.set = stacked(a.set, b.set, n, m, 0);
+  all.group = stacked(a.group, b.group, n, m, -1);
+  all.repeat = stacked(a.repeat, b.repeat, n, m, -1);
+  all.check = stacked(a.check, b.check, n, m, char{0});
+  return all;
+}
+
+Conditions conditions(const Observations& data, const std::vector<int>& rows) {
+  Conditions at;
+  at.wrench = picked(data.wrench, rows);
+  at.velocity = picked(data.velocity, rows);
+  at.normal = picked(data.normal, rows);
+  at.temperature = picked(data.temperature, rows);
+  at.time = picked(data.time, rows);
+  at.set = picked(data.set, rows);
+  return at;
+}
+
+}  // namespace selfcal

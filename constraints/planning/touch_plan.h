@@ -1,0 +1,78 @@
+// Which configurations a session visits, and how it gets into each contact and out again.
+//
+// Many random configurations touch each surface or sit in each socket of the model; of these the
+// ones are taken that tell most together (spread.h). Each is entered along a straight joint path
+// from a free configuration, and no path may cross another surface.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "constraints/progress.h"
+#include "constraints/sampling/configurations.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+/// What lies behind a surface within its patch: the half ball that the endpoint must keep out of.
+struct Obstacle {
+  Eigen::Vector3d point, outward;  ///< m; unit
+  Patch within;
+};
+
+/// What is asked of one set.
+struct TouchTarget {
+  int set = 0;
+  int touches = 0;
+  Eigen::Vector3d outward;       ///< direction of the way out (world, unit)
+  std::optional<Plane> plane;    ///< nominal, with its distance; nothing for sockets
+  std::vector<Location> places;  ///< nominal sockets or nests, one a group; empty for planes
+  Patch within;
+  int obstacle = -1;  ///< what lies behind its surface, of the obstacles; -1 for sockets
+};
+
+struct TouchPlanOptions {
+  double clearance = 0.03;  ///< m, how far out of the contact a touch begins
+  double search = 0.01;     ///< m, how far behind the nominal place it is given up
+  double tilt = 1.2;        ///< rad, most between the stylus (z of the endpoint) and the way in
+  double apart = 0.02;      ///< m, kept between the endpoint and every surface that is not touched
+  double limit_margin = 0.02;  ///< rad or m, kept from the joint limits
+  double check = 0.33;         ///< share kept aside to judge
+  Eigen::VectorXd home;        ///< readings from which every touch can be begun
+  unsigned long long seed = 1;
+};
+
+struct PlannedTouch {
+  int set = 0, group = -1;
+  bool check = false;
+  bool via_home = false;              ///< the way there leads through `home`
+  Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up
+};
+
+struct TouchPlan {
+  std::vector<PlannedTouch> touches;  ///< in the order in which they are visited
+  std::string unreached;  ///< which set has no or too few reachable places; empty when all has
+};
+
+/// `xi` are the parameters that are believed; `sets` have their methods (touched ones). Tells its
+/// progress between its stages and rounds of sampling, where it can be given up.
+TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+                       const std::vector<TouchTarget>& targets,
+                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
+                       const Progress& progress = {});
+
+/// How sure the end position will be after those of the planned touches that are not kept aside,
+/// with every surface and socket unknown: over poses of the whole workspace, a rigid motion
+/// removed.
+EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
+                             const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
+                             const TouchPlan& plan);
+
+/// True when the endpoint keeps out of every obstacle but `touched` (-1 for none) on the straight
+/// joint path from `from` to `to`.
+bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
+                  const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
+                  int touched = -1);
+
+}  // namespace selfcal

@@ -1,0 +1,243 @@
+// Newton steps of least length on a method's residual from kLanes random starts at once.
+#include "constraints/sampling/configurations.h"
+
+#include <cmath>
+
+#include "constraints/methods/unit_normal.h"
+#include "constraints/sampling/newton.h"
+#include "constraints/sampling/random_poses.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kNewtonSteps = 40;
+constexpr double kLongestStep = 0.5;  // rad or m
+constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
+constexpr int kEnough = 8;            // lanes that reach it before the others are given up
+constexpr int kTries = 60;            // blocks of starts before a row is given up
+
+class Sampler {
+ public:
+  Sampler(const Robot& robot, const Eigen::VectorXd& xi, Random& random, DataSet& data)
+      : robot_(robot), xi_(xi), random_(random), data_(data) {}
+
+  Sampled run(const std::vector<SampleRequest>& requests) {
+    sampled_.truth.xi = xi_;
+    sampled_.truth.nuisance.resize(data_.sets.size());
+    sampled_.truth.groups.resize(data_.sets.size());
+    reserve(requests);
+    // A set that refers to another comes after it: its own values start from the other's.
+    for (const bool referring : {false, true})
+      for (const SampleRequest& request : requests)
+        if ((data_.sets[request.set].reference >= 0) == referring) fill(request);
+    shrink();
+    return std::move(sampled_);
+  }
+
+ private:
+  void reserve(const std::vector<SampleRequest>& requests) {
+    Eigen::Index rows = 0;
+    for (const SampleRequest& request : requests) rows += request.rows + 1;
+    Observations& d = data_.rows;
+    d = {};
+    d.q.resize(rows, static_cast<Eigen::Index>(robot_.joints().size()));
+    d.position.setConstant(rows, 3, std::nan(""));
+    d.orientation.setConstant(rows, 4, std::nan(""));
+    d.distance.setConstant(rows, std::nan(""));
+    d.normal.setConstant(rows, 3, std::nan(""));
+  }
+
+  void shrink() {
+    Observations& d = data_.rows;
+    const auto rows = static_cast<Eigen::Index>(d.set.size());
+    d.q.conservativeResize(rows, Eigen::NoChange);
+    d.position.conservativeResize(rows, Eigen::NoChange);
+    d.orientation.conservativeResize(rows, Eigen::NoChange);
+    d.distance.conservativeResize(rows);
+    d.normal.conservativeResize(rows, Eigen::NoChange);
+    d.check.assign(rows, 0);
+  }
+
+  ConfigurationBlock starts() {
+    ConfigurationBlock block;
+    block.q = random_poses(robot_, nullptr, kLanes, random_()).array();
+    block.count = kLanes;
+    return block;
+  }
+
+  Location anywhere(const Method& method, const Patch& patch) {
+    Locations X;
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      const Closure closure = robot_.locate(starts(), xi_, method.body(), X, nullptr);
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (closure.closes(lane) && patch.contains(X.p(lane))) return X.at(lane);
+    }
+    return X.at(0);
+  }
+
+  void fill(const SampleRequest& request) {
+    Set& set = data_.sets[request.set];
+    const Method& method = *set.method;
+    Eigen::VectorXd& nuisance = sampled_.truth.nuisance[request.set];
+    const Eigen::VectorXd* reference =
+        set.reference < 0 ? nullptr : &sampled_.truth.nuisance[set.reference];
+    nuisance = request.nuisance
+                   ? *request.nuisance
+                   : method.through(anywhere(method, request.patch), reference, random_);
+    int last_of_group = -1;
+    spare_.clear();
+    for (int i = 0; i < request.rows; ++i) {
+      int group = method.paired() ? 0 : -1;
+      if (method.group_freedom() > 0) group = i / request.rows_per_group;
+      if (group >= opened_groups(request.set)) open_group(request, set, last_of_group);
+      if (!append(request, i, group, last_of_group)) {
+        sampled_.unreached = "set " + set.name + ": only " + std::to_string(i) + " of " +
+                             std::to_string(request.rows) +
+                             " configurations within the joint limits were found";
+        return;
+      }
+    }
+  }
+
+  int opened_groups(int set) const {
+    return data_.sets[set].method->group_freedom() > 0
+               ? static_cast<int>(sampled_.truth.groups[set].cols())
+               : static_cast<int>(data_.sets[set].groups.size());
+  }
+
+  void open_group(const SampleRequest& request, Set& set, int& last_of_group) {
+    const Method& method = *set.method;
+    if (opened_groups(request.set) >= static_cast<int>(set.groups.size()))
+      set.groups.push_back("g" + std::to_string(set.groups.size()));
+    last_of_group = -1;
+    if (method.group_freedom() == 0) return;
+    Eigen::MatrixXd& groups = sampled_.truth.groups[request.set];
+    const auto place = static_cast<std::size_t>(groups.cols());
+    const bool given = place < request.places.size();
+    Eigen::VectorXd values =
+        method.start_group({given ? request.places[place] : anywhere(method, request.patch)});
+    for (const GroupDistance& link :
+         method.links()) {  // a known distance from a group opened before
+      const auto self = static_cast<int>(groups.cols());
+      const int other = link.a == self ? link.b : link.b == self ? link.a : self;
+      if (given || other >= self) continue;
+      values.head<3>() = groups.col(other).head<3>() + link.distance * random_direction(random_);
+    }
+    groups.conservativeResize(values.size(), groups.cols() + 1);
+    groups.rightCols(1) = values;
+  }
+
+  /// Finds and writes one row; false when none was reached.
+  bool append(const SampleRequest& request, int i, int group, int& last_of_group) {
+    const Method& method = *data_.sets[request.set].method;
+    const int row = static_cast<int>(data_.rows.set.size());
+    const auto equations = static_cast<Eigen::Index>(method.equations().size());
+    const Eigen::VectorXd wanted =
+        request.residual ? request.residual(i) : Eigen::VectorXd::Zero(equations);
+    data_.rows.set.push_back(request.set);
+    data_.rows.group.push_back(group);
+    const int reference = data_.sets[request.set].reference;
+    method.approach(sampled_.truth.nuisance[request.set],
+                    reference < 0 ? nullptr : &sampled_.truth.nuisance[reference], data_.rows, row);
+    const auto take = [&](const Eigen::ArrayXd& q, const Location& there) {
+      data_.rows.q.row(row) = q.matrix().transpose();
+      const Location before = last_of_group < 0 ? Location{} : at(last_of_group, method.body());
+      method.measure(there, before, sampled_.truth.nuisance[request.set], data_.rows, row);
+      last_of_group = row;
+    };
+    if (!spare_.empty()) {
+      take(spare_.back().q, spare_.back().there);
+      spare_.pop_back();
+      return true;
+    }
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      ConfigurationBlock block = starts();
+      Locations X;
+      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
+      const std::vector<int> found = must ? newton(method, wanted, row, last_of_group, block, X)
+                                          : everywhere(method, block, X);
+      bool taken = false;
+      for (const int lane : found) {
+        if (!within_limits(robot_, block.q.row(lane).transpose()) ||
+            !request.patch.contains(X.p(lane)))
+          continue;
+        if (taken) {
+          spare_.push_back({block.q.row(lane), X.at(lane)});
+          continue;
+        }
+        take(block.q.row(lane), X.at(lane));
+        if (!request.together) return true;
+        taken = true;
+      }
+      if (taken) return true;
+    }
+    data_.rows.set.pop_back();
+    data_.rows.group.pop_back();
+    return false;
+  }
+
+  std::vector<int> everywhere(const Method& method, const ConfigurationBlock& block, Locations& X) {
+    const Closure closure = robot_.locate(block, xi_, method.body(), X, nullptr);
+    std::vector<int> lanes;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (closure.closes(lane)) lanes.push_back(lane);
+    return lanes;
+  }
+
+  Location at(int row, Body body) const {
+    return locate(robot_, xi_, data_.rows.q.row(row).transpose(), body);
+  }
+
+  /// Lanes that reached the wanted residual; moves block.q there and leaves their locations in X.
+  std::vector<int> newton(const Method& method, const Eigen::VectorXd& wanted, int row,
+                          int previous, ConfigurationBlock& block, Locations& X) const {
+    Locations before;
+    if (previous >= 0)
+      robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
+                    nullptr);
+    NewtonStep newton(robot_, data_, sampled_.truth, row, before);
+    Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      newton.evaluate(block);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Eigen::VectorXd miss = newton.miss(lane, wanted);
+        left[lane] = newton.closes(lane) ? miss.norm() : HUGE_VAL;
+        if (!newton.closes(lane)) continue;  // lost
+        if (left[lane] < kExact / 10) continue;
+        Eigen::VectorXd dq = newton.step(lane, miss);
+        if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
+        block.q.row(lane) += dq.transpose().array();
+      }
+      if ((left < kExact / 10).count() >= kEnough) break;
+    }
+    std::vector<int> reached;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (left[lane] < kExact) reached.push_back(lane);
+    // Once more: down to rounding, by which a structural rank is judged.
+    newton.evaluate(block);
+    for (const int lane : reached)
+      block.q.row(lane) += newton.step(lane, newton.miss(lane, wanted)).transpose().array();
+    robot_.locate(block, xi_, method.body(), X, nullptr);
+    return reached;
+  }
+
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  Random& random_;
+  DataSet& data_;
+  Sampled sampled_;
+  struct Found {
+    Eigen::ArrayXd q;
+    Location there;
+  };
+  std::vector<Found> spare_;  ///< solved together with the last row, for the next ones
+};
+
+}  // namespace
+
+Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
+                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data) {
+  return Sampler(robot, xi, random, data).run(requests);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,44 @@
+// Newton's step on the residual of one row, at up to kLanes configurations at once:
+//   dq = (G J)^+ (wanted - r),   J the joint Jacobian of the method's body,
+// the least change of the readings that makes the residual what is wanted as far as it is linear.
+#pragma once
+
+#include <vector>
+
+#include "constraints/equations/equations.h"
+#include "constraints/methods/data_set.h"
+
+namespace selfcal {
+
+class NewtonStep {
+ public:
+  /// Of `row` of `data`, with parameters, own and group values `truth`; the residual of a paired
+  /// method is counted against `before`. All must outlive this.
+  NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
+             const Locations& before);
+
+  /// Takes residuals and derivatives at `block`.
+  void evaluate(const ConfigurationBlock& block);
+
+  const Locations& X() const { return X_; }  ///< of the method's body
+  bool closes(int lane) const { return closure_.closes(lane); }
+  /// wanted - r of a lane (one entry for each equation; m, rad).
+  Eigen::VectorXd miss(int lane, const Eigen::VectorXd& wanted) const;
+  /// dq of a lane (rad or m).
+  Eigen::VectorXd step(int lane, const Eigen::VectorXd& miss) const;
+
+ private:
+  const Robot& robot_;
+  const DataSet& data_;
+  const State& truth_;
+  const Locations& before_;
+  int set_;
+  std::vector<int> rows_;
+  Locations X_;
+  Closure closure_;
+  PsiBlock psi_;
+  Eigen::MatrixXd J_;
+  MethodOutput out_;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,153 @@
+// What an identification answers with: parameters with their certainty, sets, figures, the verdict.
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinematics/parameter.h"
+
+namespace selfcal {
+
+enum class Status { identified, grouped, no_effect, held, fixed };
+std::string_view to_string(Status status);
+
+struct Carrier {
+  std::string name;
+  double coefficient = 0;
+};
+
+struct ParameterResult {
+  Parameter parameter;
+  double value = 0;
+  double sigma = -1;  ///< marginal posterior; negative for held, fixed and no-effect
+  Status status = Status::identified;
+  std::vector<Carrier> grouped_with;
+};
+
+struct NuisanceResult {
+  std::string name;
+  double value = 0, sigma = 0;
+};
+
+struct SetResult {
+  std::string name, method;
+  int rows = 0;  ///< `fit` rows that give an equation, or `check` rows when there are no others
+  int used = 0;  ///< of them, not put aside
+  bool identifies = false;       ///< has `fit` rows
+  bool aligned = false;          ///< nuisance parameters fitted to `check` rows, robot held
+  double noise_sigma = 0;        ///< m, one scalar residual
+  double noise_angle_sigma = 0;  ///< rad; 0 when the method has no angles
+  double repeat_sigma = -1;      ///< m, from immediate repeats alone; negative without
+  std::vector<NuisanceResult> nuisance;
+};
+
+struct Outlier {
+  int row = 0;  ///< from 1
+  std::string set;
+  double residual = 0;  ///< m; infinite of a row that the robot cannot take
+  bool check = false;
+  std::string why;
+};
+
+/// Figures of the angles beside the residuals of rows (rad), of the rows that have any.
+struct AngleFigures {
+  int rows = 0;
+  double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
+};
+
+/// Figures of row residuals (m; app/selfcal-data.5 says what the residual of a row is).
+struct Figures {
+  int rows = 0;
+  double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
+  double rms_without_rejected = 0;
+  AngleFigures angle;
+};
+
+struct SetFigures {
+  std::string name;
+  bool aligned = false;
+  Figures figures;
+};
+
+/// One row that judges.
+struct CheckRow {
+  double residual = 0;    ///< m, after
+  bool rejected = false;  ///< beyond the noise
+};
+
+struct Residuals {
+  Figures fit, check;
+  std::vector<CheckRow> check_rows;  ///< in the order of the data set's
+  std::vector<SetFigures> check_by_set;
+};
+
+enum class Answer { improved, not_improved, not_determined };
+std::string_view to_string(Answer answer);
+
+struct Verdict {
+  Answer answer = Answer::not_determined;
+  std::string why;
+  double p_value = 1;  ///< of the paired test on the check rows; 1 without check rows
+};
+
+struct EndpointSigma {
+  bool aligned = false;
+  double rms = 0, median = 0, max = 0;  ///< m
+  int poses = 0;                        ///< 0 where nothing was identified: not known
+};
+
+/// A length that the entry of a set gives and that the robot's scale stands on (m).
+struct ScaleLength {
+  std::string set, what;        ///< what: in words, "distance from table"
+  double value = 0, sigma = 0;  ///< as given
+  double share = 0;             ///< relative change of the robot's lengths with it over its own
+  double moves = 0;             ///< end position for one of it (rms over the poses)
+  /// What the maker's lengths and the rows make of it where none of these lengths is given.
+  double expected = 0, expected_sigma = 0;
+  double unseen = 0;  ///< an error smaller than this would rather not be noticed
+  /// The same where the others are given; the sigma is negative where there are none.
+  double by_others = 0, by_others_sigma = -1;
+  bool odd = false;  ///< contradicts what the others make of it, more than any other one
+};
+
+/// What gives the robot's scale, and whether the maker's lengths agree.
+struct RobotScale {
+  std::vector<ScaleLength> stands_on;
+  double excess = 0, excess_sigma = 0;      ///< of these lengths over what is expected, relative
+  bool against_maker = false;               ///< the excess is beyond the tolerances
+  std::vector<std::string> contradictions;  ///< in words
+};
+
+struct Observability {
+  double condition = 0, o1 = 0, o2 = 0, o3 = 0, o4 = 0, o5 = 0;
+};
+
+struct Note {
+  std::string parameter, text;
+};
+
+struct Solution {
+  bool converged = false;
+  std::string stop_reason;
+  int iterations = 0;
+  Verdict verdict;
+  std::vector<ParameterResult> parameters;
+  std::vector<std::string> covariance_order;
+  Eigen::MatrixXd covariance;
+  std::vector<Note> gauge, unexcited;
+  std::vector<SetResult> sets;  ///< empty when no row identifies
+  std::vector<Outlier> rejected;
+  Residuals residual;
+  EndpointSigma endpoint;
+  RobotScale scale;
+  double prior_chi2 = 0;
+  double prior_dof = 0;
+  double prior_widening = 1;
+  Observability observability;
+  std::vector<std::string> warnings;
+  Eigen::VectorXd values;  ///< of every parameter, in the robot's order
+};
+
+}  // namespace selfcal

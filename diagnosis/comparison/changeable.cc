@@ -1,0 +1,113 @@
+#include "diagnosis/comparison/changeable.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+constexpr double kAlike = 1 - 1e-6;  ///< cosine of columns that no row tells apart
+
+/// What is usual of a length (m), an angle (rad) or a ratio.
+EffectParameter usual_parameter(const std::string& name, std::string unit) {
+  return {name, std::move(unit), 5e-6, 5e-3, 0};
+}
+
+class Builder {
+ public:
+  Builder(const Equations& equations, const Eigen::MatrixXd& W, Between between)
+      : robot_(equations.robot()), equations_(equations), W_(W), between_(between) {}
+
+  void add_zeros() {
+    for (size_t j = 0; j < robot_.joints().size(); ++j)
+      add("zero_shift", robot_.joints()[j].name, {robot_.variable_parameter(static_cast<int>(j))});
+  }
+
+  void add_frames(Part part, const char* effect, const char* at) {
+    std::vector<int> frames;
+    for (size_t p = 0; p < robot_.parameters().size(); ++p)
+      if (robot_.parameters()[p].part == part) frames.push_back(static_cast<int>(p));
+    if (!frames.empty()) add(placing(effect), at, frames);
+  }
+
+  void add_fixtures(const DataSet& before, const DataSet& after) {
+    for (size_t s = 0; s < before.sets.size(); ++s) {
+      std::vector<int> nuisance(
+          static_cast<size_t>(equations_.tangent_dimension(static_cast<int>(s))));
+      for (size_t k = 0; k < nuisance.size(); ++k)
+        nuisance[k] = equations_.own_at(static_cast<int>(s)) + static_cast<int>(k);
+      if (!nuisance.empty() && same_set(after.sets, before.sets[s]) >= 0)
+        add(placing("fixture_shift"), before.sets[s].name, nuisance);
+    }
+  }
+
+  /// One of those that look alike (the lengths of parallel axes) stands for all; a zero does first.
+  void add_geometry() {
+    std::vector<int> had;
+    for (size_t j = 0; j < robot_.joints().size(); ++j)
+      had.push_back(robot_.variable_parameter(static_cast<int>(j)));
+    for (int p = 0; p < static_cast<int>(robot_.parameters().size()); ++p) {
+      const Part part = robot_.parameters()[p].part;
+      if ((part != Part::link && part != Part::gear) ||
+          std::ranges::any_of(had, [&](int other) { return alike(p, other); }))
+        continue;
+      had.push_back(p);
+      add("geometry_differs", robot_.parameters()[p].name, {p});
+    }
+  }
+
+  Changeable done() {
+    std::vector<Candidate>& list = all_.candidates.list;
+    for (Candidate& each : list) {
+      const auto family = std::ranges::count(list, each.effect, &Candidate::effect);
+      each.log_prior = -std::log(static_cast<double>(family));
+    }
+    return std::move(all_);
+  }
+
+ private:
+  /// What the robot stands on, holds and meets stands elsewhere in a simulator: that has not moved.
+  std::string placing(const char* effect) const {
+    return between_ == Between::machines ? "placed_elsewhere" : effect;
+  }
+
+  void add(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
+    Candidate candidate{effect, at, {}, {}, {}, 0};
+    for (size_t k = 0; k < columns.size(); ++k) {
+      const int c = columns[k];
+      candidate.main.push_back(static_cast<int>(all_.columns.size()));
+      all_.columns.push_back(c);
+      all_.parameters.push_back(c < equations_.robot_columns()
+                                    ? usual_parameter(robot_.parameters()[c].name,
+                                                      std::string(robot_.parameters()[c].unit()))
+                                    : usual_parameter("own" + std::to_string(k + 1), "m or rad"));
+    }
+    all_.candidates.list.push_back(std::move(candidate));
+  }
+
+  bool alike(int a, int b) const {
+    return a == b ||
+           std::abs(W_.col(a).dot(W_.col(b))) >= kAlike * W_.col(a).norm() * W_.col(b).norm();
+  }
+
+  const Robot& robot_;
+  const Equations& equations_;
+  const Eigen::MatrixXd& W_;
+  const Between between_;
+  Changeable all_;
+};
+
+}  // namespace
+
+Changeable changeable(const Equations& equations, const Eigen::MatrixXd& W, const DataSet& before,
+                      const DataSet& after, Between between) {
+  Builder builder(equations, W, between);
+  builder.add_zeros();
+  builder.add_frames(Part::base, "base_moved", "base");
+  builder.add_frames(Part::tool, "probe_changed", "probe");
+  builder.add_fixtures(before, after);
+  if (between == Between::machines) builder.add_geometry();
+  return builder.done();
+}
+
+}  // namespace selfcal

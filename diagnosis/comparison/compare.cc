@@ -1,0 +1,150 @@
+#include "diagnosis/comparison/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "diagnosis/comparison/pair.h"
+#include "kinematics/corrected_robot.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kListedChange = 0.02;
+constexpr int kComparePasses = 2;  ///< false rows are seen once the changes are known
+constexpr size_t kSearched = 3;    ///< candidates that the search puts together
+constexpr size_t kMostDifferences = 60;
+
+/// The candidate's values, as the hypothesis that holds it has them.
+std::vector<NamedValue> values_held(const EvidenceEvaluator& bench, const Changeable& changeable,
+                                    const Hypothesis& h, int candidate) {
+  const MarginalLikelihood::Estimate estimate =
+      bench.marginal_likelihood(h.structure).estimate(bench.terms(h));
+  std::vector<NamedValue> list;
+  Eigen::Index at = 0;
+  for (const int c : h.candidates)
+    for (const int k : changeable.candidates.list[static_cast<size_t>(c)].main) {
+      const EffectParameter& p = changeable.parameters[static_cast<size_t>(k)];
+      if (c == candidate)
+        list.push_back({p.name, p.unit, estimate.mean[at],
+                        std::sqrt(estimate.variance * estimate.covariance(at, at)), p.usual_least,
+                        p.usual_most});
+      ++at;
+    }
+  return list;
+}
+
+/// What the search found: at most three at a time.
+void list_searched(const EvidenceEvaluator& bench, const Changeable& changeable,
+                   const Posterior& posterior, Comparison& result) {
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (h.candidates.empty()) result.none += std::exp(h.log_weight);
+  result.none = std::min(result.none, 1.0);
+  result.unknown = std::min(posterior.unknown, 1.0);
+  const std::vector<Candidate>& list = changeable.candidates.list;
+  for (int c = 0; c < static_cast<int>(list.size()); ++c) {
+    const auto found = posterior.cause.find({list[c].effect, list[c].at});
+    if (found == posterior.cause.end() || found->second < kListedChange) continue;
+    const auto h = std::ranges::find_if(posterior.hypotheses, [&](const Hypothesis& each) {
+      return std::ranges::count(each.candidates, c) > 0;
+    });
+    result.changes.push_back({list[c].effect, list[c].at, std::min(found->second, 1.0),
+                              values_held(bench, changeable, *h, c)});
+  }
+}
+
+/// More than the search puts together. Each is as probable as the
+/// whole with it is beside the whole without, structure as all of them are beside noise alone.
+void list_grown(const EvidenceEvaluator& bench, const Changeable& changeable, Hypothesis all,
+                Comparison& result) {
+  const auto weight = [&](Hypothesis h, int structure) {
+    h.structure = structure;
+    return bench.log_weight(h);
+  };
+  const double plain = weight(all, 0);
+  double noise = 0, structure = 0, best = plain;
+  for (int s = 0; s < bench.structures(); ++s) {
+    const double each = weight(all, s);
+    (bench.structure(s).kind == 0 ? noise : structure) += std::exp(std::min(each - plain, 500.0));
+    if (each > best) all.structure = s;
+    best = std::max(best, each);
+  }
+  result.unknown = structure / (noise + structure);
+  for (size_t i = 0; i < all.candidates.size(); ++i) {
+    Hypothesis less = all;
+    less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+    less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    const Candidate& each = changeable.candidates.list[static_cast<size_t>(all.candidates[i])];
+    const double probability = 1 / (1 + std::exp(weight(less, all.structure) - best));
+    if (probability >= kListedChange)
+      result.changes.push_back({each.effect, each.at, probability,
+                                values_held(bench, changeable, all, all.candidates[i])});
+  }
+}
+
+/// The most probable set of changes; what is probable of them goes into `result`.
+Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
+                 Comparison& result) {
+  Hypothesis best;
+  {
+    const EvidenceEvaluator bench = pair.bench(rows, rule);
+    const Posterior posterior = bench.search();
+    best = posterior.hypotheses.front();
+    if (best.candidates.size() < kSearched) {
+      list_searched(bench, pair.changes(), posterior, result);
+      return best;
+    }
+  }
+  rule.noise_is_known = true;
+  const EvidenceEvaluator bench = pair.bench(rows, rule);
+  best = bench.grow({best.candidates, 0, 0, best.sizes}, kMostDifferences);
+  list_grown(bench, pair.changes(), best, result);
+  return best;
+}
+
+std::string changes_in_words(const Comparison& result) {
+  std::string text;
+  for (const Change& each : result.changes)
+    if (each.probability > 0.5)
+      text += (text.empty() ? "changed: " : ", ") + each.effect + " at " + each.where;
+  if (!text.empty()) return text;
+  return result.none > 0.5 ? "nothing changed that these rows would show"
+                           : "something changed, but not one known thing alone";
+}
+
+}  // namespace
+
+std::string incomparable(const Robot& one, const Robot& other) {
+  if (one.identity() == other.identity()) return {};
+  if (one.name() != other.name())
+    return "is of the robot '" + std::string(one.name()) + "', not of '" +
+           std::string(other.name()) + "': only data sets of one robot can be compared";
+  if (one.joints().size() != other.joints().size())
+    return "is of a robot '" + std::string(one.name()) + "' with " +
+           std::to_string(one.joints().size()) + " joints instead of " +
+           std::to_string(other.joints().size()) + ": only data sets of one robot can be compared";
+  return "is of a robot '" + std::string(one.name()) +
+         "' with other frames or maker's figures: only data sets of one robot can be compared";
+}
+
+Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
+                   const DataSet& after, Between between, const DiagnosisOptions& options,
+                   const Progress& progress) {
+  const Pair pair(geometry_of(robot), before, after, between, options, progress);
+  if (progress) progress("weighing what changed", 0.5);
+  Comparison result;
+  std::vector<char> outlier = pair.outlier();
+  for (int pass = 0; pass < kComparePasses; ++pass) {
+    const DenseEquations rows = pair.weighed(outlier);
+    result = {};
+    const Hypothesis best = weigh(pair, rows, options.search, result);
+    std::vector<char> far = pair.far_rows(rows, best);
+    if (far == outlier) break;
+    outlier = std::move(far);
+  }
+  std::ranges::stable_sort(result.changes, std::greater(), &Change::probability);
+  result.why = changes_in_words(result);
+  return result;
+}
+
+}  // namespace selfcal

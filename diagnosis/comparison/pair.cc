@@ -1,0 +1,94 @@
+#include "diagnosis/comparison/pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/rows.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
+           Between between, const DiagnosisOptions& options, const Progress& progress)
+    : geometry_(std::move(geometry)),
+      most_rejected_(options.most_rejected),
+      first_rows_(before.rows.rows()),
+      both_(merged(before, after)),
+      equations_(*geometry_, both_, Use::fit) {
+  const Options free = geometry_options(options);
+  noise_.assign(both_.sets.size(), {0, 0});
+  rows_.assign(both_.sets.size(), 0);
+  fit_alone(before, free, progress);
+  fit_alone(after, free, progress);
+  for (size_t s = 0; s < rows_.size(); ++s)
+    noise_[s] = rows_[s] > 0 ? Scale{std::sqrt(noise_[s].length / rows_[s]),
+                                     std::sqrt(noise_[s].angle / rows_[s])}
+                             : Scale{};
+  adjusted_ = adjust(equations_, free, progress);
+  every_ =
+      equations_.dense(adjusted_.fitted.state, noise_, std::vector<char>(put_aside_.size(), 0));
+  changes_ = changeable(equations_, every_.W, before, after, between);
+}
+
+/// Adds the squares of its noise to those of both's sets.
+void Pair::fit_alone(const DataSet& part, const Options& options, const Progress& progress) {
+  const Equations equations(*geometry_, part, Use::fit);
+  const Fit fit = adjust(equations, options, progress).fitted;
+  put_aside_.insert(put_aside_.end(), fit.noise.outlier.begin(), fit.noise.outlier.end());
+  const std::vector<Scale> noise = pooled_noise(part, fit);
+  for (const RowResidual& r : fit.at.residuals) {
+    const auto s = static_cast<size_t>(same_set(both_.sets, part.sets[r.set]));
+    noise_[s].length += std::pow(noise[r.set].length, 2);
+    noise_[s].angle += std::pow(noise[r.set].angle, 2);
+    rows_[s] += 1;
+  }
+}
+
+DenseEquations Pair::weighed(const std::vector<char>& outlier) const {
+  std::vector<int> first, second;
+  for (int row = 0; row < both_.rows.rows(); ++row)
+    (row < first_rows_ ? first : second).push_back(row);
+  const auto later = [&](int row) { return row >= first_rows_; };
+  const auto more = static_cast<double>(std::ranges::count_if(every_.row, later));
+  const double fewer = static_cast<double>(every_.row.size()) - more;
+  const auto part = [](double others) { return kMostWeighed - std::min(others, kMostWeighed / 2); };
+  std::vector<char> take = weighed_rows(taken(both_.rows, first), fewer, part(more));
+  const std::vector<char> rest = weighed_rows(taken(both_.rows, second), more, part(fewer));
+  take.insert(take.end(), rest.begin(), rest.end());
+  for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !outlier[row];
+  return kept(every_, take);
+}
+
+Whitened Pair::whitened(const DenseEquations& rows) const {
+  Nuisance priors = nuisance(adjusted_, equations_.robot_columns(), rows.W.cols());
+  Whitened out;
+  out.A = rows.W(Eigen::all, priors.columns);
+  out.C = rows.W(Eigen::all, changes_.columns);
+  for (Eigen::Index i = 0; i < out.C.rows(); ++i)
+    if (rows.row[static_cast<size_t>(i)] < first_rows_) out.C.row(i).setZero();
+  out.y = rows.y;
+  out.weight = std::move(priors.weight);
+  out.pull = std::move(priors.pull);
+  return out;
+}
+
+EvidenceEvaluator Pair::bench(const DenseEquations& rows, const SearchRule& rule) const {
+  return EvidenceEvaluator(whitened(rows),
+                           structures(both_.rows, rows, ends(*geometry_, both_.rows),
+                                      rows.W(Eigen::all, reading_columns(*geometry_))),
+                           changes_.candidates, changes_.parameters, rule);
+}
+
+std::vector<char> Pair::far_rows(const DenseEquations& rows, const Hypothesis& changes) const {
+  std::vector<int> with;
+  for (const int c : changes.candidates)
+    for (const int k : changes_.candidates.list[static_cast<size_t>(c)].main) with.push_back(k);
+  const auto free = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(with.size()), HUGE_VAL);
+  const Whitened some = whitened(rows);
+  const Eigen::VectorXd left = left_of(whitened(every_), some, with, free);
+  return selfcal::far_rows(every_, left, static_cast<double>(some.A.cols() + free.size()),
+                           put_aside_.size(), most_rejected_);
+}
+
+}  // namespace selfcal

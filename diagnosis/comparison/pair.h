@@ -1,0 +1,47 @@
+// Two data sets of one robot as one system of equations, with columns of their own for what may
+// differ.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "constraints/estimation/adjustment.h"
+#include "diagnosis/comparison/changeable.h"
+#include "diagnosis/evidence/search.h"
+
+namespace selfcal {
+
+class Pair {
+ public:
+  /// Fits each alone, which tells noise and false rows (a change is neither), and both together.
+  Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
+       Between between, const DiagnosisOptions& options, const Progress& progress);
+  Pair(const Pair&) = delete;
+
+  const Changeable& changes() const { return changes_; }
+  /// By row of both: false within its own data set.
+  const std::vector<char>& outlier() const { return put_aside_; }
+  /// Of large data sets every so many configurations of each: the smaller one's are worth more.
+  DenseEquations weighed(const std::vector<char>& outlier) const;
+  EvidenceEvaluator bench(const DenseEquations& rows, const SearchRule& rule) const;
+  /// By row of both: what these changes, fitted to `rows`, leave of it is far beyond noise.
+  std::vector<char> far_rows(const DenseEquations& rows, const Hypothesis& changes) const;
+
+ private:
+  void fit_alone(const DataSet& part, const Options& options, const Progress& progress);
+  Whitened whitened(const DenseEquations& rows) const;
+
+  std::shared_ptr<const Robot> geometry_;
+  const double most_rejected_;
+  const int first_rows_;
+  const DataSet both_;
+  const Equations equations_;
+  std::vector<Scale> noise_;  ///< by set of both
+  std::vector<double> rows_;  ///< by set of both, how many told its noise
+  std::vector<char> put_aside_;
+  Adjusted adjusted_;
+  DenseEquations every_;
+  Changeable changes_;
+};
+
+}  // namespace selfcal

@@ -1,0 +1,49 @@
+// The causes that a diagnosis weighs: every effect, at every place where it may act, in the shapes
+// that it may take.
+//
+// A candidate is one hypothesis: an effect at a place in one shape (a moment, a wave number, a time
+// lag). A cause is what a person is told: the effect and the place, whatever its shape; a family is
+// the effect alone. Priors are spread equally over families, then places, then shapes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "kinematics/effect.h"
+
+namespace selfcal {
+
+struct Candidate {
+  std::string effect, at;  ///< at is empty for the whole robot
+  /// Of a robot file, that make it; the first one is the cause itself.
+  std::vector<Node> entries = {};
+  std::vector<int> main = {};   ///< its parameters, counted over all candidates' effects
+  std::vector<int> slack = {};  ///< parameters that only take up what the main ones have wrong
+  int joint = -1;               ///< at which it acts; -1 elsewhere
+  std::string needs = {};       ///< what rows must have so that it can be seen
+  double log_prior = 0;         ///< of the place and the shape within the family
+};
+
+/// A cause that these rows cannot test at all.
+struct Untestable {
+  std::string effect, at, why;
+};
+
+struct Candidates {
+  std::vector<Candidate> list;
+  /// Many shapes of one cause at once: too many parameters to ask whether it is there, but once it
+  /// is, they close more of the gap. Their parameters are those of candidates in `list`.
+  std::vector<Candidate> profiles;
+  std::vector<Untestable> untestable;
+  std::vector<Node>
+      entries;  ///< of all candidates in order: what a robot that has them all is made of
+};
+
+/// The same with the profiles at the end of the list.
+Candidates with_profiles(Candidates all);
+
+/// Every candidate whose circumstances the rows carry.
+Candidates candidates(const Robot& robot, const DataSet& data, const Site& site);
+
+}  // namespace selfcal

@@ -1,0 +1,41 @@
+// What structure of an unknown cause may look like: residuals that configurations close to each
+// other share.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "constraints/equations/equations.h"
+#include "diagnosis/evidence/marginal_likelihood.h"
+
+namespace selfcal {
+
+/// What close means.
+enum class KernelDomain {
+  same = 1,    ///< only immediate repeats: anything that a configuration brings along
+  joints = 2,  ///< similar joint readings
+  place = 3,   ///< near each other in the cell
+  time = 4,    ///< soon after each other, as the tool sees it: of the base it would be a drift
+  turned = 5,  ///< one joint is off by a smooth function of one or two readings
+};
+std::string_view to_string(KernelDomain closeness);
+
+/// Noise alone first (and noise that immediate repeats share a part of), then every closeness at
+/// several sizes over the noise. `rows` are the
+/// equations that the workbench sees, `ends` the endpoint's pose by row of the data set.
+/// `by_joint` (equations x joints) is what an error of each joint's reading moves an equation. That
+/// of half the reading's last digit is shared by rows of one reading, however often they are
+/// repeated.
+std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
+                                              const std::vector<Eigen::Isometry3d>& ends,
+                                              const Eigen::MatrixXd& by_joint);
+
+/// Only the first of these.
+std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
+                                               const Eigen::MatrixXd& by_joint);
+
+/// Step to which each joint's readings are rounded (rad or m): the largest of 1, 2, 5 times a power
+/// of ten that they are all multiples of; 0 below 1e-9.
+Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q);
+
+}  // namespace selfcal

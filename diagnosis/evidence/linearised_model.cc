@@ -1,0 +1,163 @@
+#include "diagnosis/evidence/linearised_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/site.h"
+#include "constraints/statistics.h"
+#include "diagnosis/evidence/rows.h"
+#include "diagnosis/findings.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+Options geometry_options(const DiagnosisOptions& options) {
+  Options geometry;
+  geometry.most_rejected = options.most_rejected;
+  geometry.seed = options.seed;
+  geometry.gears = true;  // a ratio that is off is geometry: it must not be taken for a cause
+  return geometry;
+}
+
+namespace {
+
+/// State of the geometry's fit as one of the robot with every candidate, whose parameters are zero.
+State extended(const State& state, Eigen::Index parameters) {
+  State wide = state;
+  wide.xi.conservativeResize(parameters);
+  wide.xi.tail(parameters - state.xi.size()).setZero();
+  return wide;
+}
+
+}  // namespace
+
+LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataSet& data,
+                                 const DiagnosisOptions& options, const Progress& progress)
+    : data_(data),
+      most_rejected_(options.most_rejected),
+      geometry_(geometry_of(std::move(robot))),
+      site_(site_of(*geometry_, data)),
+      candidates_(selfcal::candidates(*geometry_, data, site_)),
+      equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
+      adjusted_(adjust(*equations_, geometry_options(options), progress)) {
+  Problems problems;
+  everything_ = correct(geometry_, candidates_.entries, site_, problems);
+  expects(everything_ != nullptr, "every candidate is an effect that the robot can have");
+  for (const Effect* effect : effects_of(*everything_))
+    parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
+  all_equations_ = std::make_unique<Equations>(*everything_, data, Use::fit);
+  const Fit& fitted = adjusted_.fitted;
+  noise_ = pooled_noise(data, fitted);
+  bound_noise();
+  all_ = all_equations_->dense(
+      extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
+      std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
+  put_aside_ = fitted.noise.outlier;
+  weigh(kMostWeighed);
+
+  nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
+}
+
+void LinearisedModel::bound_noise() {
+  const std::vector<Scale> declared = declared_noise(data_);
+  for (size_t s = 0; s < noise_.size(); ++s) {
+    if (declared[s].length > noise_[s].length) quieter_.push_back(static_cast<int>(s));
+    noise_[s] = {std::max(noise_[s].length, declared[s].length),
+                 std::max(noise_[s].angle, declared[s].angle)};
+  }
+  double sum = 0, rows = 0;
+  for (const RowResidual& row : adjusted_.fitted.at.residuals) {
+    sum += std::pow(declared[row.set].length / noise_[row.set].length, 2);
+    rows += 1;
+  }
+  least_ = rows > 0 ? sum / rows : 0;
+}
+
+void LinearisedModel::weigh(double most) {
+  weighed_ = weighed_rows(data_.rows, static_cast<double>(all_.row.size()), most);
+}
+
+DenseEquations LinearisedModel::kept() const {
+  std::vector<char> take = weighed_;
+  for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !put_aside_[row];
+  return selfcal::kept(all_, take);
+}
+
+Whitened LinearisedModel::of(const DenseEquations& rows) const {
+  Whitened out;
+  out.A = rows.W(Eigen::all, nuisance_.columns) / scale_;
+  out.C = rows.W.middleCols(static_cast<Eigen::Index>(geometry_->parameters().size()),
+                            static_cast<Eigen::Index>(parameters_.size())) /
+          scale_;
+  out.y = rows.y / scale_;
+  out.weight = nuisance_.weight;
+  out.pull = nuisance_.pull;
+  out.least = least_ / (scale_ * scale_);
+  return out;
+}
+
+Whitened LinearisedModel::whitened() const { return of(kept()); }
+
+std::vector<Eigen::Isometry3d> LinearisedModel::ends() const {
+  return selfcal::ends(*geometry_, data_.rows);
+}
+
+Eigen::MatrixXd LinearisedModel::tips() const { return selfcal::tips(*geometry_, data_.rows); }
+
+std::vector<int> reading_columns(const Robot& robot) {
+  std::vector<int> columns;
+  for (int j = 0; j < static_cast<int>(robot.joints().size()); ++j)
+    columns.push_back(robot.variable_parameter(j));
+  return columns;
+}
+
+Eigen::MatrixXd LinearisedModel::by_joint(const DenseEquations& kept) const {
+  return kept.W(Eigen::all, reading_columns(*geometry_)) / scale_;
+}
+
+std::vector<Scale> LinearisedModel::noise_of_sets() const {
+  std::vector<Scale> noise = noise_;
+  for (Scale& each : noise) {
+    each.length *= scale_;
+    each.angle *= scale_;
+  }
+  return noise;
+}
+
+double LinearisedModel::noise() const {
+  double squares = 0;
+  int rows = 0;
+  for (const RowResidual& r : adjusted_.fitted.at.residuals) {
+    squares += std::pow(scale_ * noise_[r.set].length, 2);
+    ++rows;
+  }
+  return std::sqrt(squares / std::max(rows, 1));
+}
+
+Eigen::VectorXd LinearisedModel::residuals(const std::vector<int>& effects,
+                                           const Eigen::VectorXd& prior) const {
+  return left_of(of(all_), whitened(), effects, prior);
+}
+
+Eigen::VectorXd LinearisedModel::geometry_residuals(const Whitened& rows) const {
+  return left_of(rows, rows, {}, Eigen::VectorXd());
+}
+
+Eigen::VectorXd LinearisedModel::geometry_leaves(const Whitened& rows) const {
+  const Eigen::MatrixXd Q =
+      orthogonal_columns(over_priors(rows.A, rows.weight)).Q.topRows(rows.A.rows());
+  return (1 - Q.rowwise().squaredNorm().array()).max(0);
+}
+
+bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
+  std::vector<char> outlier =
+      far_rows(all_, residuals, static_cast<double>(nuisance_.columns.size()), put_aside_.size(),
+               most_rejected_);
+  if (outlier == put_aside_ && std::abs(variance - 1) < 0.1) return false;
+  put_aside_ = std::move(outlier);
+  scale_ *= std::sqrt(variance);
+  return true;
+}
+
+}  // namespace selfcal

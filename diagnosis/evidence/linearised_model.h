@@ -1,0 +1,93 @@
+// The rows of a diagnosis as its algebra sees them: linearised where geometry alone fits best,
+// whitened by the noise as known so far, without the rows that are false.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "constraints/estimation/adjustment.h"
+#include "diagnosis/evidence/search.h"
+
+namespace selfcal {
+
+struct DiagnosisOptions;
+
+/// How the geometry is fitted wherever a gap is looked for.
+Options geometry_options(const DiagnosisOptions& options);
+
+/// Parameter that each joint's reading is added to, by joint.
+std::vector<int> reading_columns(const Robot& robot);
+
+class LinearisedModel {
+ public:
+  /// Fits the geometry and linearises the equations of all candidates there.
+  LinearisedModel(std::shared_ptr<const Robot> robot, const DataSet& data,
+                  const DiagnosisOptions& options, const Progress& progress);
+  LinearisedModel(const LinearisedModel&) = delete;
+
+  const Robot& geometry() const { return *geometry_; }
+  const std::shared_ptr<const Robot>& shared_geometry() const { return geometry_; }
+  const Site& site() const { return site_; }
+  const Candidates& candidates() const { return candidates_; }
+  const std::vector<EffectParameter>& parameters() const { return parameters_; }
+  const Adjusted& adjusted() const { return adjusted_; }
+  const Equations& equations() const { return *equations_; }
+
+  /// The rows not put aside, with the noise `scale` times what the geometry's fit says.
+  Whitened whitened() const;
+  DenseEquations kept() const;
+  std::vector<Eigen::Isometry3d> ends() const;
+  Eigen::MatrixXd tips() const;
+  /// What an error of each joint's reading moves each equation of kept() (equations x joints, 1/rad
+  /// or 1/m); whitened.
+  Eigen::MatrixXd by_joint(const DenseEquations& kept) const;
+  /// What the geometry alone leaves of `rows` (as whitened()).
+  Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
+  /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
+  /// leverage.
+  Eigen::VectorXd geometry_leaves(const Whitened& rows) const;
+  const std::vector<char>& outlier() const { return put_aside_; }
+  /// As known so far, by set.
+  std::vector<Scale> noise_of_sets() const;
+  /// 1 sigma of one scalar (m), pooled over the sets.
+  double noise() const;
+  /// Sets whose rows the geometry meets better than their data sheet's noise allows, with no
+  /// repeats that would tell it better.
+  const std::vector<int>& quieter() const { return quieter_; }
+
+  /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of every
+  /// row, put aside or not, when fitted to the kept ones; whitened at the current scale.
+  Eigen::VectorXd residuals(const std::vector<int>& effects, const Eigen::VectorXd& prior) const;
+  /// Takes the noise from the variance of the best explanation and puts aside the rows whose
+  /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
+  bool refine(const Eigen::VectorXd& residuals, double variance);
+  /// All rows, put aside or not, whitened at the current scale.
+  const DenseEquations& all() const { return all_; }
+
+  /// How many equations take part (a data set with more is thinned out).
+  void weigh(double most);
+
+ private:
+  Whitened of(const DenseEquations& rows) const;
+  /// Takes no noise for less than its data sheet says, unless repeats tell.
+  void bound_noise();
+
+  const DataSet& data_;
+  double most_rejected_;
+  std::shared_ptr<const Robot> geometry_, everything_;
+  Site site_;
+  Candidates candidates_;
+  std::vector<EffectParameter> parameters_;
+  std::unique_ptr<Equations> equations_, all_equations_;
+  Adjusted adjusted_;
+  Nuisance nuisance_;
+  DenseEquations all_;
+  std::vector<int> quieter_;
+  std::vector<Scale> noise_;     ///< by set, at a scale of one
+  std::vector<char> weighed_;    ///< by row: takes part in choosing the causes
+  std::vector<char> put_aside_;  ///< by row of the data set
+  double scale_ = 1;
+  double least_ = 0;  ///< variance of the noise, at least, at a scale of one
+};
+
+}  // namespace selfcal

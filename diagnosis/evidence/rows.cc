@@ -1,0 +1,127 @@
+#include "diagnosis/evidence/rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kFarQuantile = 1 - 1e-5;
+constexpr double kMedianToSigma = 1.4826;  // of a normal variable
+
+/// From the middle of the residuals: no false row moves it, and where structure that nobody knows
+/// adds to the noise it holds both.
+double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                       double unknowns) {
+  std::vector<double> sizes;
+  for (size_t i = 0; i < all.row.size(); ++i)
+    if (all.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
+  const auto n = static_cast<double>(sizes.size());
+  const double spent = std::min(unknowns, 0.7 * n);
+  return std::pow(kMedianToSigma * median(std::move(sizes)), 2) / (1 - spent / n);
+}
+
+}  // namespace
+
+std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
+  std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
+  const auto method = [&](size_t s) { return data.sets[s].method->name(); };
+  for (const RowResidual& r : fitted.at.residuals) {
+    auto& [squares, rows] = pooled[method(static_cast<size_t>(r.set))];
+    squares += std::pow(fitted.noise.estimated[r.set].length, 2);
+    rows += 1;
+  }
+  std::vector<Scale> noise = fitted.noise.estimated;
+  for (size_t s = 0; s < noise.size(); ++s)
+    if (const auto found = pooled.find(method(s)); found != pooled.end())
+      noise[s].length = std::sqrt(found->second.first / found->second.second);
+  return noise;
+}
+
+std::vector<Scale> declared_noise(const DataSet& data) {
+  std::vector<Scale> declared;
+  for (const Set& set : data.sets) declared.push_back({set.noise, set.noise_angle});
+  std::map<std::pair<int, int>, int> visits;  // set, repeat
+  for (int row = 0; row < data.rows.rows() && !data.rows.repeat.empty(); ++row)
+    if (data.rows.repeat[row] >= 0 && !data.rows.check[row] &&
+        ++visits[{data.rows.set[row], data.rows.repeat[row]}] > 1)
+      declared[static_cast<size_t>(data.rows.set[row])] = {0, 0};
+  return declared;
+}
+
+std::vector<char> weighed_rows(const Observations& rows, double equations, double most) {
+  const double step = std::max(1.0, equations / most);
+  std::vector<char> take(static_cast<size_t>(rows.rows()), 0);
+  std::map<int, char> repeats;
+  double next = 0, configurations = 0;
+  for (size_t row = 0; row < take.size(); ++row) {
+    if (rows.check[row]) continue;
+    const int repeat = rows.repeat.empty() ? -1 : rows.repeat[row];
+    if (repeat >= 0 && repeats.contains(repeat)) {
+      take[row] = repeats[repeat];
+      continue;
+    }
+    take[row] = configurations >= next;
+    if (take[row]) next += step;
+    configurations += 1;
+    if (repeat >= 0) repeats[repeat] = take[row];
+  }
+  return take;
+}
+
+DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
+  std::vector<int> rows;
+  for (size_t i = 0; i < all.row.size(); ++i)
+    if (all.row[i] < 0 || take[static_cast<size_t>(all.row[i])])
+      rows.push_back(static_cast<int>(i));
+  DenseEquations some{all.W(rows, Eigen::all), all.y(rows), all.shift(rows, Eigen::all), {}};
+  for (const int i : rows) some.row.push_back(all.row[i]);
+  return some;
+}
+
+std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                           double unknowns, std::size_t rows, double most) {
+  const double variance = robust_variance(all, residuals, unknowns);
+  std::vector<double> squares(rows, 0);
+  std::vector<int> count(rows, 0);
+  for (size_t i = 0; i < all.row.size(); ++i)
+    if (all.row[i] >= 0) {
+      squares[all.row[i]] += std::pow(residuals[static_cast<Eigen::Index>(i)], 2);
+      ++count[all.row[i]];
+    }
+  std::vector<std::pair<double, int>> far;
+  for (size_t row = 0; row < rows; ++row) {
+    if (count[row] == 0) continue;
+    const double sigmas = std::sqrt(squares[row] / variance);
+    const double limit = chi_quantile(count[row], kFarQuantile);
+    if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
+  }
+  std::sort(far.begin(), far.end());
+  const auto n = static_cast<double>(std::ranges::count_if(count, [](int c) { return c > 0; }));
+  const double allowed = most * n + 2 * std::sqrt(most * n);
+  std::vector<char> outlier(rows, 0);
+  for (size_t i = 0; i < far.size() && static_cast<double>(i) < allowed; ++i)
+    outlier[far[i].second] = 1;
+  return outlier;
+}
+
+std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows) {
+  std::vector<Eigen::Isometry3d> list;
+  for (int row = 0; row < rows.rows(); ++row)
+    list.push_back(seen_poses(robot, rows.q.row(row).transpose()).back());
+  return list;
+}
+
+Eigen::MatrixXd tips(const Robot& robot, const Observations& rows) {
+  Eigen::MatrixXd tips(rows.rows(), 3);
+  Eigen::Index row = 0;
+  for (const Eigen::Isometry3d& end : ends(robot, rows))
+    tips.row(row++) = end.translation().transpose();
+  return tips;
+}
+
+}  // namespace selfcal

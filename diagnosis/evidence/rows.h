@@ -1,0 +1,39 @@
+// Rows before any cause is known: how noisy they are, which of them are weighed.
+#pragma once
+
+#include <vector>
+
+#include "constraints/equations/equations.h"
+#include "constraints/estimation/fit.h"
+
+namespace selfcal {
+
+/// Equations that choose among causes, at most: the evidence of structure takes their third power.
+inline constexpr double kMostWeighed = 720;
+
+/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
+/// since the set that holds the cause would otherwise be taken for a noisy one. By set.
+std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
+/// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
+/// repeats of the rows tell what the noise really is.
+std::vector<Scale> declared_noise(const DataSet& data);
+
+/// By row, 1 where it takes part: of rows with more than `most` of `equations` every so many
+/// configurations, with all their repeats; none that are kept aside to judge.
+std::vector<char> weighed_rows(const Observations& rows, double equations, double most);
+
+/// The equations of the rows that `take` (by row) holds, and those that no row carries.
+DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
+
+/// By row of the data set (which has `rows`), 1 where what an explanation of so many `unknowns`
+/// leaves of it (`residuals`, by equation) lies beyond one in a hundred thousand: the farthest, up
+/// to a share of about `most`.
+std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                           double unknowns, std::size_t rows, double most);
+
+/// The endpoint's pose with the robot file's own values, by row.
+std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows);
+/// Where it is (rows x 3, m).
+Eigen::MatrixXd tips(const Robot& robot, const Observations& rows);
+
+}  // namespace selfcal

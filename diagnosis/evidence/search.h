@@ -1,0 +1,131 @@
+// Which sets of causes explain the rows, and with what probability.
+//
+// Every single candidate is weighed at every size and with every structure of the unknown; the best
+// ones are extended by every other candidate to pairs, the best of these to triples. The posterior
+// is the normalised evidence of all sets visited times their priors.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/evidence/candidates.h"
+#include "diagnosis/evidence/marginal_likelihood.h"
+
+namespace selfcal {
+
+/// Prior odds, and how far the search goes.
+struct SearchRule {
+  double family_odds = 0.10;  ///< of one family against its absence
+  double unknown_odds = 0.4;  ///< of structure that no known effect explains
+  double another = 0.25;      ///< factor on the odds of each cause after the first
+  double same_family = 0.3;   ///< odds that a cause acts at one more place
+  int extended_singles = 14, extended_pairs = 14;
+  int most_structures = 4;  ///< kept for pairs and triples
+  /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
+  /// its noise from what its own best cause leaves.
+  bool noise_is_known = false;
+};
+
+/// One hypothesis: candidates (ascending) and a structure (0: none).
+struct Hypothesis {
+  std::vector<int> candidates;
+  int structure = 0;
+  double log_weight = 0;      ///< evidence times prior, summed over sizes
+  std::vector<double> sizes;  ///< most probable, by candidate
+};
+
+/// Answers that stand where an effect is named: what calibration leaves is noise, or structure that
+/// no known effect explains.
+inline constexpr const char kNone[] = "none", kUnknown[] = "unknown";
+inline bool names_effect(std::string_view answer) { return answer != kNone && answer != kUnknown; }
+
+using Cause = std::pair<std::string, std::string>;  ///< effect, at
+
+struct Posterior {
+  std::vector<Hypothesis> hypotheses;  ///< most probable first; log_weight normalised
+  std::map<std::string, double> family;
+  std::map<Cause, double> cause;
+  double none = 0, unknown = 0;
+  double log_total = 0;  ///< log evidence over that of nothing at all
+};
+
+/// Everything that the search needs and that does not depend on y.
+class EvidenceEvaluator {
+ public:
+  EvidenceEvaluator(const Whitened& rows, std::vector<DiscrepancyCovariance> structures,
+                    const Candidates& all, const std::vector<EffectParameter>& parameters,
+                    const SearchRule& rule);
+
+  /// Exchanges y in every workbench, or in those of noise alone: enough for best_found().
+  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone = false);
+  Posterior search() const { return search(rule_.extended_singles, rule_.extended_pairs); }
+  /// So many singles extended to pairs, so many pairs to triples.
+  Posterior search(int singles, int pairs) const;
+  /// Largest log evidence times prior of one candidate, or of that one and the best beside it, over
+  /// that of none, in the noise that explains the rows best without any: the statistic of the null
+  /// distribution.
+  double best_found() const;
+
+  const MarginalLikelihood& marginal_likelihood(int structure) const {
+    return marginal_likelihoods_[structure];
+  }
+  const Block& block(int candidate) const { return blocks_[candidate]; }
+  const Candidates& candidates() const { return all_; }
+  const DiscrepancyCovariance& structure(int s) const {
+    return marginal_likelihoods_[s].structure();
+  }
+  /// Variance of the noise in this structure, over that of the rows' whitening.
+  double noise_variance(int s) const { return structure(s).noise; }
+  int structures() const { return static_cast<int>(marginal_likelihoods_.size()); }
+  /// Log evidence of one candidate beside noise alone, over that of none.
+  double evidence(int candidate) const;
+  /// Share of the candidate's main columns that calibration cannot absorb (0 to 1).
+  double survival(int candidate) const { return survival_[candidate]; }
+  /// Smallest amplitude whose evidence would stand out, of the first main parameter and in its
+  /// unit.
+  double detectable(int candidate, double log_evidence) const;
+  std::vector<MarginalLikelihood::Term> terms(const Hypothesis& hypothesis) const;
+  /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.
+  void add_sigma(int candidate, double size, std::vector<double>& to) const;
+  /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
+  double log_weight(const Hypothesis& h) const;
+  /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
+  /// at most three families.
+  Hypothesis grow(Hypothesis h, size_t most) const;
+
+  static const std::vector<double>& sizes();
+
+ private:
+  friend class Search;
+  struct Single {
+    double log_sum = 0, log_best = 0, size = 1;
+  };
+  double log_prior(const std::vector<int>& candidates, int structure) const;
+  /// One candidate in the light of a workbench, its sizes summed over.
+  Single weigh(const MarginalLikelihood& marginal_likelihood, int candidate) const;
+  double plausibility(int candidate, double size) const;
+  double held(const Hypothesis& h) const;
+  Hypothesis with(Hypothesis h, int candidate, const MarginalLikelihood& rest) const;
+  Hypothesis with_best(const Hypothesis& h, const MarginalLikelihood& rest) const;
+  Hypothesis pruned(Hypothesis h) const;
+  Hypothesis without_parts(Hypothesis h) const;
+  /// One of them holds all that the other has.
+  bool overlap(int a, int b) const;
+  void make_blocks(const std::vector<EffectParameter>& parameters);
+  /// `columns` are those of the workbench's structure.
+  void agree(MarginalLikelihood& marginal_likelihood, Columns columns);
+
+  const Candidates& all_;
+  const SearchRule rule_;
+  std::shared_ptr<const Whitened> rows_;
+  std::shared_ptr<const Groups> groups_;  ///< by candidate
+  std::vector<MarginalLikelihood> marginal_likelihoods_;
+  std::vector<Block> blocks_;
+  std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1
+  std::vector<char> seen_;                    ///< not absorbed altogether
+};
+
+}  // namespace selfcal

@@ -1,0 +1,17 @@
+// The smallest effect of each kind that would have been named, and what these rows cannot test.
+#pragma once
+
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/search.h"
+
+namespace selfcal {
+
+struct Diagnosis;
+struct DiagnosisOptions;
+
+/// Fills `detectable` with each cause in its best seen shape, and adds to `untestable` what
+/// calibration absorbs or nothing moves.
+void list_detectable(const LinearisedModel& view, const EvidenceEvaluator& bench,
+                     const DiagnosisOptions& options, Diagnosis& into);
+
+}  // namespace selfcal

@@ -1,0 +1,246 @@
+#include "diagnosis/report/further_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "constraints/sampling/configurations.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kNewRows = 12;
+constexpr double kPayload = 5;    ///< kg, where the robot's masses are not known
+constexpr double kOfMass = 0.05;  ///< payload over the robot's mass
+constexpr double kFaster = 3;
+constexpr int kPostures = 6;       ///< found for one place, of which the farthest is taken
+constexpr double kAnother = 0.5;   ///< that a joint moves at least in another posture (rad, m)
+constexpr int kFewestReached = 3;  ///< rows that are worth a step
+
+/// Rows of `data` that spread over the fit rows, evenly.
+std::vector<int> spread_rows(const DataSet& data) {
+  std::vector<int> fit, some;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) fit.push_back(row);
+  const int count = std::min<int>(kNewRows, static_cast<int>(fit.size()));
+  for (int i = 0; i < count; ++i) some.push_back(fit[i * fit.size() / count]);
+  return some;
+}
+
+/// The data set and after it its rows `rows` once more, each a configuration of its own.
+DataSet with_copies(const DataSet& data, const std::vector<int>& rows) {
+  std::vector<int> all(static_cast<size_t>(data.rows.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  all.insert(all.end(), rows.begin(), rows.end());
+  DataSet more = data;
+  more.rows = taken(data.rows, all);
+  for (size_t i = static_cast<size_t>(data.rows.rows()); i < more.rows.repeat.size(); ++i)
+    more.rows.repeat[i] = -1;
+  return more;
+}
+
+/// Where the endpoint is, and how each joint moves it (6 x joints, world).
+struct Endpoint {
+  Location at;
+  Eigen::MatrixXd J;
+};
+
+class Further {
+ public:
+  Further(const LinearisedModel& view, const DataSet& data)
+      : view_(view),
+        robot_(view.geometry()),
+        xi_(view.adjusted().fitted.state.xi),
+        data_(data),
+        copies_(with_copies(data, spread_rows(data))),
+        first_(data.rows.rows()) {}
+
+  std::vector<CandidateRows> run() {
+    with_payload();
+    if (data_.rows.velocity.rows() > 0) {
+      DataSet back = copies_, fast = copies_;
+      back.rows.velocity.bottomRows(count()) *= -1;
+      fast.rows.velocity.bottomRows(count()) *= kFaster;
+      add("approached from the other side", std::move(back));
+      if (data_.speeds) add("at three times the speed", std::move(fast));
+    }
+    if (data_.rows.time.size() > 0) {
+      DataSet again = copies_;
+      again.rows.time.tail(count()).setConstant(view_.site().end + 1);
+      add("once more at the end", std::move(again));
+    }
+    joints_elsewhere();
+    constexpr double kHalf = std::numbers::pi;
+    add_postures("with the tool rolled about its axis", {kHalf, kHalf / 2, -kHalf / 2});
+    add_postures("in another posture (elbow up and down, wrist turned)", {0});
+    return std::move(list_);
+  }
+
+ private:
+  Eigen::Index count() const { return copies_.rows.q.rows() - first_; }
+
+  void add(const std::string& how, DataSet both) {
+    const Eigen::Index more = both.rows.q.rows() - first_;
+    list_.push_back({"repeat " + std::to_string(more) + " rows " + how, std::move(both)});
+  }
+
+  void with_payload() {
+    if (!robot_.statics()) return;
+    const Mechanics& mechanics = robot_.statics()->mechanics();
+    double mass = 0;
+    for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
+    const double payload =
+        mechanics.masses_known() ? std::max(1.0, std::round(kOfMass * mass)) : kPayload;
+    DataSet loaded = copies_;
+    Observations& rows = loaded.rows;
+    if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
+    for (Eigen::Index row = first_; row < rows.q.rows(); ++row)
+      rows.wrench.row(row).head<3>() +=
+          payload *
+          (endpoint(rows.q.row(row).transpose()).at.R.transpose() * mechanics.gravity).transpose();
+    add("with a payload of " + format_number(payload) + " kg", std::move(loaded));
+  }
+
+  /// The ball that the touches of a set so far lie in: the surface may end there.
+  Patch seen_of(int set) const {
+    const Eigen::MatrixXd tips = view_.tips();
+    std::vector<int> nuisance;
+    for (int row = 0; row < first_; ++row)
+      if (data_.rows.set[row] == set) nuisance.push_back(row);
+    Patch patch;
+    if (nuisance.empty()) return patch;
+    patch.centre = tips(nuisance, Eigen::all).colwise().mean().transpose();
+    for (const int row : nuisance)
+      patch.radius = std::max(patch.radius, (tips.row(row).transpose() - patch.centre).norm());
+    return patch;
+  }
+
+  /// Other configurations that touch the same surfaces, or any where nothing is touched. Rows of
+  /// shared points stay: elsewhere they would be of another point.
+  void joints_elsewhere() {
+    DataSet elsewhere = copies_;
+    Observations& rows = elsewhere.rows;
+    std::vector<std::vector<int>> rows_of(data_.sets.size());
+    for (auto row = static_cast<int>(first_); row < rows.rows(); ++row)
+      rows_of[rows.set[row]].push_back(row);
+    DataSet found;
+    found.sets = data_.sets;
+    std::vector<SampleRequest> requests;
+    for (int s = 0; s < static_cast<int>(data_.sets.size()); ++s) {
+      const Method& method = *data_.sets[s].method;
+      if (method.group_freedom() > 0 || method.paired()) continue;
+      SampleRequest request;
+      request.set = s;
+      request.rows = static_cast<int>(rows_of[s].size());
+      request.nuisance = view_.adjusted().fitted.state.nuisance[s];
+      if (method.constrains()) request.patch = seen_of(s);
+      requests.push_back(std::move(request));
+    }
+    Random random(1);
+    sample_rows(robot_, xi_, requests, random, found);
+    std::vector<size_t> used(data_.sets.size(), 0);
+    for (int i = 0; i < found.rows.rows(); ++i) {
+      const int s = found.rows.set[i];
+      rows.q.row(rows_of[s][used[s]++]) = found.rows.q.row(i);
+    }
+    if (found.rows.rows() > 0)
+      add("with the joints elsewhere in their range", std::move(elsewhere));
+  }
+
+  Endpoint endpoint(const Eigen::VectorXd& q) const {
+    Locations X;
+    PsiBlock psi;
+    Eigen::MatrixXd lanes;
+    robot_.locate(block_of(q), xi_, Body::endpoint, X, &psi);
+    robot_.joint_jacobian(block_of(q), xi_, Body::endpoint, psi, lanes);
+    Endpoint there{X.at(0), Eigen::MatrixXd(6, lanes.cols())};
+    for (int c = 0; c < 6; ++c) there.J.row(c) = lanes.row(c * kLanes);
+    return there;
+  }
+
+  /// Readings within the limits that bring the endpoint to `place`: of those found, the farthest
+  /// from `q`. Nothing where none is another one.
+  std::optional<Eigen::VectorXd> posture(const Location& place, const Eigen::VectorXd& q) const {
+    Problems problems;
+    Node node = Node::map();
+    node.set("method", Node::of(std::string("location-constraint")));
+    DataSet found;
+    found.sets.push_back(make_set("place", node, problems));
+    SampleRequest request;
+    request.rows = request.rows_per_group = kPostures;
+    request.places = {place};
+    Random random(1);
+    sample_rows(robot_, xi_, {request}, random, found);
+    std::optional<Eigen::VectorXd> best;
+    double farthest = kAnother;
+    for (Eigen::Index row = 0; row < found.rows.q.rows(); ++row) {
+      const Eigen::VectorXd other = found.rows.q.row(row).transpose();
+      const double far = (other - q).cwiseAbs().maxCoeff();
+      if (far < farthest) continue;
+      farthest = far;
+      best = other;
+    }
+    return best;
+  }
+
+  struct Reached {
+    Eigen::VectorXd q;
+    Eigen::Matrix3d turned;  ///< the tool in its own axes
+  };
+  /// The endpoint of `q` in another posture, by the first of `rolls` that reaches one.
+  std::optional<Reached> reach(const Location& place, const Eigen::VectorXd& q,
+                               std::initializer_list<double> rolls) const {
+    for (const double roll : rolls) {
+      const Eigen::Matrix3d turned = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).matrix();
+      if (const auto other = posture({place.R * turned, place.p}, q))
+        return Reached{*other, turned};
+    }
+    return std::nullopt;
+  }
+
+  /// The same endpoint in another posture, with the tool rolled about its axis by one of `rolls`
+  /// (rad). It is approached as before, and what pulls at the tool keeps its direction.
+  void add_postures(const char* how, std::initializer_list<double> rolls) {
+    DataSet others = copies_;
+    Observations& rows = others.rows;
+    std::vector<int> take(static_cast<size_t>(first_));
+    std::iota(take.begin(), take.end(), 0);
+    for (Eigen::Index row = first_; row < rows.q.rows(); ++row) {
+      const Eigen::VectorXd q = rows.q.row(row).transpose();
+      const Endpoint before = endpoint(q);
+      const auto reached = reach(before.at, q, rolls);
+      if (!reached) continue;
+      take.push_back(static_cast<int>(row));
+      rows.q.row(row) = reached->q.transpose();
+      if (rows.velocity.rows() > 0 && rows.velocity.row(row).allFinite())
+        rows.velocity.row(row) =
+            least_squares(endpoint(reached->q).J, before.J * rows.velocity.row(row).transpose())
+                .transpose();
+      for (Eigen::Index part = 0; part < rows.wrench.cols(); part += 3)
+        rows.wrench.row(row).segment<3>(part) *= reached->turned;
+    }
+    if (static_cast<Eigen::Index>(take.size()) < first_ + kFewestReached) return;
+    rows = taken(rows, take);
+    add(how, std::move(others));
+  }
+
+  const LinearisedModel& view_;
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  const DataSet& data_;
+  const DataSet copies_;  ///< the rows at hand and after them some of them once more
+  const Eigen::Index first_;
+  std::vector<CandidateRows> list_;
+};
+
+}  // namespace
+
+std::vector<CandidateRows> candidate_rows(const LinearisedModel& view, const DataSet& data) {
+  return Further(view, data).run();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,113 @@
+// A judging row that no model comes near is a false one: it would drown every figure, is left
+// out of them and named.
+#include "diagnosis/report/holdout_validation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/estimation/judgement.h"
+#include "constraints/statistics.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kFar = 1 - 1e-6;
+constexpr double kBeyond = 1.25;  ///< a judging row's prediction has an error of its own
+
+/// A model and its fit to the `fit` rows.
+struct Fitted {
+  std::shared_ptr<const Robot> model;
+  std::unique_ptr<Equations> equations;
+  Adjusted adjusted;
+
+  Judged judged(const DataSet& data) const {
+    return judge(*model, data, *equations, adjusted.fitted);
+  }
+};
+
+Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
+              const Correction& correction, const Site& site, const DiagnosisOptions& options) {
+  Fitted fit;
+  Problems problems;
+  Options free = geometry_options(options);
+  for (const FoundEffect& each : correction)
+    free.effect_sigma.insert(free.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
+  fit.model = correct(geometry, entries_of(correction), site, problems);
+  expects(fit.model != nullptr, "what was found is effects that the robot can have");
+  fit.equations = std::make_unique<Equations>(*fit.model, data, Use::fit);
+  for (const Parameter& p : fit.model->parameters())
+    if (p.part == Part::effect) free.free.push_back(p.name);
+  fit.adjusted = adjust(*fit.equations, free, {});
+  return fit;
+}
+
+/// The judging rows as each model leaves them.
+struct Left {
+  Judged nominal, geometric, named, whole;
+};
+
+/// The figures of the rows that some model comes near, and what is put aside.
+void take_rows(const Left& left, const DataSet& data, double noise, Closing& closing) {
+  // A set that only judges has a noise of its own: what its data sheet says, if it does.
+  const Judged& whole = left.whole;
+  const auto floor_of = [&](const RowResidual& row) {
+    const double nuisance =
+        data.sets[row.set].noise > 0 ? data.sets[row.set].noise : whole.check_scale[row.set].length;
+    return row.lengths * std::pow(row.factor * (whole.aligned[row.set] ? nuisance : noise), 2);
+  };
+  const auto square = [](const RowResidual& row) { return row.length * row.length; };
+  for (size_t i = 0; i < whole.check.size(); ++i) {
+    const RowResidual& before = left.geometric.check[i];
+    const RowResidual& after = left.named.check[i];
+    const RowResidual& all = whole.check[i];
+    if (all.lengths == 0) continue;
+    const double near = std::min({before.length, after.length, all.length});
+    const double limit = chi_quantile(all.lengths, kFar);
+    if (near > kBeyond * limit * std::max(noise, whole.check_scale[all.set].length)) {
+      closing.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
+                                  "neither the geometry nor any effect found comes near it"});
+      continue;
+    }
+    closing.judged.push_back(
+        {square(left.nominal.check[i]), square(before), square(after), square(all), floor_of(all)});
+  }
+}
+
+}  // namespace
+
+Closing validate_on_holdout(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
+                            const DataSet& data, const Correction& correction, const Site& site,
+                            double noise, const DiagnosisOptions& options) {
+  Closing closing;
+  const auto note = [&](const Fit& fit) {
+    if (closing.converged && !fit.converged) closing.stop_reason = fit.stop_reason;
+    closing.converged = closing.converged && fit.converged;
+  };
+  const Equations plain(*geometry, data, Use::fit);
+  Fitted all = fitted(geometry, data, correction, site, options);
+  Left left{judge(*geometry, data, plain, before.before),
+            judge(*geometry, data, plain, before.fitted),
+            {},
+            all.judged(data)};
+  note(before.fitted);
+  note(all.adjusted.fitted);
+  const Correction names = named_of(correction);
+  if (names.empty()) {
+    left.named = left.geometric;
+  } else if (names.size() == correction.size() || left.whole.check.empty()) {
+    left.named = left.whole;
+  } else {
+    const Fitted alone = fitted(geometry, data, names, site, options);
+    left.named = alone.judged(data);
+    note(alone.adjusted.fitted);
+  }
+  take_rows(left, data, noise, closing);
+  closing.model = std::move(all.model);
+  closing.all = std::move(all.adjusted);
+  return closing;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,96 @@
+#include "diagnosis/report/warnings.h"
+
+#include <cmath>
+
+#include "diagnosis/findings.h"
+#include "diagnosis/search/causes.h"
+#include "kinematics/corrected_robot.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kGearSigmas = 3;
+
+std::string of_fits(const Closing& closing) {
+  if (closing.converged) return {};
+  return "a fit did not converge: " + closing.stop_reason;
+}
+
+std::string of_gears(const LinearisedModel& view) {
+  std::string gears;
+  const std::vector<Parameter>& parameters = view.geometry().parameters();
+  const Fit& fitted = view.adjusted().fitted;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double off = fitted.state.xi[at] - parameters[i].nominal;
+    if (parameters[i].part == Part::gear &&
+        std::abs(off) > kGearSigmas * std::sqrt(fitted.covariance(at, at)))
+      gears += (gears.empty() ? "" : ", ") + parameters[i].name + " " +
+               format_number(std::round(1e6 * off)) + " ppm";
+  }
+  if (gears.empty()) return {};
+  return "gear ratios are free here, so that none that is off is taken for a cause; off by more "
+         "than three sigma: " +
+         gears;
+}
+
+std::string of_noise(const LinearisedModel& view, const DataSet& data) {
+  std::string sets;
+  for (const int s : view.quieter())
+    sets += (sets.empty() ? "" : ", ") + data.sets[s].name + " (" +
+            format_number(1e3 * data.sets[s].noise) + " mm)";
+  if (sets.empty()) return {};
+  return "the noise is taken from the data sheet, of " + sets +
+         ": calibration leaves less there, and no row is repeated that would tell what it really "
+         "is";
+}
+
+}  // namespace
+
+std::string warning_of_own_effects(const Robot& robot) {
+  std::string names;
+  for (const Effect* effect : effects_of(robot))
+    names += (names.empty() ? "" : ", ") + label(std::string(effect->name()), effect->at());
+  if (names.empty()) return {};
+  return "the effects in the robot's file are not used (" + names +
+         "): the diagnosis begins at the geometry alone and finds anew what is there";
+}
+
+std::string warning_of_gap(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (diagnosis.verdict.effect == kNone) return {};
+  if (gap.rows == 0)
+    return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
+           "not known";
+  const bool named = diagnosis.verdict.effect != kUnknown;
+  const bool worse = gap.rms_all > gap.rms_before;
+  if (named && gap.rms_after >= gap.rms_before)
+    return std::string(
+               "the rows kept aside do not confirm it: they are met no better with it "
+               "than without") +
+           (gap.rms_all < gap.rms_before ? ", though better with everything found"
+                                         : "; do not use the corrected model");
+  if (worse)
+    return "the rows kept aside are met worse with everything found than with the geometry alone: "
+           "do not use the corrected model";
+  if (!gap.closed.fraction)
+    return "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
+           "closes";
+  if (named && gap.closed.least <= 0)
+    return std::string(
+               "the rows kept aside are too few to confirm it: as far as they tell, it may "
+               "have closed nothing") +
+           (gap.closed_all.least > 0 ? ", though everything found closes some of the gap"
+                                     : "; measure more before the corrected model is used");
+  return {};
+}
+
+std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
+                                     const Closing& closing) {
+  std::vector<std::string> list;
+  for (const std::string& each : {of_fits(closing), of_gears(view), of_noise(view, data)})
+    if (!each.empty()) list.push_back(each);
+  return list;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,25 @@
+// What a person must know before the answer of a diagnosis is acted on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/report/holdout_validation.h"
+
+namespace selfcal {
+
+struct Diagnosis;
+
+/// Fits that failed, gear ratios that were off, noise that only a data sheet tells.
+std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
+                                     const Closing& closing);
+
+/// That the effects of the robot's own file are not used; empty where it has none.
+std::string warning_of_own_effects(const Robot& robot);
+
+/// What the judging rows say of the named cause, and of the corrected model with everything found,
+/// where that is not plain; empty where it is.
+std::string warning_of_gap(const Diagnosis& diagnosis);
+
+}  // namespace selfcal

@@ -1,0 +1,287 @@
+#include "diagnosis/search/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "diagnosis/search/sign_flip_test.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kLeastTold = 0.005;  ///< least probability that is told
+constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
+constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
+constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
+/// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of them.
+constexpr double kMostLeft = 0.2;
+constexpr size_t kMostExplaining = 20;  ///< candidates
+constexpr double kSurelyUnknown = 0.7;
+constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
+
+/// What the linear parameters do not say of an entry.
+std::string shape_in_words(const Node& entry) {
+  constexpr std::pair<const char*, const char*> kTold[] = {
+      {"moment", "from %.0f s on"}, {"settle", "settling in %.0f s"}, {"lag", "lagging by %.0f s"}};
+  for (const auto& [key, words] : kTold) {
+    const Node* field = entry.find(key);
+    const auto value = field ? written_number(field->text) : std::nullopt;
+    if (!value) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, words, *value);
+    return text;
+  }
+  return entry.find("half_waves") ? "wandering" : "";
+}
+
+class Teller {
+ public:
+  Teller(const LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior)
+      : view_(view), bench_(bench), posterior_(posterior) {}
+
+  std::vector<CauseResult> causes() const {
+    std::vector<CauseResult> list;
+    for (const auto& [family, probability] : posterior_.family) {
+      if (probability < kLeastTold) continue;
+      CauseResult cause;
+      cause.effect = family;
+      cause.probability = std::min(probability, 1.0);
+      cause.where = places(family, probability);
+      describe(cause);
+      confound(cause);
+      list.push_back(std::move(cause));
+    }
+    list.push_back({.effect = kNone, .probability = posterior_.none});
+    list.push_back({.effect = kUnknown, .probability = std::min(posterior_.unknown, 1.0)});
+    std::sort(list.begin(), list.end(),
+              [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    return list;
+  }
+
+ private:
+  const Candidate& candidate(int c) const { return view_.candidates().list[c]; }
+
+  bool holds(const Hypothesis& h, const std::string& effect, const std::string& at) const {
+    return std::any_of(h.candidates.begin(), h.candidates.end(), [&](int c) {
+      return candidate(c).effect == effect && (at.empty() || candidate(c).at == at);
+    });
+  }
+
+  std::vector<std::string> places(const std::string& family, double probability) const {
+    std::vector<std::pair<double, std::string>> ranked;
+    for (const auto& [cause, p] : posterior_.cause)
+      if (cause.first == family && !cause.second.empty()) ranked.emplace_back(-p, cause.second);
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::string> list;
+    for (const auto& [p, at] : ranked)
+      if (list.empty() || -p > kAlsoThere * probability) list.push_back(at);
+    return list;
+  }
+
+  /// Size and parameters, from the most probable hypothesis that has the cause.
+  void describe(CauseResult& cause) const {
+    const std::string at = cause.where.empty() ? "" : cause.where.front();
+    const auto found =
+        std::find_if(posterior_.hypotheses.begin(), posterior_.hypotheses.end(),
+                     [&](const Hypothesis& h) { return holds(h, cause.effect, at); });
+    if (found == posterior_.hypotheses.end()) return;
+    const MarginalLikelihood::Estimate estimate =
+        bench_.marginal_likelihood(found->structure).estimate(bench_.terms(*found));
+    Eigen::Index first = 0;
+    double squares = 0;
+    for (size_t i = 0; i < found->candidates.size(); ++i) {
+      const int c = found->candidates[i];
+      const Block& block = bench_.block(c);
+      const auto size = static_cast<Eigen::Index>(block.columns.size());
+      if (candidate(c).effect == cause.effect) {
+        const Eigen::VectorXd v = estimate.mean.segment(first, size);
+        squares += v.dot(bench_.marginal_likelihood(0).gram(block.columns, block.columns) * v);
+        cause.survival = std::max(cause.survival, bench_.survival(c));
+        add_parameters(c, estimate, first, cause);
+        bench_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);
+      }
+      first += size;
+    }
+    const double noise = bench_.noise_variance(found->structure) * estimate.variance;
+    cause.visible = std::sqrt(squares / bench_.marginal_likelihood(0).freedom() *
+                              bench_.noise_variance(0) / noise);
+  }
+
+  void add_parameters(int c, const MarginalLikelihood::Estimate& estimate, Eigen::Index first,
+                      CauseResult& cause) const {
+    Node entry = candidate(c).entries.front();
+    if (cause.shape.empty()) cause.shape = shape_in_words(entry);
+    for (size_t k = 0; k < candidate(c).main.size(); ++k) {
+      const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
+      const Eigen::Index i = first + static_cast<Eigen::Index>(k);
+      cause.parameters.push_back(
+          {label(candidate(c).at.empty() ? "robot" : candidate(c).at, "") + "." + p.name, p.unit,
+           estimate.mean[i], std::sqrt(estimate.variance * estimate.covariance(i, i)),
+           p.usual_least, p.usual_most});
+      entry.set(p.name, Node::of(estimate.mean[i]));
+    }
+    cause.correction.push_back({std::move(entry)});
+  }
+
+  /// Other families that are probable where this one is not: the rows cannot tell them apart.
+  void confound(CauseResult& cause) const {
+    if (cause.probability < kWorthTelling) return;
+    std::map<Cause, double> instead;
+    double with = 0;
+    for (const Hypothesis& h : posterior_.hypotheses) {
+      const double p = std::exp(h.log_weight);
+      if (holds(h, cause.effect, "")) {
+        with += p;
+        continue;
+      }
+      for (const int c : h.candidates) instead[{candidate(c).effect, candidate(c).at}] += p;
+      if (bench_.structure(h.structure).kind > 0 && h.candidates.empty())
+        instead[{kUnknown, ""}] += p;
+    }
+    for (const auto& [other, p] : instead)
+      if (p > kConfounded * with) cause.confounded_with.push_back(label(other.first, other.second));
+  }
+
+  const LinearisedModel& view_;
+  const EvidenceEvaluator& bench_;
+  const Posterior& posterior_;
+};
+
+/// Probability of the cause or of known ones that look the same on these rows.
+double with_look_alikes(const LinearisedModel& view, const Posterior& posterior,
+                        const CauseResult& cause) {
+  const auto answers = [&](int c) {
+    const Candidate& candidate = view.candidates().list[c];
+    return candidate.effect == cause.effect ||
+           std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
+  };
+  double sum = 0;
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (std::ranges::any_of(h.candidates, answers)) sum += std::exp(h.log_weight);
+  return std::min(sum, 1.0);
+}
+
+/// What the most probable causes and all that makes them more probable explain of the squares, and
+/// what is left beyond the noise; both as the geometry alone sees them.
+struct Shares {
+  double explained = 0, left = 0;
+};
+Shares shares(const EvidenceEvaluator& bench, const Posterior& posterior) {
+  const Hypothesis* best = &posterior.hypotheses.front();
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (bench.structure(h.structure).kind > 0) {
+      best = &h;
+      break;
+    }
+  const MarginalLikelihood& plain = bench.marginal_likelihood(0);
+  Hypothesis whole = *best;
+  whole.structure = 0;
+  whole = bench.grow(std::move(whole), kMostExplaining);
+  const double after = plain.given(bench.terms(whole)).total() * bench.noise_variance(0);
+  const double before = plain.total() * bench.noise_variance(0);
+  const double noise =
+      bench.marginal_likelihood(best->structure).estimate(bench.terms(*best)).variance *
+      bench.noise_variance(best->structure) * plain.freedom();
+  return {before - after, after - noise};
+}
+
+/// "backlash at j1 and j2".
+std::string with_places(const CauseResult& cause) {
+  std::string words = cause.effect;
+  for (size_t i = 0; i < cause.where.size(); ++i)
+    words += (i == 0 ? " at " : " and ") + cause.where[i];
+  return words;
+}
+
+}  // namespace
+
+std::string verdict_in_words(const Diagnosis& diagnosis) {
+  const CauseResult& verdict = diagnosis.verdict;
+  char text[200];
+  if (verdict.effect == kNone) {
+    const bool noise = diagnosis.p_value > DiagnosisOptions{}.name_below_p;
+    if (noise)
+      std::snprintf(text, sizeof text,
+                    "no cause is named: noise alone explains what calibration leaves (as much is "
+                    "found in %.2g of resampled rows)",
+                    diagnosis.p_value);
+    else
+      std::snprintf(text, sizeof text,
+                    "no cause is named: what calibration leaves may be noise (probability %.2g), "
+                    "though resampled rows show as much in %.2g of cases only",
+                    verdict.probability, diagnosis.p_value);
+    return text;
+  }
+  if (verdict.effect == kUnknown) {
+    std::string beside;
+    for (const CauseResult& each : diagnosis.candidates)
+      if (names_effect(each.effect) && each.probability > 0.5)
+        beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
+    return "there is structure that no known effect explains" + beside +
+           ": look at the machine, or repeat some configurations to be sure of the noise";
+  }
+  std::string words = with_places(verdict);
+  if (!verdict.shape.empty()) words += " (" + verdict.shape + ")";
+  for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
+    words +=
+        (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + verdict.confounded_with[i];
+  if (!verdict.confounded_with.empty()) words += ")";
+  std::snprintf(text, sizeof text, ", causes the gap (probability %.2f", verdict.probability);
+  words += text;
+  if (!verdict.confounded_with.empty()) {
+    std::snprintf(text, sizeof text, ", with these %.2f", verdict.together);
+    words += text;
+  }
+  std::snprintf(text, sizeof text, ", p %.2g)", diagnosis.p_value);
+  words += text;
+  return words;
+}
+
+std::string label(const std::string& effect, const std::string& at) {
+  return at.empty() ? effect : effect + "@" + at;
+}
+
+std::vector<CauseResult> cause_results(const LinearisedModel& view, const EvidenceEvaluator& bench,
+                                       const Posterior& posterior) {
+  return Teller(view, bench, posterior).causes();
+}
+
+CauseResult without_cause(const Posterior& posterior) {
+  if (posterior.unknown > 0.5) return {.effect = kUnknown, .probability = posterior.unknown};
+  return {.effect = kNone, .probability = posterior.none};
+}
+
+CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& bench,
+                        const Posterior& posterior, const std::vector<CauseResult>& causes,
+                        const DiagnosisOptions& options) {
+  const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
+  if (posterior.none >= options.name_below_none) return without_cause(posterior);
+  const auto rank = [](const CauseResult& each) {
+    return each.probability > 0.5 ? 1 + each.visible : each.probability;
+  };
+  const CauseResult* best = nullptr;
+  for (const CauseResult& each : causes)
+    if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
+  if (!best) return unknown;
+  CauseResult known = *best;
+  known.together = with_look_alikes(view, posterior, known);
+  if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
+  // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
+  if (known.together < std::min(kSure, posterior.unknown)) return unknown;
+  const Shares part = shares(bench, posterior);
+  return part.left > kMostLeft * (part.left + part.explained) ? unknown : known;
+}
+
+CauseResult decided(CauseResult named, const Posterior& posterior, double p,
+                    const DiagnosisOptions& options) {
+  if (named.effect == kUnknown) return named;
+  // DiscrepancyCovariance of no known cause is no matter of signs: repeats of a configuration tell
+  // of it.
+  const bool noise_does_as_well = p > options.name_below_p;
+  if (named.effect != kNone && !noise_does_as_well) return named;
+  if (posterior.unknown > kSurelyUnknown)
+    return {.effect = kUnknown, .probability = posterior.unknown};
+  return {.effect = kNone, .probability = std::max(posterior.none, least_probability_of_none(p))};
+}
+
+}  // namespace selfcal

@@ -1,0 +1,66 @@
+#include "diagnosis/search/shapes.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/findings.h"
+
+namespace selfcal {
+namespace {
+
+bool is_asked(const Candidate& candidate, const std::string& asked) {
+  const size_t at = asked.find('@');
+  return candidate.effect == asked.substr(0, at) &&
+         (at == std::string::npos || candidate.at == asked.substr(at + 1));
+}
+
+std::string known_names() {
+  std::string known;
+  for (const std::string_view name : effect_names())
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  return known;
+}
+
+/// Why none of the candidates is `asked`.
+std::string why_none(const LinearisedModel& view, const std::string& asked) {
+  const std::string effect = asked.substr(0, asked.find('@'));
+  const std::vector<std::string_view> names = effect_names();
+  if (std::find(names.begin(), names.end(), effect) == names.end())
+    return "no effect is called '" + effect + "'; known: " + known_names();
+  for (const Untestable& each : view.candidates().untestable)
+    if (each.effect == effect) return asked + ": " + each.why;
+  return asked + ": it cannot act there on these rows";
+}
+
+}  // namespace
+
+ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                             const std::vector<std::string>& asked) {
+  ChosenEffects chosen;
+  const DiagnosisOptions options;
+  const LinearisedModel view(robot, data, options, {});
+  const DenseEquations rows = view.kept();
+  const Candidates all = with_profiles(view.candidates());
+  const EvidenceEvaluator bench(view.whitened(), noise_alone(data.rows, rows, view.by_joint(rows)),
+                                all, view.parameters(), options.search);
+  for (const std::string& each : asked) {
+    std::map<std::string, std::pair<double, int>> best;  // by place
+    for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {
+      const Candidate& candidate = all.list[c];
+      if (!is_asked(candidate, each) || candidate.entries.size() > 1) continue;
+      const double evidence = bench.evidence(c);
+      const auto [slot, made] =
+          best.try_emplace(candidate.at, -std::numeric_limits<double>::infinity(), -1);
+      if (slot->second.second < 0 || evidence > slot->second.first) slot->second = {evidence, c};
+    }
+    if (best.empty()) chosen.problem = why_none(view, each);
+    for (const auto& [place, found] : best)
+      chosen.entries.push_back(all.list[found.second].entries.front());
+  }
+  return chosen;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,167 @@
+// A stated probability p comes true as often as sigmoid(logit(p) / T) says, T fitted to the
+// simulated sessions by maximum likelihood; T > 1 where the search is surer than it may be.
+#include "diagnosis/search/simulation_based_calibration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "diagnosis/search/causes.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kWithNone = 0.25, kWithUnknown = 0.15;  ///< shares of the sessions
+constexpr int kExtendedSingles =
+    4;  ///< a simulated session has one cause: few pairs are as probable
+constexpr std::array kVisible{0.5, 1.0, 2.0};  ///< over the noise
+
+double clamped_logit(double p) {
+  p = std::clamp(p, 1e-6, 1 - 1e-6);
+  return std::log(p / (1 - p));
+}
+
+struct Stated {
+  double probability = 0;
+  bool right = false;
+};
+
+class Simulator {
+ public:
+  Simulator(const LinearisedModel& view, EvidenceEvaluator& bench, const NullDistribution& null,
+            const DiagnosisOptions& options)
+      : view_(view),
+        bench_(bench),
+        null_(null),
+        options_(options),
+        rows_(view.whitened()),
+        random_(options.seed) {}
+
+  SimulationBasedCalibration run() {
+    SimulationBasedCalibration practice;
+    std::vector<Stated> stated;
+    int causes = 0, none = 0;
+    const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows_.pull.size());
+    for (int i = 0; i < options_.practice; ++i) {
+      std::string truth;
+      bench_.look_at(session(truth), no_pull);
+      const CauseResult answer = answered(bench_.search(kExtendedSingles, 0));
+      stated.push_back({answer.probability, answer.effect == truth});
+      if (truth == kNone) {
+        ++none;
+        practice.false_alarms += answer.effect != kNone;
+      } else {
+        ++causes;
+        practice.right += answer.effect == truth;
+      }
+    }
+    practice.sessions = options_.practice;
+    practice.right /= std::max(causes, 1);
+    practice.false_alarms /= std::max(none, 1);
+    practice.temperature = fitted(stated);
+    bench_.look_at(rows_.y, rows_.pull);
+    return practice;
+  }
+
+ private:
+  CauseResult answered(const Posterior& posterior) const {
+    CauseResult best{.effect = kUnknown, .probability = posterior.unknown};
+    if (posterior.none >= options_.name_below_none)
+      best = without_cause(posterior);
+    else
+      for (const auto& [family, p] : posterior.family)
+        if (p > best.probability) best = {.effect = family, .probability = p};
+    return decided(std::move(best), posterior, null_.p_of(bench_.best_found()), options_);
+  }
+
+  Eigen::VectorXd normal(Eigen::Index size) {
+    std::normal_distribution<double> draw;
+    Eigen::VectorXd v(size);
+    for (double& x : v) x = draw(random_);
+    return v;
+  }
+
+  Eigen::VectorXd session(std::string& truth) {
+    const double kind = std::generate_canonical<double, 53>(random_);
+    if (kind < kWithUnknown) {
+      truth = kUnknown;
+      std::vector<int> known_size;
+      for (int s = 0; s < bench_.structures(); ++s)
+        if (bench_.structure(s).kind > 0 && bench_.structure(s).kappa > 1) known_size.push_back(s);
+      if (known_size.empty()) return normal(rows_.y.size());
+      const DiscrepancyCovariance& structure =
+          bench_.structure(known_size[random_() % known_size.size()]);
+      return structure.root * normal(structure.root.rows());
+    }
+    const DiscrepancyCovariance& noise = bench_.structure(0);
+    Eigen::VectorXd y = noise.root * normal(noise.root.rows());
+    truth = kNone;
+    if (kind < kWithUnknown + kWithNone) return y;
+    const int c = drawn_cause();
+    if (c < 0) return y;
+    truth = view_.candidates().list[c].effect;
+    const Block& block = bench_.block(c);
+    const double r = kVisible[random_() % kVisible.size()] * std::sqrt(noise.noise);
+    Eigen::VectorXd size = normal(block.unit.size());
+    for (const int i : block.positive) size[i] = std::abs(size[i]);
+    return y + rows_.C(Eigen::all, block.columns) * (r * block.unit.cwiseProduct(size));
+  }
+
+  /// A family, then a place and a shape of it, each as likely as the others; -1 when calibration
+  /// absorbs all of them.
+  int drawn_cause() {
+    std::vector<std::string> families;
+    std::vector<int> seen;
+    for (int c = 0; c < static_cast<int>(view_.candidates().list.size()); ++c) {
+      if (bench_.survival(c) < 0.15) continue;  // absorbed by calibration: no cause of this session
+      seen.push_back(c);
+      const std::string& effect = view_.candidates().list[c].effect;
+      if (families.empty() || families.back() != effect) families.push_back(effect);
+    }
+    std::sort(families.begin(), families.end());
+    families.erase(std::unique(families.begin(), families.end()), families.end());
+    if (families.empty()) return -1;
+    const std::string family = families[random_() % families.size()];
+    std::erase_if(seen, [&](int c) { return view_.candidates().list[c].effect != family; });
+    return seen[random_() % seen.size()];
+  }
+
+  static double fitted(const std::vector<Stated>& stated) {
+    double best = 1, most = -INFINITY;
+    for (double T = 0.7; T < 4; T *= 1.1) {
+      double log_likelihood = -2 * std::pow(std::log(T), 2);  // few sessions: not far from one
+      for (const Stated& each : stated) {
+        const double p = 1 / (1 + std::exp(-clamped_logit(each.probability) / T));
+        log_likelihood += std::log(each.right ? p : 1 - p);
+      }
+      if (log_likelihood <= most) continue;
+      most = log_likelihood;
+      best = T;
+    }
+    return best;
+  }
+
+  const LinearisedModel& view_;
+  EvidenceEvaluator& bench_;
+  const NullDistribution& null_;
+  const DiagnosisOptions& options_;
+  const Whitened rows_;
+  std::mt19937_64 random_;
+};
+
+}  // namespace
+
+SimulationBasedCalibration calibrate_by_simulation(const LinearisedModel& view,
+                                                   EvidenceEvaluator& bench,
+                                                   const NullDistribution& null,
+                                                   const DiagnosisOptions& options) {
+  return Simulator(view, bench, null, options).run();
+}
+
+double calibrated(double probability, const SimulationBasedCalibration& practice) {
+  if (practice.sessions == 0) return probability;
+  return 1 / (1 + std::exp(-clamped_logit(probability) / practice.temperature));
+}
+
+}  // namespace selfcal

@@ -1,0 +1,23 @@
+#include "diagnosis/validation/correction.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace selfcal {
+
+Correction named_of(const Correction& correction) {
+  Correction named;
+  std::ranges::copy_if(correction, std::back_inserter(named), &FoundEffect::named);
+  return named;
+}
+
+std::vector<Node> entries_of(const Correction& correction) {
+  std::vector<Node> list;
+  for (const FoundEffect& each : correction) {
+    list.push_back(each.entry);
+    list.back().set("named", Node::of(std::string(each.named ? "true" : "false")));
+  }
+  return list;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,159 @@
+// libcsv splits blocks of the file into cells; this gathers the cells of a row and judges its form.
+// libcsv cannot be stopped inside a block, so after a fault the block's other rows are let pass.
+#include "io/files/csv.h"
+
+#include <csv.h>
+
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "io/files/file.h"
+#include "io/files/utf8.h"
+
+namespace selfcal {
+namespace {
+
+constexpr std::size_t kBlock = 65536;
+constexpr std::size_t kMostBytesInRow = 1 << 20;
+constexpr std::size_t kMostColumns = 10000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string count_of_cells(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " cell" : " cells");
+}
+
+class CsvReader {
+ public:
+  CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row)
+      : path_(path), take_header_(header), take_row_(row) {
+    csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
+    csv_set_blk_size(&parser_, kBlock);
+  }
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
+  ~CsvReader() { csv_free(&parser_); }
+
+  Result<void> read() {
+    Result<InputFile> file = InputFile::open(path_);
+    if (!file) return tl::unexpected(file.error());
+    std::array<char, kBlock> block;
+    for (bool first = true; !fault_; first = false) {
+      const Result<std::size_t> got = file->read(block);
+      if (!got) return tl::unexpected(got.error());
+      if (*got == 0) break;
+      std::string_view text(block.data(), *got);
+      if (first && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+      parse(text);
+    }
+    if (!fault_) finish();
+    if (!fault_) return {};
+    return bad_input(path_.string() + ": " + *fault_);
+  }
+
+ private:
+  void parse(std::string_view text) {
+    const std::size_t done = csv_parse(&parser_, text.data(), text.size(), on_cell, on_row, this);
+    if (fault_) return;
+    if (done != text.size()) {
+      complain({"a quotation mark stands inside a cell that is not quoted as a whole"});
+    } else if (buffer_.size() + parser_.entry_pos > kMostBytesInRow) {
+      complain({"longer than 1 MiB; is a quotation left open?"});
+    }
+  }
+
+  void finish() {
+    if (csv_fini(&parser_, on_cell, on_row, this) != 0) {
+      complain({"the file ends inside a quotation"});
+    } else if (!header_taken_ && !fault_) {
+      complain({"expected a line with the names of the columns"});
+    }
+  }
+
+  static void on_cell(void* cell, std::size_t size, void* self) {
+    CsvReader& reader = *static_cast<CsvReader*>(self);
+    reader.buffer_.append(static_cast<const char*>(cell), size);
+    reader.ends_.push_back(reader.buffer_.size());
+  }
+
+  static void on_row(int terminator, void* self) {
+    CsvReader& reader = *static_cast<CsvReader*>(self);
+    const int before = std::exchange(reader.terminator_, terminator);
+    if (reader.fault_) return;
+    if (reader.ends_.empty()) {
+      const bool second_half_of_crlf = before == CSV_CR && terminator == CSV_LF;
+      reader.blank_lines_ = reader.blank_lines_ || (!second_half_of_crlf && terminator >= 0);
+      return;
+    }
+    reader.take();
+    reader.buffer_.clear();
+    reader.ends_.clear();
+  }
+
+  void take() {
+    cells_.clear();
+    std::size_t begin = 0;
+    for (const std::size_t end : ends_) {
+      cells_.emplace_back(buffer_.data() + begin, end - begin);
+      begin = end;
+    }
+    if (!is_text(buffer_)) return complain({"expected UTF-8 text, got other bytes"});
+    if (blank_lines_) return complain({"stands below a blank line"});
+    if (!header_taken_) return take_header();
+    if (rows_ == std::numeric_limits<int>::max() - 1) return complain({"too many rows"});
+    if (cells_.size() != names_.size()) {
+      return complain({"expected " + count_of_cells(names_.size()) + " as in the header, got " +
+                       std::to_string(cells_.size())});
+    }
+    if (const auto fault = take_row_(cells_, rows_ + 1)) return complain(*fault);
+    ++rows_;
+  }
+
+  void take_header() {
+    if (cells_.size() > kMostColumns) return complain({"more than 10000 columns"});
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (cells_[i].empty()) {
+        return complain({"column " + std::to_string(i + 1) + " has no name"});
+      }
+      for (const std::string& name : names_) {
+        if (name == cells_[i]) return complain({"column '" + name + "' appears twice"});
+      }
+      names_.emplace_back(cells_[i]);
+    }
+    if (names_.size() == 1 && names_.front().find(';') != std::string::npos) {
+      return complain({"expected commas between the columns, got semicolons"});
+    }
+    if (const auto fault = take_header_(cells_)) return complain(*fault);
+    header_taken_ = true;
+  }
+
+  void complain(const RowFault& fault) {
+    std::string where = header_taken_ ? "row " + std::to_string(rows_ + 1) : "header";
+    if (fault.column) where += ": column " + names_[*fault.column];
+    fault_ = where + ": " + fault.what;
+  }
+
+  const std::filesystem::path& path_;
+  const TakeHeader& take_header_;
+  const TakeRow& take_row_;
+  csv_parser parser_{};
+  std::string buffer_;             // the row's cells, end to end
+  std::vector<std::size_t> ends_;  // where each of them ends
+  std::vector<std::string_view> cells_;
+  std::vector<std::string> names_;
+  int rows_ = 0;  // taken
+  int terminator_ = -1;
+  bool header_taken_ = false;
+  bool blank_lines_ = false;
+  std::optional<std::string> fault_;
+};
+
+}  // namespace
+
+Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
+                      const TakeRow& row) {
+  return CsvReader(path, header, row).read();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,168 @@
+// Rows of text into columns of numbers. A row is read and judged as a whole and only then appended;
+// the columns grow as std::vector does, so that a million rows need no more than a few copies.
+#include "io/files/observations_csv.h"
+
+#include <optional>
+#include <utility>
+
+#include "io/files/columns.h"
+#include "io/files/csv.h"
+#include "io/files/row_labels.h"
+#include "io/files/row_numbers.h"
+
+namespace selfcal {
+namespace {
+
+/// A column that a method asks of every row, and its place if the file has it.
+struct Need {
+  std::string column;
+  std::optional<std::size_t> place;
+};
+
+Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
+  using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const ByRows>(values.data(), static_cast<Eigen::Index>(values.size() / width),
+                                  static_cast<Eigen::Index>(width));
+}
+
+class RowReader {
+ public:
+  RowReader(const Robot& robot, DataSet& data)
+      : data_(data),
+        joints_(static_cast<int>(robot.joints().size())),
+        labels_(data.sets),
+        numbers_(robot) {}
+
+  std::optional<RowFault> take_header(Cells names) {
+    auto layout = read_header(names, joints_);
+    if (!layout) return layout.error();
+    layout_ = std::move(*layout);
+    labels_.begin(layout_);
+    numbers_.begin(layout_);
+    for (const Set& set : data_.sets) {
+      std::vector<Need>& needs = needs_.emplace_back();
+      for (const std::string& column : set.method->columns()) {
+        needs.push_back({column, layout_.find(column)});
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<RowFault> take_row(Cells cells, int row) {
+    const auto labels = labels_.read(cells, row);
+    if (!labels) return labels.error();
+    if (auto fault = numbers_.read(cells, row)) return fault;
+    if (auto fault = check_needs(cells, *labels)) return fault;
+    append(*labels);
+    return std::nullopt;
+  }
+
+  /// What is wrong with the rows as a whole.
+  std::optional<std::string> fault() const {
+    if (set_.empty()) return "no rows below the header";
+    return labels_.group_without_rows();
+  }
+
+  std::vector<std::string> notices() const {
+    std::vector<std::string> notices;
+    std::string ignored;
+    for (const std::string& name : layout_.ignored()) {
+      ignored += (ignored.empty() ? "" : ", ") + name;
+    }
+    if (!ignored.empty()) notices.push_back("unknown columns are ignored: " + ignored);
+    if (auto outside = numbers_.outside_limits_notice()) notices.push_back(std::move(*outside));
+    for (const std::string& set : labels_.sets_without_rows()) {
+      notices.push_back("set '" + set + "' has no rows");
+    }
+    return notices;
+  }
+
+  void hand_over() {
+    Observations& rows = data_.rows;
+    rows.q = to_matrix(std::move(q_), layout_.q.size());
+    rows.position = to_matrix(std::move(position_), 3);
+    rows.orientation = to_matrix(std::move(orientation_), 4);
+    rows.distance = to_matrix(std::move(distance_), 1);
+    rows.normal = to_matrix(std::move(normal_), 3);
+    rows.wrench = to_matrix(std::move(wrench_), 6);
+    rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
+    rows.temperature = to_matrix(std::move(temperature_), 1);
+    rows.time = to_matrix(std::move(time_), 1);
+    rows.noise_factor = to_matrix(std::move(noise_factor_), 1);
+    rows.set = std::move(set_);
+    rows.group = std::move(group_);
+    rows.repeat = std::move(repeat_);
+    rows.check = std::move(check_);
+  }
+
+ private:
+  std::optional<RowFault> check_needs(Cells cells, const Labels& labels) const {
+    const Set& set = data_.sets[labels.set];
+    for (const Need& need : needs_[labels.set]) {
+      if (need.place && !cells[*need.place].empty()) continue;
+      // The first row of a group has no previous row to be at a distance from.
+      if (need.column == "distance" && set.method->paired() && labels.first_of_group) continue;
+      const std::string method(set.method->name());
+      return RowFault{"set '" + set.name + "' (" + method + ") needs column '" + need.column +
+                          "', which is " + (need.place ? "empty" : "missing from the file"),
+                      need.place};
+    }
+    // A NaN is an empty cell.
+    if (layout_.noise_factor && numbers_.value(*layout_.noise_factor) < 1)
+      return RowFault{"expected a factor of at least 1", layout_.noise_factor};
+    return std::nullopt;
+  }
+
+  void append(const Labels& labels) {
+    const auto extend = [](std::vector<double>& column, const auto& vector) {
+      column.insert(column.end(), vector.begin(), vector.end());
+    };
+    for (const std::size_t column : layout_.q) q_.push_back(numbers_.value(column));
+    if (layout_.position) extend(position_, numbers_.position());
+    if (layout_.orientation) extend(orientation_, numbers_.orientation());
+    if (layout_.normal) extend(normal_, numbers_.normal());
+    for (const std::size_t column : layout_.dq) velocity_.push_back(numbers_.value(column));
+    if (layout_.wrench) extend(wrench_, numbers_.wrench());
+    if (layout_.temperature) temperature_.push_back(numbers_.value(*layout_.temperature));
+    if (layout_.noise_factor) {
+      const double factor = numbers_.value(*layout_.noise_factor);
+      noise_factor_.push_back(std::isnan(factor) ? 1 : factor);
+    }
+    if (layout_.time) time_.push_back(numbers_.value(*layout_.time));
+    if (layout_.distance) distance_.push_back(numbers_.value(*layout_.distance));
+    if (layout_.repeat) repeat_.push_back(labels.repeat);
+    set_.push_back(static_cast<int>(labels.set));
+    group_.push_back(labels.group);
+    check_.push_back(labels.check ? 1 : 0);
+  }
+
+  DataSet& data_;
+  const int joints_;
+  Layout layout_;
+  LabelReader labels_;
+  NumberReader numbers_;
+  std::vector<std::vector<Need>> needs_;  // per set
+  std::vector<double> q_, position_, orientation_, distance_, normal_;
+  std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
+  std::vector<int> set_, group_, repeat_;
+  std::vector<char> check_;
+};
+
+}  // namespace
+
+Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
+                               std::vector<std::string>& notices) {
+  RowReader reader(robot, data);
+  Result<void> read = read_csv(
+      path, [&](Cells names) { return reader.take_header(names); },
+      [&](Cells cells, int row) { return reader.take_row(cells, row); });
+  if (!read) return read;
+  if (const auto fault = reader.fault()) return bad_input(path.string() + ": " + *fault);
+  for (const std::string& notice : reader.notices()) {
+    notices.push_back(path.string() + ": " + notice);
+  }
+  reader.hand_over();
+  return {};
+}
+
+}  // namespace selfcal

@@ -1,0 +1,21 @@
+// The rows of a data set from their CSV file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "io/result.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+/// Reads the rows for `data.sets` (each with its method) into `data.rows`; names of groups that the
+/// rows bring up are appended to their set's. Every known column is validated, the ones that
+/// Observations lacks are then dropped. What a person should know of a file that is accepted is
+/// appended to `notices`. After a failure `data` is not to be used.
+Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
+                               std::vector<std::string>& notices);
+
+}  // namespace selfcal

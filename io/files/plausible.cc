@@ -1,0 +1,73 @@
+// The rules and their thresholds: generous enough that no right file fails, tight enough that
+// degrees and millimetres do.
+#include "io/files/plausible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace selfcal {
+namespace {
+
+constexpr double kRounding = 1e-3;   // of the limits' range
+constexpr double kFarOutside = 0.1;  // of the limits' range
+
+/// How far beyond the joint's limits, 0 inside or without limits.
+double excess(const Joint& joint, double reading) {
+  if (!joint.limited()) return 0;
+  return std::max({joint.lower - reading, reading - joint.upper, 0.0});
+}
+
+std::string limits_of(const Joint& joint) {
+  return "the limits [" + format_number(joint.lower) + ", " + format_number(joint.upper) +
+         "] of joint " + joint.name;
+}
+
+/// A question that names the likely slip, or nothing.
+std::string likely_slip(const Joint& joint, double reading) {
+  const double size = std::abs(reading);
+  const double reach = std::max(std::abs(joint.lower), std::abs(joint.upper));
+  if (joint.quantity == Quantity::angle && size > 2 * std::numbers::pi) {
+    return " (degrees instead of radians?)";
+  }
+  if (joint.quantity == Quantity::length && size > 100 * reach) {
+    return " (millimetres instead of metres?)";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::string> metres_fault(double value) {
+  if (std::abs(value) <= kFarthestPlace) return std::nullopt;
+  return format_number(value) + " is too large, metres expected (millimetres?)";
+}
+
+std::optional<std::string> joint_fault(const Joint& joint, double reading) {
+  if (joint.quantity == Quantity::length) {
+    if (auto fault = metres_fault(reading)) return fault;
+  } else if (std::abs(reading) > kMostTurned) {
+    return format_number(reading) + " is more than four turns (degrees instead of radians?)";
+  }
+  if (excess(joint, reading) <= kFarOutside * (joint.upper - joint.lower)) return std::nullopt;
+  return format_number(reading) + " is far outside " + limits_of(joint) +
+         likely_slip(joint, reading);
+}
+
+bool outside_limits(const Joint& joint, double reading) {
+  return excess(joint, reading) > kRounding * (joint.upper - joint.lower) + 1e-9;
+}
+
+std::optional<std::string> make_unit(std::span<double> vector, double tolerance,
+                                     const std::string& what) {
+  double squares = 0;
+  for (const double component : vector) squares += component * component;
+  const double length = std::sqrt(squares);
+  if (!(std::abs(length - 1) <= tolerance)) {
+    return what + " has length " + format_number(length) + ", expected 1";
+  }
+  for (double& component : vector) component /= length;
+  return std::nullopt;
+}
+
+}  // namespace selfcal

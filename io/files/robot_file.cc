@@ -1,0 +1,31 @@
+// A robot's file is YAML; what its keys mean is each kind of robot's own affair
+// (kinematics/robots).
+#include "io/files/robot_file.h"
+
+#include "io/files/file.h"
+#include "io/files/yaml.h"
+
+namespace selfcal {
+
+Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path) {
+  const auto text = read_file(path, kMostYamlBytes);
+  if (!text) return tl::unexpected(text.error());
+  return robot_of(*text, path.string());
+}
+
+Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string& name) {
+  const Result<Node> node = parse_yaml(text, name);
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  std::unique_ptr<Robot> robot = make_robot(*node, problems);
+  if (problems.any()) return bad_input(problems);
+  return robot;
+}
+
+std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi) {
+  return write_yaml(robot.describe(xi));
+}
+
+std::string model_hash(const Robot& robot) { return "sha256:" + sha256_hex(robot.identity()); }
+
+}  // namespace selfcal
