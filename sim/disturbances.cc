@@ -118,9 +118,18 @@ class Disturber {
           Eigen::Quaterniond(exp_rotation(turn)) * Eigen::Quaterniond(v[0], v[1], v[2], v[3]);
       rows.orientation.row(row) << q.w(), q.x(), q.y(), q.z();
     }
-    rows.distance[row] = std::abs(rows.distance[row] + normal(set.noise));
-    // The first of a group has no previous row to be at a distance from.
-    if (first_of_group && method(row).paired()) rows.distance[row] = std::nan("");
+    // The first number is drawn for every row: what an instrument measures beside leaves the draws
+    // of the next row alone.
+    double drawn = normal(1);
+    const std::vector<MeasuredColumn> own = method(row).measures();
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (i > 0) drawn = normal(1);
+      double& value = rows.column(own[i].name)[row];
+      value += drawn * (own[i].quantity == Quantity::angle ? set.noise_angle : set.noise);
+      if (own[i].never_negative) value = std::abs(value);
+      // The first of a group has no previous row to be measured from.
+      if (first_of_group && method(row).paired()) value = std::nan("");
+    }
   }
 
   const Scenario& scenario_;

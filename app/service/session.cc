@@ -43,7 +43,6 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
   rows.q.setZero(count, joints);
   rows.position.setConstant(count, 3, std::nan(""));
   rows.orientation.setConstant(count, 4, std::nan(""));
-  rows.distance.setConstant(count, std::nan(""));
   rows.normal.setConstant(count, 3, std::nan(""));
   rows.velocity.setZero(count, joints);
   rows.temperature.setConstant(count, std::nan(""));

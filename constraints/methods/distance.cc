@@ -10,17 +10,20 @@ class Distance final : public Method {
  public:
   std::string_view name() const override { return "distance"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
-  std::vector<std::string> columns() const override { return {"distance"}; }
+  std::vector<MeasuredColumn> measures() const override {
+    return {{"distance", Quantity::length, true}};
+  }
   bool paired() const override { return true; }
   bool constrains() const override { return false; }
 
   void evaluate(const MethodInput& in, MethodOutput& out) const override {
+    const Eigen::VectorXd& measured = in.data->column("distance");
     for (int lane = 0; lane < in.count; ++lane) {
       const Eigen::Vector3d step = in.now->p(lane) - in.before->p(lane);
       const double length = step.norm();
       const Eigen::Vector3d u =
           length > 0 ? Eigen::Vector3d(step / length) : Eigen::Vector3d::Zero();
-      out.r(lane, 0) = length - in.data->distance[in.rows[lane]];
+      out.r(lane, 0) = length - measured[in.rows[lane]];
       set_linear(out.G_now, lane, 0, u);
       set_linear(out.G_before, lane, 0, -u);
     }
@@ -28,7 +31,7 @@ class Distance final : public Method {
 
   void measure(const Location& X, const Location& before, const Eigen::VectorXd&,
                Observations& data, int row) const override {
-    data.distance[row] = (X.p - before.p).norm();
+    data.column("distance")[row] = (X.p - before.p).norm();
   }
 };
 

@@ -90,6 +90,14 @@ struct NuisanceReport {
   bool derived = false;  ///< follows from the others reported
 };
 
+/// A column of one measured number a row that a method brings along: the file's reader, its writer
+/// and the simulation know it from here.
+struct MeasuredColumn {
+  std::string name;
+  Quantity quantity = Quantity::length;
+  bool never_negative = false;
+};
+
 /// One constraint method with the options of one set. Immutable. "Values" describe an unknown fully
 /// (a plane's unit normal and distance), its "freedom" is the number of independent changes.
 class Method {
@@ -100,8 +108,12 @@ class Method {
   /// Quantity of each scalar equation of a row (length or angle); their count is the calibration
   /// index.
   virtual std::vector<Quantity> equations() const = 0;
-  /// Columns of the data set that every row needs ("x", "qw", "distance", "nx", "group").
+  /// Columns of the data set that every row needs, of those that every data set may have ("x",
+  /// "qw", "nx", "group").
   virtual std::vector<std::string> columns() const { return {}; }
+  /// The columns that the method brings along, which every row needs as well; of a paired method
+  /// they may be empty in the first row of a group.
+  virtual std::vector<MeasuredColumn> measures() const { return {}; }
   /// True when each row is compared with the previous row of its group.
   virtual bool paired() const { return false; }
   /// The gauge: true when the rows may be satisfied by a robot of any size (touches: what is

@@ -42,12 +42,17 @@ std::vector<T> stacked(std::vector<T> a, std::vector<T> b, int n, int m, T absen
 
 }  // namespace
 
+const Eigen::VectorXd& Observations::column(std::string_view name) const {
+  static const Eigen::VectorXd kNone;
+  const auto found = measured.find(name);
+  return found == measured.end() ? kNone : found->second;
+}
+
 Observations taken(const Observations& data, const std::vector<int>& rows) {
   Observations some;
   some.q = picked(data.q, rows);
   some.position = picked(data.position, rows);
   some.orientation = picked(data.orientation, rows);
-  some.distance = picked(data.distance, rows);
   some.normal = picked(data.normal, rows);
   some.wrench = picked(data.wrench, rows);
   some.velocity = picked(data.velocity, rows);
@@ -58,6 +63,7 @@ Observations taken(const Observations& data, const std::vector<int>& rows) {
   some.group = picked(data.group, rows);
   some.repeat = picked(data.repeat, rows);
   some.check = picked(data.check, rows);
+  for (const auto& [name, column] : data.measured) some.measured[name] = picked(column, rows);
   return some;
 }
 
@@ -70,7 +76,6 @@ Observations joined(const Observations& a, const Observations& b) {
   all.q = both(&Observations::q);
   all.position = both(&Observations::position);
   all.orientation = both(&Observations::orientation);
-  all.distance = both(&Observations::distance);
   all.normal = both(&Observations::normal);
   all.wrench = both(&Observations::wrench);
   all.velocity = both(&Observations::velocity);
@@ -81,6 +86,9 @@ Observations joined(const Observations& a, const Observations& b) {
   all.group = stacked(a.group, b.group, n, m, -1);
   all.repeat = stacked(a.repeat, b.repeat, n, m, -1);
   all.check = stacked(a.check, b.check, n, m, char{0});
+  for (const auto* measured : {&a.measured, &b.measured})
+    for (const auto& [name, column] : *measured)
+      all.measured[name] = stacked(a.column(name), b.column(name), n, m, kNaN);
   return all;
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinematics/robot.h"
@@ -16,7 +18,6 @@ struct Observations {
   Eigen::MatrixXd q;             ///< rows x joints, readings (rad or m)
   Eigen::MatrixXd position;      ///< rows x 3, x y z (m)
   Eigen::MatrixXd orientation;   ///< rows x 4, qw qx qy qz, unit
-  Eigen::VectorXd distance;      ///< rows, to the previous row of the group (m)
   Eigen::MatrixXd normal;        ///< rows x 3, outward normal of the touched surface, world, unit
   Eigen::MatrixXd wrench;        ///< rows x 6, on the tool at the last frame's origin, in its axes
   Eigen::MatrixXd velocity;      ///< rows x joints, just before the reading (rad/s, m/s)
@@ -27,9 +28,14 @@ struct Observations {
   std::vector<int> group;        ///< rows, index into its set's group names; -1 without a group
   std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column
   std::vector<char> check;  ///< rows, 1 for rows kept aside to judge
+  /// By their names, the columns of one number a row that methods bring along (Method::measures).
+  std::map<std::string, Eigen::VectorXd, std::less<>> measured;
 
   int rows() const { return static_cast<int>(q.rows()); }
   double factor(int row) const { return noise_factor.rows() > 0 ? noise_factor[row] : 1; }
+  /// A column of `measured`: to write into, it must be there; to read from, it is empty otherwise.
+  Eigen::VectorXd& column(std::string_view name) { return measured.find(name)->second; }
+  const Eigen::VectorXd& column(std::string_view name) const;
 };
 
 /// The given rows, in their order; one may come several times.

@@ -43,8 +43,10 @@ class Sampler {
     d.q.resize(rows, static_cast<Eigen::Index>(robot_.joints().size()));
     d.position.setConstant(rows, 3, std::nan(""));
     d.orientation.setConstant(rows, 4, std::nan(""));
-    d.distance.setConstant(rows, std::nan(""));
     d.normal.setConstant(rows, 3, std::nan(""));
+    for (const Set& set : data_.sets)
+      for (const MeasuredColumn& column : set.method->measures())
+        d.measured[column.name].setConstant(rows, std::nan(""));
   }
 
   void shrink() {
@@ -53,8 +55,8 @@ class Sampler {
     d.q.conservativeResize(rows, Eigen::NoChange);
     d.position.conservativeResize(rows, Eigen::NoChange);
     d.orientation.conservativeResize(rows, Eigen::NoChange);
-    d.distance.conservativeResize(rows);
     d.normal.conservativeResize(rows, Eigen::NoChange);
+    for (auto& [name, column] : d.measured) column.conservativeResize(rows);
     d.check.assign(rows, 0);
   }
 

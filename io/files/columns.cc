@@ -17,7 +17,7 @@ constexpr Known kKnown[] = {{"set", CellKind::text},           {"group", CellKin
                             {"x", CellKind::metres},           {"y", CellKind::metres},
                             {"z", CellKind::metres},           {"qw", CellKind::number},
                             {"qx", CellKind::number},          {"qy", CellKind::number},
-                            {"qz", CellKind::number},          {"distance", CellKind::metres},
+                            {"qz", CellKind::number},          {"distance", CellKind::distance},
                             {"alpha", CellKind::number},       {"beta", CellKind::number},
                             {"phi", CellKind::number},         {"fx", CellKind::number},
                             {"fy", CellKind::number},          {"fz", CellKind::number},
@@ -49,7 +49,12 @@ bool is_marker(std::string_view name) {
          parse_count(name.substr(1, name.size() - 2)).has_value();
 }
 
-CellKind kind_of(std::string_view name) {
+CellKind kind_of(std::string_view name, const std::vector<MeasuredColumn>& measured) {
+  for (const MeasuredColumn& column : measured) {
+    if (column.name != name) continue;
+    if (column.quantity == Quantity::angle) return CellKind::number;
+    return column.never_negative ? CellKind::distance : CellKind::metres;
+  }
   for (const Known& known : kKnown) {
     if (known.name == name) return known.kind;
   }
@@ -106,10 +111,11 @@ std::vector<std::string> Layout::ignored() const {
   return names;
 }
 
-tl::expected<Layout, RowFault> read_header(Cells names, int joints) {
+tl::expected<Layout, RowFault> read_header(Cells names, int joints,
+                                           const std::vector<MeasuredColumn>& measured) {
   Layout layout;
   for (const std::string_view name : names) {
-    layout.columns.push_back({std::string(name), kind_of(name)});
+    layout.columns.push_back({std::string(name), kind_of(name, measured)});
   }
   const std::optional<std::size_t> set = layout.find("set");
   if (!set) return tl::unexpected(RowFault{"column 'set' is missing"});
@@ -121,7 +127,6 @@ tl::expected<Layout, RowFault> read_header(Cells names, int joints) {
   layout.group = layout.find("group");
   layout.repeat = layout.find("repeat");
   layout.part = layout.find("part");
-  layout.distance = layout.find("distance");
   layout.temperature = layout.find("temperature");
   layout.noise_factor = layout.find("noise_factor");
   layout.time = layout.find("time");
@@ -141,6 +146,8 @@ tl::expected<Layout, RowFault> read_header(Cells names, int joints) {
   layout.position = *position;
   layout.normal = *normal;
   layout.orientation = *orientation;
+  for (const MeasuredColumn& column : measured)
+    if (const auto place = layout.find(column.name)) layout.measured.push_back(*place);
   return layout;
 }
 

@@ -2,6 +2,7 @@
 // the columns grow as std::vector does, so that a million rows need no more than a few copies.
 #include "io/files/observations_csv.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -17,7 +18,18 @@ namespace {
 struct Need {
   std::string column;
   std::optional<std::size_t> place;
+  bool from_previous = false;  ///< measured from the previous row of the group
 };
+
+/// The columns that the methods of the sets bring along, each once.
+std::vector<MeasuredColumn> measured_columns(const std::vector<Set>& sets) {
+  std::vector<MeasuredColumn> all;
+  for (const Set& set : sets)
+    for (MeasuredColumn& column : set.method->measures())
+      if (std::ranges::find(all, column.name, &MeasuredColumn::name) == all.end())
+        all.push_back(std::move(column));
+  return all;
+}
 
 Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
   using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -34,7 +46,7 @@ class RowReader {
         numbers_(robot) {}
 
   std::optional<RowFault> take_header(Cells names) {
-    auto layout = read_header(names, joints_);
+    auto layout = read_header(names, joints_, measured_columns(data_.sets));
     if (!layout) return layout.error();
     layout_ = std::move(*layout);
     labels_.begin(layout_);
@@ -44,7 +56,10 @@ class RowReader {
       for (const std::string& column : set.method->columns()) {
         needs.push_back({column, layout_.find(column)});
       }
+      for (const MeasuredColumn& column : set.method->measures())
+        needs.push_back({column.name, layout_.find(column.name), set.method->paired()});
     }
+    measured_.resize(layout_.measured.size());
     return std::nullopt;
   }
 
@@ -82,7 +97,6 @@ class RowReader {
     rows.q = to_matrix(std::move(q_), layout_.q.size());
     rows.position = to_matrix(std::move(position_), 3);
     rows.orientation = to_matrix(std::move(orientation_), 4);
-    rows.distance = to_matrix(std::move(distance_), 1);
     rows.normal = to_matrix(std::move(normal_), 3);
     rows.wrench = to_matrix(std::move(wrench_), 6);
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
@@ -93,6 +107,9 @@ class RowReader {
     rows.group = std::move(group_);
     rows.repeat = std::move(repeat_);
     rows.check = std::move(check_);
+    for (std::size_t i = 0; i < measured_.size(); ++i)
+      rows.measured[layout_.columns[layout_.measured[i]].name] =
+          to_matrix(std::move(measured_[i]), 1);
   }
 
  private:
@@ -100,8 +117,7 @@ class RowReader {
     const Set& set = data_.sets[labels.set];
     for (const Need& need : needs_[labels.set]) {
       if (need.place && !cells[*need.place].empty()) continue;
-      // The first row of a group has no previous row to be at a distance from.
-      if (need.column == "distance" && set.method->paired() && labels.first_of_group) continue;
+      if (need.from_previous && labels.first_of_group) continue;
       const std::string method(set.method->name());
       return RowFault{"set '" + set.name + "' (" + method + ") needs column '" + need.column +
                           "', which is " + (need.place ? "empty" : "missing from the file"),
@@ -129,11 +145,12 @@ class RowReader {
       noise_factor_.push_back(std::isnan(factor) ? 1 : factor);
     }
     if (layout_.time) time_.push_back(numbers_.value(*layout_.time));
-    if (layout_.distance) distance_.push_back(numbers_.value(*layout_.distance));
     if (layout_.repeat) repeat_.push_back(labels.repeat);
     set_.push_back(static_cast<int>(labels.set));
     group_.push_back(labels.group);
     check_.push_back(labels.check ? 1 : 0);
+    for (std::size_t i = 0; i < measured_.size(); ++i)
+      measured_[i].push_back(numbers_.value(layout_.measured[i]));
   }
 
   DataSet& data_;
@@ -142,8 +159,9 @@ class RowReader {
   LabelReader labels_;
   NumberReader numbers_;
   std::vector<std::vector<Need>> needs_;  // per set
-  std::vector<double> q_, position_, orientation_, distance_, normal_;
+  std::vector<double> q_, position_, orientation_, normal_;
   std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
+  std::vector<std::vector<double>> measured_;  // per column that a method brings along
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace selfcal {
@@ -68,8 +69,8 @@ std::string observations_text(const DataSet& data) {
   add_columns(rows.q, joints, columns);
   add_columns(rows.position, {"x", "y", "z"}, columns);
   add_columns(rows.orientation, {"qw", "qx", "qy", "qz"}, columns);
-  const Eigen::MatrixXd distance = rows.distance;
-  add_columns(distance, {"distance"}, columns);
+  const std::map<std::string, Eigen::MatrixXd> measured(rows.measured.begin(), rows.measured.end());
+  for (const auto& [name, values] : measured) add_columns(values, {name}, columns);
   add_columns(rows.normal, {"nx", "ny", "nz"}, columns);
   add_columns(rows.wrench, {"fx", "fy", "fz", "tx", "ty", "tz"}, columns);
   std::vector<std::string> speeds;

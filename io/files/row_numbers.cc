@@ -27,11 +27,10 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
     const std::optional<double> number = parse_number(cells[i]);
     if (!number) return RowFault{"expected a number, got '" + std::string(cells[i]) + "'", i};
     values_[i] = *number;
-    if (kind != CellKind::metres) continue;
+    if (kind == CellKind::number) continue;
     if (auto fault = metres_fault(*number)) return RowFault{std::move(*fault), i};
-  }
-  if (layout_->distance && values_[*layout_->distance] < 0) {
-    return RowFault{"a distance is never negative", layout_->distance};
+    if (kind == CellKind::distance && *number < 0)
+      return RowFault{"a distance is never negative", i};
   }
   return std::nullopt;
 }

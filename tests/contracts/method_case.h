@@ -131,13 +131,13 @@ inline Instance random_instance(const MethodCase& each, Random& random) {
   made.data.q.setZero(kLanes, 1);
   made.data.position.resize(kLanes, 3);
   made.data.orientation.resize(kLanes, 4);
-  made.data.distance.resize(kLanes);
+  for (const MeasuredColumn& column : method.measures())
+    made.data.measured[column.name].setConstant(kLanes, 0.4);
   made.data.normal.resize(kLanes, 3);
   for (int lane = 0; lane < kLanes; ++lane) {
     const Eigen::Quaterniond q(random_location(random).R);
     made.data.position.row(lane) = random_vector(random, 1).transpose();
     made.data.orientation.row(lane) << q.w(), q.x(), q.y(), q.z();
-    made.data.distance[lane] = 0.4;
     made.data.normal.row(lane) = random_vector(random, 1).normalized().transpose();
     made.data.group.push_back(lane % kGroups);
     made.rows.push_back(lane);

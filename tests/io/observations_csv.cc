@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "io/observations_text.h"
 #include "tests/io/data_set_folder.h"
 
 namespace selfcal {
@@ -15,6 +16,17 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
+
+/// A method with two columns that no other knows.
+class Plumb final : public Method {
+ public:
+  std::string_view name() const override { return "plumb"; }
+  std::vector<Quantity> equations() const override { return {Quantity::angle, Quantity::length}; }
+  std::vector<MeasuredColumn> measures() const override {
+    return {{"tilt", Quantity::angle}, {"height", Quantity::length, true}};
+  }
+  void evaluate(const MethodInput&, MethodOutput&) const override {}
+};
 
 class ObservationsCsv : public DataSetFolder {
  protected:
@@ -45,8 +57,8 @@ TEST_F(ObservationsCsv, KeepsEveryColumnThatObservationsHave) {
   EXPECT_EQ(rows.position.row(1), Eigen::RowVector3d(4, 5, 6));
   EXPECT_EQ(rows.orientation.row(1), Eigen::RowVector4d(0.6, 0, 0.8, 0));
   EXPECT_EQ(rows.normal.row(4), Eigen::RowVector3d(0, 0, 1));
-  EXPECT_TRUE(std::isnan(rows.distance[2]));
-  EXPECT_EQ(rows.distance[3], 0.25);
+  EXPECT_TRUE(std::isnan(rows.column("distance")[2]));
+  EXPECT_EQ(rows.column("distance")[3], 0.25);
   EXPECT_TRUE(std::isnan(rows.position(2, 0)));
   EXPECT_THAT(rows.set, ElementsAre(0, 1, 2, 2, 4));
   EXPECT_THAT(rows.group, ElementsAre(-1, -1, 0, 0, -1));
@@ -55,13 +67,40 @@ TEST_F(ObservationsCsv, KeepsEveryColumnThatObservationsHave) {
   EXPECT_THAT(loaded->data.sets[2].groups, ElementsAre("p"));
 }
 
+TEST_F(ObservationsCsv, KeepsTheColumnsThatAMethodBringsAlong) {
+  const auto arm = load("set,q1,q2\ntable,0,0\n");
+  ASSERT_TRUE(arm.has_value()) << arm.error().what;
+  const auto read = [&](const std::string& csv, DataSet& data) {
+    scratch().write("plumb.csv", csv);
+    data.sets = {Set(), arm->data.sets[4]};
+    data.sets[0].name = "plumb";
+    data.sets[0].method = std::make_shared<Plumb>();
+    std::vector<std::string> told;
+    const auto done = read_observations(scratch().folder() / "plumb.csv", *arm->robot, data, told);
+    EXPECT_THAT(told, ElementsAre());
+    return done ? std::string() : without_folder(done.error().what);
+  };
+  const std::string csv = "set,q1,q2,height,tilt\nplumb,0,0,0.5,-0.25\ntable,0,0,,\n";
+  DataSet data, again;
+  ASSERT_EQ(read(csv, data), "");
+  EXPECT_EQ(data.rows.column("tilt")[0], -0.25);
+  EXPECT_EQ(data.rows.column("height")[0], 0.5);
+  EXPECT_TRUE(std::isnan(data.rows.column("tilt")[1]));
+  EXPECT_EQ(observations_text(data), csv);
+  EXPECT_EQ(read("set,q1,q2,height,tilt\nplumb,0,0,-1,0\n", again),
+            "plumb.csv: row 1: column height: a distance is never negative");
+  EXPECT_EQ(
+      read("set,q1,q2,height,tilt\nplumb,0,0,1,\n", again),
+      "plumb.csv: row 1: column tilt: set 'plumb' (plumb) needs column 'tilt', which is empty");
+}
+
 TEST_F(ObservationsCsv, LeavesColumnsThatTheFileLacksWithoutRows) {
   const auto loaded = load("set,q2,q1\ntable,0.2,0.1\n");
   ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
   const Observations& rows = loaded->data.rows;
   EXPECT_EQ(rows.q.row(0), Eigen::RowVector2d(0.1, 0.2));
   EXPECT_EQ(rows.position.rows() + rows.orientation.rows() + rows.normal.rows(), 0);
-  EXPECT_EQ(rows.distance.rows(), 0);
+  EXPECT_TRUE(rows.measured.empty());
   EXPECT_TRUE(rows.repeat.empty());
   EXPECT_THAT(rows.check, ElementsAre(0));
   EXPECT_THAT(rows.group, ElementsAre(-1));

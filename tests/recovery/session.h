@@ -62,7 +62,8 @@ inline Session make_session(const Robot& machine, const Eigen::VectorXd& xi,
     rows.check[i] = i % 3 == 2;
     if (noise == 0 || session.data.sets[rows.set[i]].method->constrains()) continue;
     for (int c = 0; c < 3; ++c) rows.position(i, c) += noise * normal(random);
-    rows.distance[i] += noise * normal(random);
+    const double drawn = normal(random);  // for every row, whatever its method measures
+    for (auto& [name, column] : rows.measured) column[i] += noise * drawn;
     const auto q = rows.orientation.row(i);
     const Eigen::Vector3d turn(normal(random), normal(random), normal(random));
     const Eigen::Quaterniond turned(exp_rotation(noise / 0.2 * turn) *

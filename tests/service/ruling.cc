@@ -179,7 +179,7 @@ TEST(CheckRuling, RaisesAFalseAlarmAsRarelyAsItIsAskedTo) {
       data.rows.q = all.rows.q(rows, Eigen::all);
       data.rows.normal = all.rows.normal(rows, Eigen::all);
       data.rows.position = data.rows.orientation = Eigen::MatrixXd();
-      data.rows.distance = Eigen::VectorXd();
+      data.rows.measured.clear();
       data.rows.repeat.clear();
       for (std::size_t i = 0; i < rows.size(); ++i) {
         data.rows.set[i] = all.rows.set[rows[i]];
