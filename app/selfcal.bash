@@ -2,7 +2,8 @@
 _selfcal() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]-} words
   if [[ $prev == --method ]]; then
-    words="position location distance position-constraint location-constraint plane plane-normal sphere"
+    words=$("${COMP_WORDS[0]}" identifiable --help 2>/dev/null | sed -n 's/^ *--method .*{\(.*\)}.*/\1/p')
+    words=${words//,/ }
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
     return
   fi
