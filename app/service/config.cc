@@ -23,6 +23,20 @@ constexpr std::array<std::pair<std::string_view, CommandRules::Over>, 4> kOvers 
      {"secured", CommandRules::Over::secured},
      {"network", CommandRules::Over::network}}};
 
+/// Names of the methods that a plan can do, as far as they need no key, in words.
+std::string planned_methods() {
+  std::string all;
+  for (const std::string_view name : method_names()) {
+    Node entry = Node::map();
+    entry.set("method", Node::of(std::string(name)));
+    Problems problems;
+    const Set set = make_set("", entry, problems);
+    if (set.method && set.method->planned() != Planned::no)
+      all += (all.empty() ? "" : ", ") + std::string(name);
+  }
+  return all;
+}
+
 /// Reads the parts of a configuration, each into its place.
 class Reader {
  public:
@@ -216,12 +230,12 @@ class Reader {
     target.set = set;
     target.touches = f.integer("touches", 40, 4, 10000);
     const Node *surface = f.node("surface"), *within = f.node("within"), *places = f.node("places");
-    if (method->touches() == TouchedSurface::plane && !method->paired())
+    if (method->planned() == Planned::surface)
       read_plane(f, surface, within, target);
-    else if (method->group_freedom() > 0 && method->columns() == std::vector<std::string>{"group"})
+    else if (method->planned() == Planned::places)
       read_sockets(f, places, target);
     else
-      f.fail("method", "plane, position-constraint or location-constraint: what a touch can do");
+      f.fail("method", "what a touch can do, one of " + planned_methods());
     c_.targets.push_back(std::move(target));
   }
 

@@ -18,6 +18,7 @@ class LocationConstraint final : public Method {
             Quantity::angle,  Quantity::angle,  Quantity::angle};
   }
   std::vector<std::string> columns() const override { return {"group"}; }
+  Planned planned() const override { return Planned::places; }
   bool vectors() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return DeviceFrame::kFreedom; }

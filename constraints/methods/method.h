@@ -32,6 +32,9 @@ struct Plane {
 /// The surface that the tool touches; instruments, sockets and nests have none.
 enum class TouchedSurface { none, plane, curved };
 
+/// What a session's plan can do for a method: touch a surface, sit in sockets or nests, or nothing.
+enum class Planned { no, surface, places };
+
 /// Rows of one set to be evaluated together, one a lane.
 struct MethodInput {
   int count = 0;
@@ -136,6 +139,7 @@ class Method {
   virtual bool sees_orientation() const { return has_angles(); }
   Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
+  virtual Planned planned() const { return Planned::no; }
   virtual TouchedSurface touches() const { return TouchedSurface::none; }
   /// The touched plane; nothing of other methods.
   virtual std::optional<Plane> plane(const Eigen::VectorXd& nuisance,

@@ -58,6 +58,7 @@ class Touch : public Method {
   explicit Touch(double probe_radius) : probe_radius_(probe_radius) {}
   std::string_view name() const override { return "plane"; }
   std::vector<Quantity> equations() const override { return {Quantity::length}; }
+  Planned planned() const override { return Planned::surface; }
   TouchedSurface touches() const override { return TouchedSurface::plane; }
   std::vector<std::string> columns() const override {
     if (probe_radius_ > 0) return {"nx", "ny", "nz"};

@@ -19,6 +19,7 @@ class PositionConstraint final : public Method {
   std::string_view name() const override { return "position-constraint"; }
   std::vector<Quantity> equations() const override { return {3, Quantity::length}; }
   std::vector<std::string> columns() const override { return {"group"}; }
+  Planned planned() const override { return Planned::places; }
   bool vectors() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int group_freedom() const override { return 3; }

@@ -17,6 +17,7 @@ namespace selfcal {
 struct MethodCase {
   std::string title;  ///< letters only: names the test
   std::string sets;
+  bool scale_free = false;  ///< its rows hold for a robot of any size
 };
 
 inline void PrintTo(const MethodCase& each, std::ostream* out) { *out << each.sets; }
@@ -32,13 +33,13 @@ inline std::vector<MethodCase> method_cases() {
       {"Location", "s: {method: location}"},
       {"LocationInAnUnknownFrame", "s: {method: location, frame: unknown}"},
       {"Distance", "s: {method: distance}"},
-      {"PositionConstraint", "s: {method: position-constraint}"},
+      {"PositionConstraint", "s: {method: position-constraint}", true},
       {"PositionConstraintWithGroupsApart",
        "s: {method: position-constraint, apart: [{groups: [a, b], distance: 0.3, noise: 1.0e-4}]}"},
-      {"LocationConstraint", "s: {method: location-constraint}"},
-      {"PlaneUnknown", "s: {method: plane}"},
+      {"LocationConstraint", "s: {method: location-constraint}", true},
+      {"PlaneUnknown", "s: {method: plane}", true},
       {"PlaneKnown", "s: {method: plane, plane: [0.1, 0.2, -2.0]}"},
-      {"PlaneWithAProbe", "s: {method: plane, probe_radius: 0.05}"},
+      {"PlaneWithAProbe", "s: {method: plane, probe_radius: 0.05}", true},
       {"PlaneParallelToAnUnknownOne",
        "s: {method: plane, parallel_to: {set: other, distance: 0.2, noise: 1.0e-5}}\n"
        "other: {method: plane}"},
@@ -46,9 +47,9 @@ inline std::vector<MethodCase> method_cases() {
        "s: {method: plane, probe_radius: 0.05,"
        " parallel_to: {set: other, distance: 0.2, noise: 1.0e-5}}\n"
        "other: {method: plane, plane: [0.1, 0.2, -2.0]}"},
-      {"PlaneNormalUnknown", "s: {method: plane-normal}"},
-      {"PlaneNormalKnown", "s: {method: plane-normal, normal: [1, 2, -3]}"},
-      {"SphereUnknown", "s: {method: sphere}"},
+      {"PlaneNormalUnknown", "s: {method: plane-normal}", true},
+      {"PlaneNormalKnown", "s: {method: plane-normal, normal: [1, 2, -3]}", true},
+      {"SphereUnknown", "s: {method: sphere}", true},
       {"SphereOfKnownCentre", "s: {method: sphere, center: [0.6, 0.1, 0.5]}"},
       {"SphereOfKnownRadius", "s: {method: sphere, radius: 0.1}"},
       {"SphereKnown", "s: {method: sphere, center: [0.6, 0.1, 0.5], radius: 0.1}"},
