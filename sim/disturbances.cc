@@ -121,12 +121,12 @@ class Disturber {
     // The first number is drawn for every row: what an instrument measures beside leaves the draws
     // of the next row alone.
     double drawn = normal(1);
-    const std::vector<MeasuredColumn> own = method(row).measures();
-    for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::vector<MeasuredColumn> nuisance = method(row).measures();
+    for (std::size_t i = 0; i < nuisance.size(); ++i) {
       if (i > 0) drawn = normal(1);
-      double& value = rows.column(own[i].name)[row];
-      value += drawn * (own[i].quantity == Quantity::angle ? set.noise_angle : set.noise);
-      if (own[i].never_negative) value = std::abs(value);
+      double& value = rows.column(nuisance[i].name)[row];
+      value += drawn * (nuisance[i].quantity == Quantity::angle ? set.noise_angle : set.noise);
+      if (nuisance[i].never_negative) value = std::abs(value);
       // The first of a group has no previous row to be measured from.
       if (first_of_group && method(row).paired()) value = std::nan("");
     }

@@ -123,7 +123,8 @@ class Method {
   /// touched shrinks with it). Whether they are, by what is known of it, held_scale judges from all
   /// rows.
   virtual bool may_leave_scale_free() const { return false; }
-  /// True when rows are measured in the frame of a device whose pose is an nuisance parameter.
+  /// True when rows are measured in the frame of a device whose pose is a nuisance parameter, or
+  /// from a point that is: the base is not seen then.
   virtual bool frame_unknown() const { return false; }
   /// True when the target point is an unknown of the set, in place of the tool frames.
   virtual bool point_unknown() const { return false; }

@@ -49,8 +49,8 @@ struct Layout {
 };
 
 /// Reads the header of a file for a robot of `joints` joints. `measured` are the columns that the
-/// methods of its sets bring along. Refuses a file without `set` or a joint's reading, with readings
-/// of more joints, or with part of a vector.
+/// methods of its sets bring along. Refuses a file without `set` or a joint's reading, with
+/// readings of more joints, or with part of a vector.
 tl::expected<Layout, RowFault> read_header(Cells names, int joints,
                                            const std::vector<MeasuredColumn>& measured);
 
