@@ -1,10 +1,10 @@
 // What the service asks of a machine: thin seams without any vendor's types.
 //
-// The real robot (io/dds, SocketCAN, GPIO) and the pretend one (sim/machine.h) stand behind the
+// The real robot (io/dds, SocketCAN, GPIO) and the simulated one (sim/machine.h) stand behind the
 // same ports. Every call returns at once; only Clock::wait may block, and never longer than asked.
 // What a port could not take in time it drops oldest first and counts.
 //
-// One time base: every stamp is CLOCK_MONOTONIC, or what the pretend machine has in its place.
+// One time base: every stamp is CLOCK_MONOTONIC, or what the simulated robot has in its place.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The rows that a pretend machine measures, and the truth behind them.
+// The rows that a simulated robot measures, and the truth behind them.
 #pragma once
 
 #include <string>

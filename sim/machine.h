@@ -1,4 +1,4 @@
-// The pretend machine: the true robot among the true surfaces, moved and felt through the ports.
+// The simulated robot: the true robot among the true surfaces, moved and felt through the ports.
 //
 // It moves on straight joint paths with finite speed and acceleration. The place of a contact on a
 // path is known when the move begins: the endpoint of the true robot crosses a true surface within

@@ -1,4 +1,4 @@
-// How the pretend machine moves, feels and fails: `machine` in SCENARIO.yaml.
+// How the simulated robot moves, feels and fails: `machine` in SCENARIO.yaml.
 //
 //   key             default   range          meaning
 //   encoder_period  0.002     1e-4 to 0.1 s  between two samples of all joints

@@ -1,4 +1,4 @@
-// The pretend machine behind the service's ports, in the service's own process.
+// The simulated robot behind the service's ports, in the service's own process.
 //
 // Its time passes as fast as the service can follow while the robot moves, and as fast as the wall
 // clock while it stands: a night's session takes seconds, and a computation beside it takes no time

@@ -1,4 +1,4 @@
-// What a pretend machine is and what it measures: SCENARIO.yaml. Paths in it are relative to it.
+// What a simulated robot is and what it measures: SCENARIO.yaml. Paths in it are relative to it.
 //
 //   key             default   range          meaning
 //   robot           required                 file of the nominal robot, copied into the data set

@@ -1,4 +1,5 @@
-// What the pretend robot really is: the nominal one with errors, and compliance that no model has.
+// What the simulated robot really is: the nominal one with errors, and compliance that no model
+// has.
 #pragma once
 
 #include <Eigen/Dense>

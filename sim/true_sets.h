@@ -1,4 +1,4 @@
-// Where the pretend surfaces, balls and instruments really are.
+// Where the simulated surfaces, balls and instruments really are.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// selfcal serve CONFIG.yaml: the service, with a real robot or a pretend one.
+// selfcal serve CONFIG.yaml: the service, with a real robot or a simulated one.
 #include <fcntl.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -241,7 +241,7 @@ void add_serve(CLI::App& app, int& status) {
       ->required();
   CLI::Option* simulate =
       command->add_flag("--simulate", arguments->simulate,
-                        "With the pretend machine of the configuration's `simulation`");
+                        "With the simulated robot of the configuration's `simulation`");
   CLI::Option* check =
       command->add_flag("--check", arguments->check, "Validate, print the plan, and end");
   command
@@ -250,7 +250,7 @@ void add_serve(CLI::App& app, int& status) {
       ->excludes(check);
   command
       ->add_option("--truth", arguments->truth,
-                   "With --simulate: file for what the pretend machine really is")
+                   "With --simulate: file for what the simulated robot really is")
       ->needs(simulate)
       ->excludes(check);
   command->add_option("--log", arguments->log, "Least level logged")

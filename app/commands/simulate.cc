@@ -1,4 +1,4 @@
-// selfcal simulate SCENARIO.yaml: a data set from a pretend machine; its truth apart, if asked.
+// selfcal simulate SCENARIO.yaml: a data set from a simulated robot; its truth apart, if asked.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -85,7 +85,7 @@ int simulate_command(const SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& app, int& status) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand("simulate", "Make a data set with a pretend machine");
+  CLI::App* command = app.add_subcommand("simulate", "Make a data set with a simulated robot");
   command
       ->add_option("SCENARIO", arguments->scenario,
                    "SCENARIO.yaml: the robot, its errors, the sets (see man selfcal-config)")

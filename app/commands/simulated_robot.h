@@ -1,4 +1,4 @@
-// The pretend machine of a configuration's scenario: loaded, and played in a process of its own
+// The simulated robot of a configuration's scenario: loaded, and played in a process of its own
 // over the transports that the configuration names.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a pretend robot sends where the receiving kernel takes the stamps: every frame and every
+// What a simulated robot sends where the receiving kernel takes the stamps: every frame and every
 // edge at its moment, with the positions of that very moment.
 //
 // An edge is waited for with the eyes open, as its moment is the measurement. A frame is sent when

@@ -1,4 +1,4 @@
-// The pretend machine of a configuration as a process of its own: motion and temperature over DDS,
+// The simulated robot of a configuration as a process of its own: motion and temperature over DDS,
 // joint readings and trigger over the transports that the configuration names.
 #include <sys/prctl.h>
 

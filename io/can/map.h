@@ -2,8 +2,8 @@
 //
 //   reading = (counts - zero) * step     (rad or m)
 //
-// Pure data and arithmetic: the same map reads the frames of a robot and writes those of a pretend
-// one.
+// Pure data and arithmetic: the same map reads the frames of a robot and writes those of a
+// simulated one.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// A robot's side of the bus: writes what its encoders read. For a pretend robot in its own process,
-// and for tests.
+// A robot's side of the bus: writes what its encoders read. For a simulated robot in its own
+// process, and for tests.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // A robot's side of the topics: takes requests for motion, sends replies and the temperature (joint
-// states and the trigger's level: senders.h). For a robot's driver, or a pretend robot in its own
+// states and the trigger's level: senders.h). For a robot's driver, or a simulated robot in its own
 // process.
 #pragma once
 

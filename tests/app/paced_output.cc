@@ -1,4 +1,4 @@
-// What a pretend robot sends is true at the moment at which it is sent.
+// What a simulated robot sends is true at the moment at which it is sent.
 #include "app/report/paced_output.h"
 
 #include <gtest/gtest.h>

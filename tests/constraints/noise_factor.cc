@@ -3,7 +3,7 @@
 
 #include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 #include "tests/support/end_position.h"
 
 namespace selfcal {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "constraints/planning/touch_plan.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 #include "tests/support/end_position.h"
 
 namespace selfcal {

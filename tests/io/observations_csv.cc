@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "io/observations_text.h"
+#include "io/files/observations_text.h"
 #include "tests/io/data_set_folder.h"
 
 namespace selfcal {

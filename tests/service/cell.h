@@ -6,7 +6,7 @@
 
 #include "app/service/config.h"
 #include "tests/io/scratch.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 

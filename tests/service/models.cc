@@ -8,7 +8,7 @@
 #include "io/files/robot_file.h"
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 namespace {

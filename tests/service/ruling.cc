@@ -9,7 +9,7 @@
 #include <random>
 
 #include "constraints/estimation/identification.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 namespace {

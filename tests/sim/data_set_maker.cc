@@ -1,4 +1,4 @@
-// The rows of a pretend machine against what its scenario asks for.
+// The rows of a simulated robot against what its scenario asks for.
 #include "sim/data_set_maker.h"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 #include <map>
 
 #include "constraints/estimation/identification.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 namespace {

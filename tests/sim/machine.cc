@@ -1,4 +1,4 @@
-// A touch of the pretend machine happens where its true endpoint meets the true surface.
+// A touch of the simulated robot happens where its true endpoint meets the true surface.
 #include "sim/machine.h"
 
 #include <gmock/gmock.h>

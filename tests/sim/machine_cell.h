@@ -1,10 +1,10 @@
-// A pretend machine over a table, and one touch of it.
+// A simulated robot over a table, and one touch of it.
 #pragma once
 
 #include "app/service/reading.h"
 #include "constraints/planning/touch_plan.h"
 #include "sim/machine.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 

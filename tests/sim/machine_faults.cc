@@ -1,4 +1,4 @@
-// What breaks on the pretend machine when its scenario says so, and how a tool comes to sit.
+// What breaks on the simulated robot when its scenario says so, and how a tool comes to sit.
 #include <gmock/gmock.h>
 
 #include "tests/sim/machine_cell.h"

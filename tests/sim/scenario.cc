@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 namespace {

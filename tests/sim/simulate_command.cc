@@ -9,7 +9,7 @@
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
 #include "tests/io/scratch.h"
-#include "tests/sim/pretend.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
 namespace {
