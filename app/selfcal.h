@@ -25,6 +25,6 @@
 #include "io/files/data_set_file.h"
 #include "io/files/data_set_writer.h"
 #include "io/files/file.h"
-#include "io/result.h"
 #include "io/files/robot_file.h"
 #include "io/files/solution_json.h"
+#include "io/result.h"

@@ -68,7 +68,9 @@ class Diagnostician {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       const DenseEquations rows = view_.kept();
       bench_ = std::make_unique<EvidenceEvaluator>(
-          view_.whitened(), structures(data_.rows, rows, view_.ends(), view_.by_joint(rows)),
+          view_.whitened(),
+          structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
+                     comparable_readings(view_.geometry(), data_.rows.q)),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
       if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms ||

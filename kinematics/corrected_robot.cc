@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLooseness = 10;  ///< prior sigma over the largest usual size
 
-class CorrectedRobot final : public Robot {
+class CorrectedRobot final : public Robot, public RobotText {
  public:
   CorrectedRobot(std::shared_ptr<const Robot> geometry,
                  std::vector<std::unique_ptr<Effect>> effects)
@@ -56,8 +56,9 @@ class CorrectedRobot final : public Robot {
     return geometry_->draw(span, uniform);
   }
   int variable_parameter(int j) const override { return geometry_->variable_parameter(j); }
-  std::string identity() const override { return geometry_->identity(); }
-  std::vector<std::string> remarks() const override { return geometry_->remarks(); }
+  std::string identity() const override { return geometry_->text().identity(); }
+  const RobotText& text() const override { return *this; }
+  std::vector<std::string> remarks() const override { return geometry_->text().remarks(); }
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
@@ -90,7 +91,7 @@ class CorrectedRobot final : public Robot {
   }
 
   Node describe(const Eigen::VectorXd& xi) const override {
-    Node node = geometry_->describe(xi.head(geometry_parameters()));
+    Node node = geometry_->text().describe(xi.head(geometry_parameters()));
     Node list = Node::list();
     Eigen::Index at = geometry_parameters();
     for (const auto& effect : effects_) {
@@ -232,7 +233,7 @@ std::vector<const Effect*> effects_of(const Robot& robot) {
 }
 
 std::vector<Node> effect_entries(const Robot& robot) {
-  const Node whole = robot.describe(values(robot));
+  const Node whole = robot.text().describe(values(robot));
   const Node* list = whole.find("effects");
   return list ? list->items : std::vector<Node>();
 }

@@ -16,6 +16,7 @@
 #include "kinematics/description.h"
 #include "kinematics/mechanics.h"
 #include "kinematics/parameter.h"
+#include "kinematics/robot_text.h"
 
 namespace selfcal {
 
@@ -139,15 +140,8 @@ class Robot {
   /// Where the tool points, in its own frame.
   virtual Eigen::Vector3d tool_axis() const { return Eigen::Vector3d::UnitZ(); }
 
-  /// The robot file's content with parameter values `xi`; the prior's centre is kept as `nominal`.
-  virtual Node describe(const Eigen::VectorXd& xi) const = 0;
-
-  /// Text that is equal for two files of one machine whatever their calibration: the maker's
-  /// figures and the structure. Its SHA-256 is the model hash.
-  virtual std::string identity() const = 0;
-
-  /// What `robot check` tells a person about the model beside its parameters, line by line.
-  virtual std::vector<std::string> remarks() const = 0;
+  /// Its file and what a person reads of it.
+  virtual const RobotText& text() const = 0;
 };
 
 /// Values of all parameters as the file has them.

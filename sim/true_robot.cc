@@ -49,7 +49,8 @@ std::optional<Compliance> true_compliance(const Scenario& scenario, const Robot&
     return std::nullopt;
   }
   const auto joints = static_cast<Eigen::Index>(robot.joints().size());
-  Compliance compliance{serial::read(robot.describe(xi), problems), Eigen::VectorXd::Zero(joints)};
+  Compliance compliance{serial::read(robot.text().describe(xi), problems),
+                        Eigen::VectorXd::Zero(joints)};
   if (mass(compliance.model) <= 0)
     problems.add(place, "compliance: " + robot.name() +
                             " has no masses, so gravity loads no joint; give `mass` and `com` of "

@@ -82,7 +82,8 @@ Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
     if (!*result || (*result)->robot_text.empty()) continue;
     auto robot = robot_of((*result)->robot_text, "session " + std::to_string(each.session));
     if (!robot) continue;  // of a robot that this program does not know
-    if (!newest_first.empty() && newest_first.front().robot->identity() != (*robot)->identity())
+    if (!newest_first.empty() &&
+        newest_first.front().robot->text().identity() != (*robot)->text().identity())
       continue;
     newest_first.push_back({each.session, each.unix_ms, std::move(*robot)});
   }

@@ -23,7 +23,7 @@ int check(const std::string& file) {
     else
       std::printf("  %s: no limits given (%s)\n", joint.name.c_str(), unit_name);
   }
-  for (const std::string& line : r.remarks()) std::printf("%s\n", line.c_str());
+  for (const std::string& line : r.text().remarks()) std::printf("%s\n", line.c_str());
   return kDone;
 }
 

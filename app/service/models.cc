@@ -47,7 +47,7 @@ Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) 
   if (!robot) return refuse(before + robot.error().what);
   // The maker's file as it is today (limits, tolerances), with the values of the slot.
   Problems problems;
-  models.active_ = make_robot(models.factory_->describe(values(**robot)), problems);
+  models.active_ = make_robot(models.factory_->text().describe(values(**robot)), problems);
   if (problems.any()) return bad_input(problems);
   models.session_ = record.session;
   models.since_ms_ = record.since_ms;

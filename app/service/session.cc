@@ -81,7 +81,7 @@ std::string meaning_text(const Config& config, const std::vector<EncoderScale>& 
 
 std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales) {
   return sha256_hex(meaning_text(config, scales) + write_yaml(config.transports) +
-                    config.robot->identity());
+                    config.robot->text().identity());
 }
 
 Result<Decoding> read_meaning(const std::string& text) {

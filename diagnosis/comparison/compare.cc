@@ -115,7 +115,7 @@ std::string changes_in_words(const Comparison& result) {
 }  // namespace
 
 std::string incomparable(const Robot& one, const Robot& other) {
-  if (one.identity() == other.identity()) return {};
+  if (one.text().identity() == other.text().identity()) return {};
   if (one.name() != other.name())
     return "is of the robot '" + std::string(one.name()) + "', not of '" +
            std::string(other.name()) + "': only data sets of one robot can be compared";

@@ -76,7 +76,8 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
 EvidenceEvaluator Pair::bench(const DenseEquations& rows, const SearchRule& rule) const {
   return EvidenceEvaluator(whitened(rows),
                            structures(both_.rows, rows, ends(*geometry_, both_.rows),
-                                      rows.W(Eigen::all, reading_columns(*geometry_))),
+                                      rows.W(Eigen::all, reading_columns(*geometry_)),
+                                      comparable_readings(*geometry_, both_.rows.q)),
                            changes_.candidates, changes_.parameters, rule);
 }
 

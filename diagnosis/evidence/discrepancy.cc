@@ -8,6 +8,7 @@
 #include "diagnosis/evidence/discrepancy.h"
 
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "kinematics/linear_algebra.h"
@@ -32,8 +33,9 @@ constexpr double kTime = 0.1;                            ///< of the whole
 class Kernel {
  public:
   Kernel(const Observations& data, const DenseEquations& rows,
-         const std::vector<Eigen::Isometry3d>& ends, Eigen::MatrixXd by_joint)
-      : data_(data), rows_(rows), ends_(ends), by_joint_(std::move(by_joint)) {
+         const std::vector<Eigen::Isometry3d>& ends, Eigen::MatrixXd by_joint,
+         const Eigen::MatrixXd& alike)
+      : data_(data), rows_(rows), ends_(ends), by_joint_(std::move(by_joint)), alike_(alike) {
     std::vector<double> times;  // a row need not have one
     std::ranges::copy_if(data.time, std::back_inserter(times),
                          [](double t) { return std::isfinite(t); });
@@ -111,9 +113,9 @@ class Kernel {
   /// Covariance of one function of one or two readings, the mean over all pairs of joints.
   double alike(int a, int b) const {
     double sum = 0, squares = 0;
-    const Eigen::Index joints = data_.q.cols();
+    const Eigen::Index joints = alike_.cols();
     for (Eigen::Index j = 0; j < joints; ++j) {
-      const double each = (1 + bell(std::pow((data_.q(a, j) - data_.q(b, j)) / kTurned, 2))) / 2;
+      const double each = (1 + bell(std::pow((alike_(a, j) - alike_(b, j)) / kTurned, 2))) / 2;
       sum += each;
       squares += each * each;
     }
@@ -127,7 +129,7 @@ class Kernel {
       case KernelDomain::same:
         return 0;
       case KernelDomain::joints:
-        return bell((data_.q.row(a) - data_.q.row(b)).squaredNorm() / (kJoints * kJoints));
+        return bell((alike_.row(a) - alike_.row(b)).squaredNorm() / (kJoints * kJoints));
       case KernelDomain::place:
         return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
                     (kPlace * kPlace));
@@ -144,6 +146,7 @@ class Kernel {
   const DenseEquations& rows_;
   const std::vector<Eigen::Isometry3d>& ends_;
   const Eigen::MatrixXd by_joint_;
+  const Eigen::MatrixXd& alike_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
 };
@@ -179,15 +182,25 @@ Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q) {
   return steps;
 }
 
+Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
+  for (Eigen::Index j = 0; j < q.cols(); ++j) {
+    if (robot.joints()[static_cast<size_t>(j)].quantity == Quantity::angle) continue;
+    const double moved = q.col(j).maxCoeff() - q.col(j).minCoeff();
+    if (moved > 0) q.col(j) *= std::numbers::pi / moved;
+  }
+  return q;
+}
+
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
                                                const Eigen::MatrixXd& by_joint) {
-  return {{0, 0, cholesky_root(Kernel(data, rows, {}, by_joint).rounded()), 1, 1}};
+  return {{0, 0, cholesky_root(Kernel(data, rows, {}, by_joint, data.q).rounded()), 1, 1}};
 }
 
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              const Eigen::MatrixXd& by_joint) {
-  const Kernel kernel(data, rows, ends, by_joint);
+                                              const Eigen::MatrixXd& by_joint,
+                                              const Eigen::MatrixXd& alike) {
+  const Kernel kernel(data, rows, ends, by_joint, alike);
   const Eigen::MatrixXd noise = kernel.rounded();
   const Eigen::MatrixXd same = kernel.of(KernelDomain::same);
   std::vector<DiscrepancyCovariance> list;

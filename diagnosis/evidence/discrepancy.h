@@ -7,6 +7,7 @@
 
 #include "constraints/equations/equations.h"
 #include "diagnosis/evidence/marginal_likelihood.h"
+#include "kinematics/robot.h"
 
 namespace selfcal {
 
@@ -26,9 +27,15 @@ std::string_view to_string(KernelDomain closeness);
 /// `by_joint` (equations x joints) is what an error of each joint's reading moves an equation. That
 /// of half the reading's last digit is shared by rows of one reading, however often they are
 /// repeated.
+/// `alike` (rows x joints) are the readings as they are compared, see comparable_readings.
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              const Eigen::MatrixXd& by_joint);
+                                              const Eigen::MatrixXd& by_joint,
+                                              const Eigen::MatrixXd& alike);
+
+/// Readings `q` (rows x joints) as angles: of a joint that slides, half a turn for all that it
+/// moves in these rows.
+Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q);
 
 /// Only the first of these.
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,

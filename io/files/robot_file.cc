@@ -23,9 +23,11 @@ Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string
 }
 
 std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi) {
-  return write_yaml(robot.describe(xi));
+  return write_yaml(robot.text().describe(xi));
 }
 
-std::string model_hash(const Robot& robot) { return "sha256:" + sha256_hex(robot.identity()); }
+std::string model_hash(const Robot& robot) {
+  return "sha256:" + sha256_hex(robot.text().identity());
+}
 
 }  // namespace selfcal

@@ -36,7 +36,7 @@ Eigen::Matrix<double, 3, kFields> tower_columns(const Eigen::VectorXd& xi, const
   return g * b;
 }
 
-class LinearDelta final : public Robot {
+class LinearDelta final : public Robot, public RobotText {
  public:
   explicit LinearDelta(Delta model)
       : model_(std::move(model)),
@@ -51,6 +51,7 @@ class LinearDelta final : public Robot {
   const std::vector<Joint>& joints() const override { return joints_; }
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
+  const RobotText& text() const override { return *this; }
   std::vector<std::string> remarks() const override { return linear_delta::remarks(model_); }
   bool has_loops() const override { return true; }
   int variable_parameter(int joint) const override { return index(joint, kEndstop); }

@@ -23,7 +23,7 @@ Eigen::VectorXd figures(const Frame& frame) {
   return (Eigen::VectorXd(6) << frame.nominal.head<3>(), frame.rpy_nominal).finished();
 }
 
-class SerialRobot final : public Robot, public Statics {
+class SerialRobot final : public Robot, public Statics, public RobotText {
  public:
   explicit SerialRobot(Model model)
       : model_(std::move(model)),
@@ -48,6 +48,7 @@ class SerialRobot final : public Robot, public Statics {
   const std::vector<Joint>& joints() const override { return joints_; }
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
+  const RobotText& text() const override { return *this; }
   std::vector<std::string> remarks() const override { return serial::remarks(model_); }
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,

@@ -41,7 +41,8 @@ class Arm {
   /// The geometry as it was fitted.
   std::shared_ptr<const Robot> robot_with_values() const {
     Problems problems;
-    return make_robot(view_->geometry().describe(view_->adjusted().fitted.state.xi), problems);
+    return make_robot(view_->geometry().text().describe(view_->adjusted().fitted.state.xi),
+                      problems);
   }
 
   /// How far the tip is from that of the nearest row at hand (m), and where that is.

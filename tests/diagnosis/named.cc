@@ -68,7 +68,7 @@ double left_by_fit_of(const TwoCauses& of, const std::vector<Node>& entries) {
 /// Of the corrected robot's file, the entries that it says are named; or those that are not.
 std::vector<Node> entries_of(const Diagnosis& diagnosis, const char* named) {
   std::vector<Node> list;
-  const Node file = diagnosis.model->describe(diagnosis.values);
+  const Node file = diagnosis.model->text().describe(diagnosis.values);
   for (const Node& entry : file.find("effects")->items)
     if (const Node* flag = entry.find("named"); flag && flag->text == named) list.push_back(entry);
   return list;

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "io/files/yaml.h"
 
 namespace selfcal {
 namespace {
@@ -51,7 +54,7 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
 
 TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const Touches t;
-  const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
+  const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1), t.data.q);
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
   for (const DiscrepancyCovariance& each : list) {
@@ -72,7 +75,7 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   t.data.time << 0, 0, 1000;
   t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
   const auto of_time = [&] {
-    const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1));
+    const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1), t.data.q);
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
     return Eigen::MatrixXd(found->root * found->root.transpose());
@@ -93,7 +96,8 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   rows.shift = Eigen::MatrixXd::Identity(2, 3);
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
-  const auto list = structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), by_joint);
+  const auto list =
+      structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), by_joint, data.q);
   const auto found =
       std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());
@@ -102,6 +106,23 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   // radian, half of what errors are smooth over, the other's does not.
   const double both = 12 * 2.0 / 25, alike = (1 + std::exp(-0.5 / 4)) / 2;
   EXPECT_NEAR(S(0, 1), found->kappa * found->kappa * both * alike, 1e-12);
+}
+
+TEST(Structures, CompareAJointThatSlidesByWhatItMovesWhateverTheSizeOfTheRobot) {
+  for (const double size : {0.1, 1.0, 10.0}) {
+    Problems problems;
+    Node node = *parse_yaml(
+        "robot: r\nkind: serial\nframes:\n"
+        "  - {name: a, joint: revolute}\n  - {name: b, joint: prismatic}\n",
+        "r.yaml");
+    const auto robot = make_robot(node, problems);
+    Eigen::MatrixXd q(3, 2);
+    q << 0.1, -0.2 * size, 0.5, 0.1 * size, 0.9, 0.2 * size;
+    const Eigen::MatrixXd alike = comparable_readings(*robot, q);
+    EXPECT_EQ(alike.col(0), q.col(0));
+    EXPECT_NEAR(alike(2, 1) - alike(0, 1), std::numbers::pi, 1e-15);
+    EXPECT_NEAR(alike(1, 1) - alike(0, 1), 0.75 * std::numbers::pi, 1e-15);
+  }
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ TEST(JointCompliance, OfARobotWithoutMassesComesBackAsItWasLoadedOrLumped) {
     Problems problems;
     const auto robot = correct(arm, {parsed("{effect: joint_compliance, at: j1}")}, site, problems);
     ASSERT_NE(robot, nullptr);
-    const auto back = robot_of(robot->describe(values(*robot)));
+    const auto back = robot_of(robot->text().describe(values(*robot)));
     ASSERT_NE(back, nullptr);
     EXPECT_EQ(back->parameters().size(), robot->parameters().size());
     EXPECT_EQ(back->parameters().back().name, site.loads ? "j1.c" : "j1.y_j1");
@@ -214,7 +214,7 @@ TEST(EffectOfABase, HasItsOwnNamesBesideABaseThatIsAWholePose) {
   ASSERT_GE(drift, 0);
   EXPECT_EQ(robot->parameters()[drift].part, Part::effect);
   EXPECT_EQ(values(*robot)[drift], 1e-4);
-  const auto back = robot_of(robot->describe(values(*robot)));
+  const auto back = robot_of(robot->text().describe(values(*robot)));
   ASSERT_NE(back, nullptr);
   EXPECT_EQ(values(*back), values(*robot));
 }

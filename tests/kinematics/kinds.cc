@@ -160,11 +160,11 @@ TEST_P(RobotKind, GivesEveryParameterANameOfItsOwnAndATolerance) {
 TEST_P(RobotKind, ComesBackFromItsFileAsTheSameMachineWithOtherValues) {
   Eigen::VectorXd xi = xi_;
   for (Eigen::Index i = 0; i < xi.size(); ++i) xi[i] += 1e-4 * (1 + static_cast<double>(i % 3));
-  const auto back = robot_of(robot_->describe(xi));
+  const auto back = robot_of(robot_->text().describe(xi));
   ASSERT_TRUE(back);
   EXPECT_TRUE(values(*back) == xi);  // shortest text that reads back as the same number
   EXPECT_TRUE(nominal_values(*back) == nominal_values(*robot_));
-  EXPECT_EQ(back->identity(), robot_->identity());
+  EXPECT_EQ(back->text().identity(), robot_->text().identity());
   EXPECT_EQ(back->kind(), robot_->kind());
   EXPECT_EQ(back->name(), robot_->name());
   for (size_t i = 0; i < robot_->parameters().size(); ++i) {
@@ -179,7 +179,7 @@ TEST_P(RobotKind, ComesBackFromItsFileAsTheSameMachineWithOtherValues) {
 }
 
 TEST_P(RobotKind, IsAnotherMachineWithAnotherMakersFigure) {
-  const Node node = robot_->describe(xi_);
+  const Node node = robot_->text().describe(xi_);
   for (const char* key : {"frames", "towers"}) {
     const Node* list = node.find(key);
     if (!list) continue;
@@ -189,7 +189,7 @@ TEST_P(RobotKind, IsAnotherMachineWithAnotherMakersFigure) {
         for (size_t f = 0; f < list->items[1].keys.size(); ++f)
           if (list->items[1].keys[f] == "r" || list->items[1].keys[f] == "rod")
             other.items[k].items[1].items[f] = Node::of(0.22);
-    EXPECT_NE(robot_of(other)->identity(), robot_->identity());
+    EXPECT_NE(robot_of(other)->text().identity(), robot_->text().identity());
   }
 }
 

@@ -99,7 +99,7 @@ TEST(LinearDelta, RefusesWhatIsNoDelta) {
 }
 
 TEST(LinearDelta, TellsAPersonHowFarOutAndHowHighItWorks) {
-  const std::vector<std::string> lines = ideal()->remarks();
+  const std::vector<std::string> lines = ideal()->text().remarks();
   // 3 / sqrt 10 of 0.5 less 0.3 is 174.3 mm; at the endstops the effector stands at 0.9 - 0.4 m.
   EXPECT_THAT(lines.at(0), HasSubstr("174.3 mm"));
   EXPECT_THAT(lines.at(1), HasSubstr("up to 500.0 mm"));

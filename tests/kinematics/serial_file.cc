@@ -29,7 +29,7 @@ TEST(SerialFile, ComesBackWithTheSameLocationsAndTheMakersFigures) {
   for (int i = 0; i < 10; ++i) {
     const RandomRobot made = random_robot(random);
     const Eigen::VectorXd xi = moved(*made.robot, random);
-    const auto back = robot_of(made.robot->describe(xi));
+    const auto back = robot_of(made.robot->text().describe(xi));
     ASSERT_NE(back, nullptr);
     const ConfigurationBlock block = random_block(*made.robot, random);
     Locations X, Y;
@@ -50,12 +50,12 @@ TEST(SerialFile, ComesBackWithTheSameLocationsAndTheMakersFigures) {
 TEST(SerialFile, KeepsTheMakersFiguresThroughASecondCalibration) {
   std::mt19937_64 random(52);
   const RandomRobot made = random_robot(random);
-  const auto once = robot_of(made.robot->describe(moved(*made.robot, random)));
+  const auto once = robot_of(made.robot->text().describe(moved(*made.robot, random)));
   ASSERT_NE(once, nullptr);
-  const auto twice = robot_of(once->describe(moved(*once, random)));
+  const auto twice = robot_of(once->text().describe(moved(*once, random)));
   ASSERT_NE(twice, nullptr);
   EXPECT_EQ(nominal_values(*twice), nominal_values(*made.robot));
-  EXPECT_EQ(twice->identity(), made.robot->identity());
+  EXPECT_EQ(twice->text().identity(), made.robot->text().identity());
 }
 
 TEST(SerialFile, KeepsTolerancesLimitsMassesAndGravity) {
@@ -66,12 +66,12 @@ TEST(SerialFile, KeepsTolerancesLimitsMassesAndGravity) {
       "  - {name: tool, joint: fixed, r: 0.1, mass: 2.5, com: [0.1, 0, 0.05]}\n";
   const auto robot = robot_of(text);
   ASSERT_NE(robot, nullptr);
-  const auto back = robot_of(robot->describe(values(*robot)));
+  const auto back = robot_of(robot->text().describe(values(*robot)));
   ASSERT_NE(back, nullptr);
   EXPECT_EQ(back->joints()[0].lower, -2);
   EXPECT_EQ(back->joints()[0].upper, 1.5);
   EXPECT_TRUE(back->joints()[0].limited());
-  EXPECT_EQ(back->remarks(), robot->remarks());  // gravity and static torques
+  EXPECT_EQ(back->text().remarks(), robot->text().remarks());  // gravity and static torques
   for (size_t i = 0; i < robot->parameters().size(); ++i) {
     EXPECT_EQ(back->parameters()[i].tolerance, robot->parameters()[i].tolerance);
     EXPECT_EQ(back->parameters()[i].free, robot->parameters()[i].free);
@@ -81,22 +81,22 @@ TEST(SerialFile, KeepsTolerancesLimitsMassesAndGravity) {
 TEST(SerialIdentity, IsTheSameForACalibratedFileAndAnotherForAnotherRobot) {
   std::mt19937_64 random(53);
   RandomRobot made = random_robot(random);
-  const auto calibrated = robot_of(made.robot->describe(moved(*made.robot, random)));
+  const auto calibrated = robot_of(made.robot->text().describe(moved(*made.robot, random)));
   ASSERT_NE(calibrated, nullptr);
-  EXPECT_EQ(calibrated->identity(), made.robot->identity());
+  EXPECT_EQ(calibrated->text().identity(), made.robot->text().identity());
   const auto identity = [&] {
     const auto robot = robot_of(robot_node(made.frames, made.coupling));
-    return robot ? robot->identity() : std::string();
+    return robot ? robot->text().identity() : std::string();
   };
-  EXPECT_EQ(identity(), made.robot->identity());
+  EXPECT_EQ(identity(), made.robot->text().identity());
   for (size_t f = 0; f < made.frames.size(); ++f) {
     double& figure = made.frames[f].whole ? (*made.frames[f].whole)[4] : made.frames[f].v[1];
     const double before = std::exchange(figure, figure + 1e-9);
-    EXPECT_NE(identity(), made.robot->identity()) << f;
+    EXPECT_NE(identity(), made.robot->text().identity()) << f;
     figure = before;
   }
   made.coupling = Eigen::MatrixXd::Identity(made.joints(), made.joints()) * 1.5;
-  EXPECT_NE(identity(), made.robot->identity());
+  EXPECT_NE(identity(), made.robot->text().identity());
 }
 
 /// First problem of a robot with these frames.

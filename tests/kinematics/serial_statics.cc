@@ -62,7 +62,7 @@ TEST(SerialRemarks, SayWhereGravityPointsAndWhatHoldsTheArm) {
   using testing::HasSubstr;
   const auto robot = robot_of(with_frames(kArm));
   ASSERT_NE(robot, nullptr);
-  const std::vector<std::string> lines = robot->remarks();
+  const std::vector<std::string> lines = robot->text().remarks();
   ASSERT_EQ(lines.size(), 4u);
   // y of j1's frame is z of the world.
   EXPECT_THAT(lines[0], testing::AllOf(HasSubstr("j1"), HasSubstr("-9.810")));
@@ -70,7 +70,7 @@ TEST(SerialRemarks, SayWhereGravityPointsAndWhatHoldsTheArm) {
   EXPECT_THAT(lines[3], HasSubstr("j2 -5.89 N m"));   // -9.81 x 0.6
   const auto light = robot_of(with_frames("  - {name: j1, joint: revolute}\n"));
   ASSERT_NE(light, nullptr);
-  EXPECT_THAT(light->remarks(), testing::Contains(HasSubstr("no masses given")));
+  EXPECT_THAT(light->text().remarks(), testing::Contains(HasSubstr("no masses given")));
 }
 
 }  // namespace

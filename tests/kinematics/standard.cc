@@ -133,7 +133,7 @@ TEST(StandardTable, OfTheUr10IsItsModifiedOne) {
   const auto standard = robot_of(std::string(kStandardUr10));
   const auto modified = robot_of(std::string(kModifiedUr10));
   ASSERT_TRUE(standard && modified);
-  EXPECT_EQ(standard->identity(), modified->identity());
+  EXPECT_EQ(standard->text().identity(), modified->text().identity());
   EXPECT_EQ(values(*standard), values(*modified));
   ASSERT_EQ(standard->parameters().size(), modified->parameters().size());
   for (size_t i = 0; i < standard->parameters().size(); ++i) {
@@ -142,11 +142,11 @@ TEST(StandardTable, OfTheUr10IsItsModifiedOne) {
   }
   EXPECT_EQ(standard->joints()[0].upper, modified->joints()[0].upper);
   // Written, it is in modified frames and says nothing of a table.
-  const Node written = standard->describe(values(*standard));
+  const Node written = standard->text().describe(values(*standard));
   EXPECT_EQ(written.find("convention"), nullptr);
   const auto back = robot_of(written);
   ASSERT_NE(back, nullptr);
-  EXPECT_EQ(back->identity(), modified->identity());
+  EXPECT_EQ(back->text().identity(), modified->text().identity());
   EXPECT_EQ(values(*back), values(*modified));
 }
 

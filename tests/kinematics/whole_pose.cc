@@ -113,16 +113,16 @@ TEST(WholePose, KeepsTheMakersPoseBesideWhatWasIdentified) {
   Eigen::VectorXd xi = values(*robot);
   std::mt19937_64 random(91);
   for (double& v : xi) v += uniform(random, -0.02, 0.02);
-  const auto back = robot_of(robot->describe(xi));
+  const auto back = robot_of(robot->text().describe(xi));
   ASSERT_NE(back, nullptr);
   EXPECT_LT((values(*back) - xi).cwiseAbs().maxCoeff(), kPoseRounding);
   EXPECT_EQ(nominal_values(*back), nominal_values(*robot));
-  EXPECT_EQ(back->identity(), robot->identity());
+  EXPECT_EQ(back->text().identity(), robot->text().identity());
   const Eigen::Vector2d q(0.3, -0.4);
   const Location one = locate(*robot, xi, q), other = locate(*back, values(*back), q);
   EXPECT_LT((one.R - other.R).norm() + (one.p - other.p).norm(), kPoseRounding);
   // What the file says now is what it says ever after.
-  const auto again = robot_of(back->describe(values(*back)));
+  const auto again = robot_of(back->text().describe(values(*back)));
   ASSERT_NE(again, nullptr);
   EXPECT_EQ(values(*again), values(*back));
 }
@@ -130,7 +130,7 @@ TEST(WholePose, KeepsTheMakersPoseBesideWhatWasIdentified) {
 TEST(WholePose, IsWrittenAsItWasGivenWhereNothingMoved) {
   const auto robot = robot_of(with_frames(kPoseFrames));
   ASSERT_NE(robot, nullptr);
-  const Node node = robot->describe(values(*robot));
+  const Node node = robot->text().describe(values(*robot));
   const Node& tool = node.find("frames")->items[4];
   EXPECT_EQ(tool.find("rpy")->items[0].text, "0.1");
   EXPECT_EQ(tool.find("rpy")->items[1].text, format_number(std::numbers::pi / 2));

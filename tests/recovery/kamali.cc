@@ -98,7 +98,7 @@ std::vector<std::string> Kamali::others() const {
 }
 
 std::unique_ptr<Robot> Kamali::machine(const Disturbance& disturbance) const {
-  Node node = robot_->describe(truth_);
+  Node node = robot_->text().describe(truth_);
   for (size_t k = 0; k < node.keys.size(); ++k) {
     if (node.keys[k] == "frames")
       for (Node& frame : node.items[k].items)

@@ -20,7 +20,7 @@ namespace selfcal::recovery {
 class KdlRobot final : public Robot {
  public:
   explicit KdlRobot(const Robot& model) : model_(model) {
-    const Node written = model.describe(nominal_values(model));
+    const Node written = model.text().describe(nominal_values(model));
     for (const Node& frame : written.find("frames")->items)
       if (const Node* rpy = frame.find("rpy"))
         turned_[frame.find("name")->text] =
@@ -32,9 +32,7 @@ class KdlRobot final : public Robot {
   const std::vector<Joint>& joints() const override { return model_.joints(); }
   const std::vector<Parameter>& parameters() const override { return model_.parameters(); }
   const std::vector<int>& preference() const override { return model_.preference(); }
-  Node describe(const Eigen::VectorXd& xi) const override { return model_.describe(xi); }
-  std::string identity() const override { return model_.identity(); }
-  std::vector<std::string> remarks() const override { return {}; }
+  const RobotText& text() const override { return model_.text(); }
   const Statics* statics() const override { return model_.statics(); }
   int variable_parameter(int j) const override { return model_.variable_parameter(j); }
 

@@ -111,7 +111,7 @@ TEST(WholeSession, CalibratesADeltaPrinterFromItsBed) {
     std::printf("  seed %d: check touches %.3f to %.4f mm, %d of %d within 95 %%\n", seed,
                 1e3 * check["rms_before"].get<double>(), 1e3 * check["rms_after"].get<double>(),
                 outcome.within, outcome.identified);
-    EXPECT_GT(check["rms_before"], 0.3e-3);
+    EXPECT_GT(check["rms_before"], 0.1e-3);
     // 14 touches of 20 um, and what 58 others leave unknown: four sigma of such a mean square.
     EXPECT_LT(check["rms_after"], 36e-6);
     EXPECT_GE(outcome.within, outcome.identified - 2);
