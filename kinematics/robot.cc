@@ -144,6 +144,12 @@ std::string full_name(const Parameter& parameter) {
   return parameter.name == in_frame ? in_frame : parameter.name + " " + in_frame;
 }
 
+std::string name_example(const Robot& robot) {
+  const Parameter& one = robot.parameters()[robot.parameters().size() / 3];
+  const std::string in_frame = one.frame + "." + one.field;
+  return one.name == in_frame ? in_frame : one.name + " or " + in_frame;
+}
+
 std::vector<int> match_parameters(const Robot& robot, std::string_view pattern) {
   std::vector<int> found;
   const std::vector<Parameter>& list = robot.parameters();

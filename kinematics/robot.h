@@ -163,6 +163,9 @@ Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::Vect
 /// "theta2 j2.theta", or the one where both are the same.
 std::string full_name(const Parameter& parameter);
 
+/// How the robot's parameters are called, for a message: "theta2 or j2.theta".
+std::string name_example(const Robot& robot);
+
 /// What an effect that bears no load sees of a robot at `q`, with the file's own values: the poses
 /// of its links, or the tool's alone where the kind has no model of them.
 std::vector<Eigen::Isometry3d> seen_poses(const Robot& robot, const Eigen::VectorXd& q);

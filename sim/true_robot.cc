@@ -34,7 +34,8 @@ Eigen::VectorXd true_parameters(const Scenario& scenario, const Robot& robot, Pr
       xi[i] = nominal[i] + given.value;
     else
       problems.add(given.place, "errors parameters: no parameter of " + robot.name() +
-                                    " is called '" + given.name + "'; names are like d3 or j3.d");
+                                    " is called '" + given.name + "'; its names are like " +
+                                    name_example(robot));
   }
   return xi;
 }

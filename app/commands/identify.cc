@@ -79,7 +79,7 @@ int identify_command(const IdentifyArguments& arguments) {
       if (p.part == Part::effect) options.free.push_back(p.name);
   if (const std::string name = unknown_name(robot, options); !name.empty())
     return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
-                       "'; names are like theta2, K3 or j2.theta, * stands for any text");
+                       "'; its names are like " + name_example(robot) + ", * stands for any text");
   if (!arguments.out.empty())
     if (const auto made = make_folder(arguments.out); !made) return tell(made.error());
   Solution solution;
