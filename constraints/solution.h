@@ -92,11 +92,18 @@ struct Verdict {
   double p_value = 1;  ///< of the paired test on the check rows; 1 without check rows
 };
 
+/// 1 sigma of where the endpoint is, over some poses.
 struct EndpointSigma {
-  bool aligned = false;
+  bool aligned = false;  ///< a motion of the world or the target's point is taken out
   double rms = 0, median = 0, max = 0;  ///< m
-  int poses = 0;                        ///< 0 where nothing was identified: not known
+  double angle = 0;                     ///< rad, rms of how it is turned
+  int poses = 0;  ///< 0 where nothing was identified or no pose was found: not known
 };
+
+/// The end position is known, to the target (m).
+inline bool known_to(const EndpointSigma& sigma, double target) {
+  return sigma.poses > 0 && sigma.rms <= target;
+}
 
 /// A length that the entry of a set gives and that the robot's scale stands on (m).
 struct ScaleLength {
@@ -140,7 +147,9 @@ struct Solution {
   std::vector<SetResult> sets;  ///< empty when no row identifies
   std::vector<Outlier> rejected;
   Residuals residual;
-  EndpointSigma endpoint;
+  EndpointSigma endpoint;         ///< over all that the joints can do
+  EndpointSigma workspace;        ///< over where it counts: the verdict's
+  bool orientation_seen = false;  ///< rows tell how the endpoint is turned
   RobotScale scale;
   double prior_chi2 = 0;
   double prior_dof = 0;

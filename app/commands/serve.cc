@@ -183,6 +183,26 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   return served;
 }
 
+/// Whether the touches planned can reach the target.
+int show_expected(const Config& config, const TouchPlan& plan) {
+  const ExpectedSigma expected = expected_sigma(*config.robot, values(*config.robot), config.sets,
+                                                config.targets, plan, config.workspace);
+  if (expected.workspace.poses == 0) {
+    std::fprintf(stderr, "selfcal: the robot does not reach the workspace\n");
+    return kAnswerIsNo;
+  }
+  std::printf(
+      "  end position known then to %.3g mm in the workspace (1 sigma; worst %.3g mm), to %.3g mm "
+      "over the whole range of the joints\n",
+      1e3 * expected.workspace.rms, 1e3 * expected.workspace.max, 1e3 * expected.endpoint.rms);
+  const bool reached = known_to(expected.workspace, config.target);
+  std::printf("  target %.3g mm: %s\n", 1e3 * config.target,
+              reached ? "yes"
+                      : "no; plan more touches or surfaces, or give a known length (a step, a ball "
+                        "or sockets a known distance apart)");
+  return reached ? kDone : kAnswerIsNo;
+}
+
 /// What a session would do, for a person.
 int show_plan(const Config& config) {
   const TouchPlan plan = plan_touches(*config.robot, values(*config.robot), config.sets,
@@ -208,12 +228,7 @@ int show_plan(const Config& config) {
     std::fprintf(stderr, "selfcal: %s\n", plan.unreached.c_str());
     return kAnswerIsNo;
   }
-  const EndpointSigma expected =
-      expected_sigma(*config.robot, values(*config.robot), config.sets, config.targets, plan);
-  std::printf(
-      "  end position known to %.3f mm then (1 sigma, median over the workspace; worst %.3f mm)\n",
-      1e3 * expected.median, 1e3 * expected.max);
-  return kDone;
+  return show_expected(config, plan);
 }
 
 int serve_command(const ServeArguments& arguments) {

@@ -50,7 +50,7 @@ Result<std::string> description_text(const SessionRecord& record) {
   Node node = Node::map();
   node.set("robot", Node::of(std::string("robot.yaml")));
   node.set("observations", Node::of(std::string("observations.csv")));
-  for (const char* key : {"target", "sets"})
+  for (const char* key : {"target", "workspace", "sets"})
     if (const Node* value = stored->find(key)) node.set(key, *value);
   return "# Session " + std::to_string(record.id) + " (" + record.kind + "), begun " +
          date_time(record.started_ms) + ".\n" + write_yaml(node);

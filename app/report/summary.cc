@@ -162,11 +162,15 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "Measure the length given once more, or give another one: on a wrong one the whole robot "
         "is "
         "too large or too small.");
-  else if (solution.endpoint.rms > data.target)
+  else if (solution.workspace.poses == 0)
+    steps.push_back(
+        "The robot as it is does not reach the workspace that the data set gives: check its box "
+        "and cone.");
+  else if (solution.workspace.rms > data.target)
     steps.push_back(
         phrase("The end position is known to %.3g mm only. Add rows that move the joints "
                "named above%s.",
-               1e3 * solution.endpoint.rms,
+               1e3 * solution.workspace.rms,
                solution.gauge.empty() ? "" : ", and a known length for the scale"));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");

@@ -96,6 +96,10 @@ class Reader {
                : folder       ? std::filesystem::path(folder)
                               : folder_ / "state";
     c_.target = fields.number("target", c_.target, 1e-6, 1);
+    if (const Node* workspace = fields.node("workspace")) {
+      c_.workspace = read_workspace(*workspace, problems_);
+      workspace_text_ = *workspace;
+    }
     c_.domain = fields.integer("domain", domain_of_environment(fields), 0,
                                static_cast<int>(kMostDdsDomain));
   }
@@ -219,6 +223,7 @@ class Reader {
       read_target(static_cast<int>(i), sets->items[i]);
     c_.description = Node::map();
     c_.description.set("target", Node::of(c_.target));
+    if (c_.workspace.box) c_.description.set("workspace", workspace_text_);
     c_.description.set("sets", std::move(entries));
   }
 
@@ -263,6 +268,7 @@ class Reader {
 
   std::filesystem::path folder_;
   Problems& problems_;
+  Node workspace_text_;
   Config c_;
 };
 

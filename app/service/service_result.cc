@@ -152,7 +152,7 @@ ResultRecord Service::result_of_candidate() const {
   result.p_value = solution_->verdict.p_value;
   result.check_before = ruling.check_before;
   result.check_after = ruling.check_after;
-  result.endpoint_sigma = solution_->endpoint.rms;
+  result.endpoint_sigma = solution_->workspace.rms;
   result.rejected = rows_put_aside(*solution_);
   result.identified = parameters_identified(*solution_);
   result.json = to_json(*solution_, config_.robot->name(), models_.hash()).dump();

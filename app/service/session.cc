@@ -94,6 +94,8 @@ Result<Decoding> read_meaning(const std::string& text) {
   Problems problems;
   Fields fields(*node, "session", problems);
   meaning.target = fields.number("target");
+  if (const Node* workspace = fields.node("workspace"))
+    meaning.workspace = read_workspace(*workspace, problems);
   meaning.delay = fields.number("delay");
   if (const Node* list = fields.node("encoders"))
     for (const Node& each : list->items) {
@@ -184,6 +186,7 @@ DataSet rows_of(const Robot& robot, const Session& session, const Decoding& mean
   DataSet data;
   data.sets = meaning.sets;
   data.target = meaning.target;
+  data.workspace = meaning.workspace;
   std::vector<const TouchRecord*> rows;
   std::vector<int> repeat;
   for (const StepRecord& step : session.plan) {

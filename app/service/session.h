@@ -23,8 +23,9 @@ struct Session {
 
 /// What is stored with a session so that its raw counts can be understood in ten years.
 struct Decoding {
-  double target = 1e-3;  ///< m
-  double delay = 0;      ///< s, of the trigger
+  double target = 1e-3;  ///< m, in the workspace
+  Workspace workspace;
+  double delay = 0;  ///< s, of the trigger
   std::vector<EncoderScale> scales;
   std::vector<Eigen::Vector3d> outward;  ///< by set, way out of the contact (world)
   std::vector<Set> sets;

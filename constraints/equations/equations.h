@@ -17,6 +17,7 @@
 
 namespace selfcal {
 
+class SharedTouches;
 class StreamingQr;
 
 /// What is estimated: the robot's parameters, each set's own values, each set's group values
@@ -166,6 +167,9 @@ class Equations {
   /// Writes the columns beside the unknowns.
   void beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const;
   void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
+             Linearised& out) const;
+  /// Makes rows of differences that share a touch independent.
+  void share(int set, int first, int count, SharedTouches& shared, Eigen::MatrixXd& W,
              Linearised& out) const;
   void gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
               const Eigen::MatrixXd& W, Gatherer& gatherer) const;

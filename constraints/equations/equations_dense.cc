@@ -1,5 +1,6 @@
 // The equations one by one, the groups' unknowns as columns of their own.
 #include "constraints/equations/equations_inner.h"
+#include "constraints/equations/shared_touches.h"
 
 namespace selfcal {
 namespace {
@@ -48,6 +49,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
     const Method& method = *data_.sets[s].method;
     const int items = static_cast<int>(plans_[s].items.size()), freedom = method.group_freedom();
+    SharedTouches shared;
     for (int first = 0; first < items; first += kLanes) {
       const int count = std::min(kLanes, items - first);
       evaluate(s, first, count, state, block, true);
@@ -63,6 +65,8 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
             row.segment(groups_at[s] + freedom * data_.rows.group[block.rows[lane]], freedom) =
                 block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
           row /= scale[s].of(block.quantities[a]) * data_.rows.factor(block.rows[lane]);
+          if (method.shares_touches())
+            shared.whiten(block.rows[lane], plans_[s].items[first + lane].previous, row);
         }
       }
     }

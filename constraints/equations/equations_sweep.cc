@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constraints/equations/equations_inner.h"
+#include "constraints/equations/shared_touches.h"
 #include "constraints/equations/streaming_qr.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
@@ -110,6 +111,16 @@ void Equations::weigh(int set, const Weighting& weighting, Block& block, Eigen::
   }
 }
 
+void Equations::share(int set, int first, int count, SharedTouches& shared, Eigen::MatrixXd& W,
+                      Linearised& out) const {
+  for (int lane = 0; lane < count; ++lane) {
+    const SetPlan::Item& item = plans_[set].items[first + lane];
+    const double before = W(lane, W.cols() - 1);
+    shared.whiten(item.row, item.previous, W.row(lane));
+    out.cost += std::pow(W(lane, W.cols() - 1), 2) - std::pow(before, 2);
+  }
+}
+
 void Equations::gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
                        const Eigen::MatrixXd& W, Gatherer& gatherer) const {
   const int freedom = data_.sets[set].method->group_freedom();
@@ -201,6 +212,7 @@ void Equations::sweep_set(int set, const State& state, const Weighting& weightin
   const int freedom = data_.sets[set].method->group_freedom();
   Block block;
   Eigen::MatrixXd W;
+  SharedTouches shared;
   auto cluster = plan.clusters.begin();
   for (int first = 0; first < items; first += kLanes) {
     const int count = std::min(kLanes, items - first);
@@ -208,6 +220,7 @@ void Equations::sweep_set(int set, const State& state, const Weighting& weightin
     chain_rule(block, set, beside, W);
     if (geodesic_acceleration) bend_right_side(set, first, count, *geodesic_acceleration, W);
     weigh(set, weighting, block, W, out);
+    if (data_.sets[set].method->shares_touches()) share(set, first, count, shared, W, out);
     if (cluster->groups.empty()) {
       for (size_t a = 0; a < block.quantities.size(); ++a)
         qr.push(W.middleRows(static_cast<Eigen::Index>(a) * kLanes, count));

@@ -43,6 +43,7 @@ class Adjustment {
     doubt();
     if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
+    place_scale();
     return std::move(adjusted_);
   }
 
@@ -56,6 +57,8 @@ class Adjustment {
       for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 1;
     for (const std::string& name : options_.fix)
       for (const int i : match_parameters(robot_, name)) adjusted_.prior.free[i] = 0;
+    for (size_t i = 0; i < parameters().size(); ++i)
+      if (!(parameters()[i].tolerance > 0)) adjusted_.prior.free[i] = 0;  // exact
     adjusted_.candidate = adjusted_.prior.free;
     for (const Note& note : held_base(robot_, equations_)) hold(note);
     for (const Note& note : held_orientation(robot_, equations_)) hold(note);
@@ -144,7 +147,8 @@ class Adjustment {
     adjusted_.scale = *length;
     start_.xi[*length] = adjusted_.prior.centre[*length];
     hold({parameters()[*length].name,
-          "the touches leave the robot's scale free: its longest link length is held"});
+          "the touches leave the robot's scale free: this length is held where the maker's lengths "
+          "together have the scale"});
     return true;
   }
 
@@ -166,6 +170,33 @@ class Adjustment {
         adjusted_.prior.sigma[i] = adjusted_.widening * parameters()[i].tolerance;
     adjusted_.fitted =
         run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
+  }
+
+  /// Puts the length that is held for the scale where the maker's figures together have it: along
+  /// the direction in which rows and unknowns follow it, their priors alone speak,
+  ///   e = - sum (x - centre) f / sigma^2 / sum f^2 / sigma^2,   sigma_e^2 = 1 / sum f^2 / sigma^2,
+  /// with f the change of x for one of the length.
+  void place_scale() {
+    if (adjusted_.scale < 0) return;
+    adjusted_.scale_sigma = adjusted_.prior.sigma[adjusted_.scale];
+    if (!options_.priors) return;
+    const Fit& fitted = adjusted_.fitted;
+    Eigen::VectorXd follow =
+        -fitted.covariance *
+        (fitted.at.R.leftCols(equations_.columns()).transpose() * fitted.at.R.col(adjusted_.scale));
+    follow[adjusted_.scale] = 1;
+    double pull = 0, precision = 0;
+    for (size_t i = 0; i < parameters().size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      if (at != adjusted_.scale && (!adjusted_.prior.free[i] || !is_own(parameters()[i]))) continue;
+      const double sigma = adjusted_.prior.sigma[at];
+      pull -= (fitted.state.xi[at] - adjusted_.prior.centre[at]) * follow[at] / (sigma * sigma);
+      precision += std::pow(follow[at] / sigma, 2);
+    }
+    adjusted_.scale_sigma = 1 / std::sqrt(precision);
+    State start = fitted.state;
+    start.xi[adjusted_.scale] += pull / precision;
+    adjusted_.fitted = run_fit(start, adjusted_.prior, "placing the scale");
   }
 
   const Robot& robot_;

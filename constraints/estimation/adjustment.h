@@ -25,9 +25,10 @@ struct Adjusted {
   std::vector<char> candidate;  ///< by parameter: not fixed by the user or by default
   std::vector<Note> gauge;      ///< parameters held, and why
   int scale = -1;               ///< the one of them that is held for the scale
-  Chi2 chi2;                    ///< with the maker's tolerances
-  bool priors_fail = false;     ///< chi2 is beyond 99 %
-  double widening = 1;          ///< common factor on the tolerances of the links and gears
+  double scale_sigma = 0;    ///< of it (m), as all the maker's tolerances together know the scale
+  Chi2 chi2;                 ///< with the maker's tolerances
+  bool priors_fail = false;  ///< chi2 is beyond 99 %
+  double widening = 1;       ///< common factor on the tolerances of the links and gears
 };
 
 /// True for parameters of base and tool frames, whose priors say where things were put up.

@@ -192,15 +192,26 @@ bool angles_rise(const Judged& before, const Judged& after) {
   });
 }
 
-/// What became of the check rows, and how well the end position is known.
-std::string change(const Figures& check, double p_value, const EndpointSigma& endpoint) {
+/// How well the end position is known: where it counts, and all over.
+std::string certainty(const Grounds& grounds) {
+  if (grounds.workspace.poses == 0)
+    return "no configuration within the joint limits reaches the workspace";
+  std::string text =
+      with_figures("end position in the workspace known to %.3g mm", 1e3 * grounds.workspace.rms);
+  if (grounds.orientation_seen)
+    text += with_figures(" and %.3g mrad", 1e3 * grounds.workspace.angle);
+  return text +
+         with_figures(" (over the whole range of the joints %.3g mm)", 1e3 * grounds.endpoint.rms);
+}
+
+/// What became of the check rows.
+std::string change(const Figures& check, double p_value) {
   std::string text =
       with_figures("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
   if (check.angle.rows > 0)
     text += with_figures(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
                          1e3 * check.angle.rms_after);
-  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : with_figures("= %.2g", p_value)) +
-         "); end position known to " + with_figures("%.3g mm", 1e3 * endpoint.rms);
+  return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : with_figures("= %.2g", p_value)) + ")";
 }
 
 }  // namespace
@@ -216,14 +227,14 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
   for (size_t i = 0; i < after.check.size(); ++i)
     gain.push_back(before.check[i].length - after.check[i].length);
   v.p_value = signed_rank_p(gain);
-  v.why = change(residual.check, v.p_value, grounds.endpoint);
+  v.why = change(residual.check, v.p_value) + "; " + certainty(grounds);
   const bool worse_turned = angles_rise(before, after);
   const bool better = v.p_value < kSignificance && lengths_fall(before, after) && !worse_turned;
   if (!grounds.converged) {
     v.why = "the identification did not converge; " + v.why;
   } else if (!grounds.contradictions.empty()) {
     for (const std::string& each : grounds.contradictions) v.why += "; " + each;
-  } else if (grounds.endpoint.rms <= grounds.target) {
+  } else if (known_to(grounds.workspace, grounds.target)) {
     v.answer = better ? Answer::improved : Answer::not_improved;
     if (worse_turned) v.why += "; the angles are met worse than before";
   } else {

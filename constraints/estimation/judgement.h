@@ -35,8 +35,9 @@ std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
 
 /// What else the answer hangs on.
 struct Grounds {
-  EndpointSigma endpoint;
-  double target = 0;  ///< m
+  EndpointSigma endpoint, workspace;
+  double target = 0;              ///< m, in the workspace
+  bool orientation_seen = false;  ///< how the endpoint is turned is known as well
   bool converged = false;
   /// The moves of the parameters stay within what the maker's tolerances allow.
   bool nominal_explains = false;

@@ -80,7 +80,7 @@ std::pair<std::vector<std::string>, Eigen::MatrixXd> covariance_result(
   std::vector<std::string> names;
   std::vector<int> columns;
   for (size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].sigma >= 0) {
+    if (C.rows() > 0 && C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) > 0) {
       names.push_back(parameters[i].parameter.name);
       columns.push_back(static_cast<int>(i));
     }

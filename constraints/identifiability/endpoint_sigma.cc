@@ -3,9 +3,8 @@
 #include "constraints/identifiability/endpoint_sigma.h"
 
 #include <algorithm>
-#include <random>
+#include <cmath>
 
-#include "constraints/sampling/random_poses.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
 
@@ -18,45 +17,77 @@ Eigen::MatrixXd root(const Eigen::MatrixXd& C) {
   return eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
-}  // namespace
+/// Deviations of every pose for one sigma of each independent part of the posterior, and what a
+/// motion of the world or a shift of the target would look like; three rows a pose.
+struct Deviations {
+  Eigen::MatrixXd shift, turn;                ///< m, rad
+  Eigen::MatrixXd unseen_shift, unseen_turn;  ///< by unseen motion, then by direction of the target
+};
 
-EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
+Deviations deviations(const EndpointQuestion& question) {
   const Robot& robot = *question.robot;
-  const Eigen::MatrixXd q = random_poses(robot, question.data, question.poses, question.seed);
+  const Eigen::MatrixXd& q = question.poses;
   const Eigen::MatrixXd L = root(question.covariance);
-  const Eigen::Index motions = question.unseen.cols(), points = question.point_unknown ? 3 : 0;
-  Eigen::MatrixXd D(3 * question.poses, L.cols()), B(3 * question.poses, motions + points);
+  const Eigen::Index rows = 3 * q.rows(), motions = question.unseen.cols();
+  const Eigen::Index unseen = motions + (question.point_unknown ? 3 : 0);
+  Deviations D{Eigen::MatrixXd(rows, L.cols()), Eigen::MatrixXd(rows, L.cols()),
+               Eigen::MatrixXd::Zero(rows, unseen), Eigen::MatrixXd::Zero(rows, unseen)};
   ConfigurationBlock block;
   Locations X, link;
   PsiBlock psi;
-  for (int first = 0; first < question.poses; first += kLanes) {
-    block.count = std::min(kLanes, question.poses - first);
+  for (Eigen::Index first = 0; first < q.rows(); first += kLanes) {
+    block.count = static_cast<int>(std::min<Eigen::Index>(kLanes, q.rows() - first));
     block.q.resize(kLanes, q.cols());
     for (int lane = 0; lane < kLanes; ++lane)
-      block.q.row(lane) = q.row(std::min(first + lane, question.poses - 1)).array();
+      block.q.row(lane) = q.row(std::min(first + lane, q.rows() - 1)).array();
     // A lane that does not close with the values found has no derivative, and adds nothing.
     robot.locate(block, question.xi, Body::endpoint, X, &psi);
     robot.locate(block, question.xi, Body::last_link, link, nullptr);
     for (int lane = 0; lane < block.count; ++lane) {
-      Eigen::MatrixXd J(3, psi.cols());
-      for (int i = 0; i < 3; ++i) J.row(i) = psi.row(i * kLanes + lane);
+      Eigen::MatrixXd J(6, psi.cols());
+      for (int c = 0; c < 6; ++c) J.row(c) = psi.row(c * kLanes + lane);
+      J = (J * L).eval();
       Eigen::Matrix<double, 3, 6> motion;
       motion << Eigen::Matrix3d::Identity(), -skew(X.p(lane));
-      D.middleRows<3>(3 * (first + lane)) = J * L;
-      B.block(3 * (first + lane), 0, 3, motions) = motion * question.unseen;
-      if (points > 0) B.block(3 * (first + lane), motions, 3, 3) = link.R(lane);
+      const Eigen::Index at = 3 * (first + lane);
+      D.shift.middleRows<3>(at) = J.topRows<3>();
+      D.turn.middleRows<3>(at) = J.bottomRows<3>();
+      D.unseen_shift.block(at, 0, 3, motions) = motion * question.unseen;
+      D.unseen_turn.block(at, 0, 3, motions) = question.unseen.bottomRows<3>();
+      if (unseen > motions) D.unseen_shift.block(at, motions, 3, 3) = link.R(lane);
     }
   }
-  D = beyond(B, D);
-  std::vector<double> variance(question.poses);
-  for (int i = 0; i < question.poses; ++i) variance[i] = D.middleRows<3>(3 * i).squaredNorm();
-  std::sort(variance.begin(), variance.end());
+  return D;
+}
+
+/// Takes out of `D` whatever the rows cannot place, by least squares over the shifts of all poses.
+void align(Deviations& D) {
+  for (Eigen::Index k = 0; k < D.shift.cols(); ++k) {
+    const Eigen::VectorXd x = least_squares(D.unseen_shift, D.shift.col(k));
+    D.shift.col(k) -= D.unseen_shift * x;
+    D.turn.col(k) -= D.unseen_turn * x;
+  }
+}
+
+}  // namespace
+
+EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
   EndpointSigma result;
-  result.aligned = B.cols() > 0;
-  result.poses = question.poses;
-  result.rms = std::sqrt(D.squaredNorm() / question.poses);
+  const Eigen::Index poses = question.poses.rows();
+  if (poses == 0) return result;
+  Deviations D = deviations(question);
+  result.aligned = D.unseen_shift.cols() > 0;
+  if (result.aligned) align(D);
+  std::vector<double> variance(static_cast<size_t>(poses));
+  for (Eigen::Index i = 0; i < poses; ++i)
+    variance[static_cast<size_t>(i)] = D.shift.middleRows<3>(3 * i).squaredNorm();
+  std::sort(variance.begin(), variance.end());
+  const auto count = static_cast<double>(poses);
+  result.poses = static_cast<int>(poses);
+  result.rms = std::sqrt(D.shift.squaredNorm() / count);
   result.median = std::sqrt(variance[variance.size() / 2]);
   result.max = std::sqrt(variance.back());
+  result.angle = std::sqrt(D.turn.squaredNorm() / count);
   return result;
 }
 

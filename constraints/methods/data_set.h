@@ -7,8 +7,17 @@
 
 #include "constraints/methods/method.h"
 #include "constraints/methods/observations.h"
+#include "constraints/workspace.h"
 
 namespace selfcal {
+
+/// 1 sigma of what the entry of a set gives of a surface; negative where it does not say, 0 where
+/// it is exact.
+struct GivenTolerance {
+  double place = -1;   ///< m, of a plane's distance or a centre
+  double turn = -1;    ///< rad, of a normal
+  double length = -1;  ///< m, of a radius
+};
 
 /// Rows of one method with one set of nuisance parameters.
 struct Set {
@@ -16,7 +25,8 @@ struct Set {
   std::shared_ptr<const Method> method;
   double noise = 0;        ///< 1 sigma of one scalar residual as the data sheet says (m); 0 unknown
   double noise_angle = 0;  ///< the same for angles (rad); 0 unknown
-  int reference = -1;      ///< index of the set whose nuisance parameters it shares
+  GivenTolerance given = {};
+  int reference = -1;               ///< index of the set whose nuisance parameters it shares
   std::vector<std::string> groups;  ///< names, indexed by Observations::group
 };
 
@@ -24,7 +34,8 @@ struct DataSet {
   std::vector<Set> sets;
   Observations rows;
   bool speeds = true;      ///< dq are velocities; false: only their signs mean something
-  double target = 1.0e-3;  ///< end-position accuracy wanted (m, 1 sigma)
+  double target = 1.0e-3;  ///< end-position accuracy wanted in the workspace (m, 1 sigma)
+  Workspace workspace = {};
 };
 
 /// Reads one entry of `sets`: the method, its options and the noise. Known groups are appended to

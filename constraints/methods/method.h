@@ -119,6 +119,8 @@ class Method {
   virtual std::vector<MeasuredColumn> measures() const { return {}; }
   /// True when each row is compared with the previous row of its group.
   virtual bool paired() const { return false; }
+  /// True when successive rows of a group share a touch, and so its noise.
+  virtual bool shares_touches() const { return false; }
   /// The gauge: true when the rows may be satisfied by a robot of any size (touches: what is
   /// touched shrinks with it). Whether they are, by what is known of it, held_scale judges from all
   /// rows.
@@ -141,6 +143,8 @@ class Method {
   Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
   virtual Planned planned() const { return Planned::no; }
+  /// True when where the touched surface lies, or how it is turned, is given.
+  virtual bool place_known() const { return false; }
   virtual TouchedSurface touches() const { return TouchedSurface::none; }
   /// The touched plane; nothing of other methods.
   virtual std::optional<Plane> plane(const Eigen::VectorXd& nuisance,

@@ -87,6 +87,7 @@ class OnePlane final : public Touch {
 
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return known_ ? 0 : 3; }
+  bool place_known() const override { return known_.has_value(); }
   std::vector<KnownLength> known_lengths() const override {
     if (!known_) return {};
     return {{"distance of the plane from the world's origin", known_->d, 0, true}};

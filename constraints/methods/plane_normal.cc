@@ -21,8 +21,10 @@ class PlaneNormal final : public Method {
   }
   Eigen::VectorXd nuisance_of(const Plane& plane) const override { return plane.n; }
   bool paired() const override { return true; }
+  bool shares_touches() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return known_ ? 0 : 2; }
+  bool place_known() const override { return known_.has_value(); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd*,

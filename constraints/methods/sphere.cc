@@ -20,6 +20,7 @@ class Sphere final : public Method {
   TouchedSurface touches() const override { return TouchedSurface::curved; }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return radius_at() + (radius_ ? 0 : 1); }
+  bool place_known() const override { return centre_.has_value(); }
   std::vector<KnownLength> known_lengths() const override {
     if (!radius_) return {};
     return {{"radius", *radius_, 0, true}};

@@ -9,13 +9,17 @@
 #include "constraints/methods/plane.h"
 #include "constraints/planning/d_optimal.h"
 #include "constraints/sampling/contact.h"
+#include "constraints/sampling/random_poses.h"
+#include "constraints/sampling/workspace_poses.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
 constexpr int kPathBlocks = 3;      // of kLanes places along a path
-constexpr int kRounds = 12;         // of sampling, until enough candidates are usable
+constexpr int kPoses = 500;         // at which the end position is judged
+constexpr unsigned long long kSeed = 1;
+constexpr int kRounds = 12;  // of sampling, until enough candidates are usable
 
 /// Distance of two configurations, each joint counted against its range.
 double distance(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -228,9 +232,9 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   return plan;
 }
 
-EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
+ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
-                             const TouchPlan& plan) {
+                             const TouchPlan& plan, const Workspace& workspace) {
   std::vector<PossibleTouch> touches;
   for (const TouchTarget& target : targets)
     for (const PlannedTouch& each : plan.touches)
@@ -241,7 +245,15 @@ EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   question.xi = xi;
   question.covariance = covariance_after(robot, xi, sets, touches);
   question.unseen = Eigen::MatrixXd::Identity(6, 6);
-  return endpoint_sigma(question);
+  question.poses = random_poses(robot, nullptr, kPoses, kSeed);
+  ExpectedSigma expected;
+  expected.endpoint = endpoint_sigma(question);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(touches.size()), question.poses.cols());
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = touches[i].q.transpose();
+  question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
+  expected.workspace = endpoint_sigma(question);
+  return expected;
 }
 
 }  // namespace selfcal

@@ -62,12 +62,17 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
                        const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
                        const Progress& progress = {});
 
-/// How sure the end position will be after those of the planned touches that are not kept aside,
-/// with every surface and socket unknown: over poses of the whole workspace, a rigid motion
-/// removed.
-EndpointSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
+/// How sure the end position will be, a rigid motion removed.
+struct ExpectedSigma {
+  EndpointSigma endpoint;   ///< over all that the joints can do
+  EndpointSigma workspace;  ///< where it counts
+};
+
+/// After those of the planned touches that are not kept aside, with every surface and socket
+/// unknown.
+ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
-                             const TouchPlan& plan);
+                             const TouchPlan& plan, const Workspace& workspace);
 
 /// True when the endpoint keeps out of every obstacle but `touched` (-1 for none) on the straight
 /// joint path from `from` to `to`.

@@ -30,6 +30,8 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   }
   data.target = fields.positive("target", kDefaultTarget);
   if (data.target >= kCoarsest) fields.fail("target", "metres below 1 (millimetres?)");
+  if (const Node* workspace = fields.node("workspace"))
+    data.workspace = read_workspace(*workspace, problems);
   const std::string dq = fields.text("dq", "velocity");
   if (dq != "velocity" && dq != "sign") fields.fail("dq", "velocity or sign");
   data.speeds = dq == "velocity";

@@ -97,12 +97,14 @@ Json of_residuals(const Residuals& residuals) {
   return Json::object({{"fit", std::move(fit)}, {"check", std::move(check)}});
 }
 
-Json of_endpoint(const EndpointSigma& endpoint) {
+/// `turned`: rows tell how the endpoint is turned.
+Json of_endpoint(const EndpointSigma& endpoint, bool turned) {
   const auto known = [&](double value) { return endpoint.poses > 0 ? finite(value) : Json(); };
   return Json::object({{"aligned", endpoint.aligned},
                        {"rms", known(endpoint.rms)},
                        {"median", known(endpoint.median)},
                        {"max", known(endpoint.max)},
+                       {"angle_rms", turned ? known(endpoint.angle) : Json()},
                        {"poses", endpoint.poses}});
 }
 
@@ -167,7 +169,8 @@ nlohmann::ordered_json to_json(const Solution& solution, const std::string& robo
   json["sets"] = array_of(solution.sets, of_set);
   json["rejected"] = array_of(solution.rejected, of_rejected);
   json["residual"] = of_residuals(solution.residual);
-  json["endpoint_sigma"] = of_endpoint(solution.endpoint);
+  json["endpoint_sigma"] = of_endpoint(solution.endpoint, solution.orientation_seen);
+  json["endpoint_sigma"]["workspace"] = of_endpoint(solution.workspace, solution.orientation_seen);
   json["scale"] = of_scale(solution.scale);
   json["prior_chi2"] = of_prior(solution);
   json["observability"] = of_observability(solution.observability);

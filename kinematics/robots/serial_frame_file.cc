@@ -123,7 +123,9 @@ void read_place(Fields& fields, Convention convention, double farthest, Problems
   read_named(
       fields, "tolerance", names, moves, problems,
       [&](int i, double value) { frame.tolerance[i] = positive(value); },
-      [&](double value) { frame.gear_tolerance = positive(value); });
+      [&](double value) {
+        frame.gear_tolerance = value == 0 ? 0 : positive(value);  // 0: a ratio of exact teeth
+      });
   if (frame.whole) return;
   read_named(
       fields, "nominal", names, moves, problems,
@@ -189,7 +191,7 @@ Node write_frame(const Frame& frame) {
     node.set("com", Node::of(Eigen::VectorXd(frame.com)));
   }
   Node tolerance = named(names, frame.tolerance, [&](int i) { return frame.tolerance[i] > 0; });
-  if (frame.gear_tolerance > 0) tolerance.set("gear", Node::of(frame.gear_tolerance));
+  if (frame.gear_tolerance >= 0) tolerance.set("gear", Node::of(frame.gear_tolerance));
   if (!tolerance.items.empty()) node.set("tolerance", std::move(tolerance));
   Node nominal = frame.whole ? nominal_pose(frame) : named(names, frame.nominal, [&](int i) {
     return frame.nominal[i] != frame.value[i];

@@ -154,7 +154,7 @@ std::vector<Parameter> parameters(const Model& model) {
     p.value = frame.gear;
     p.nominal = frame.gear_nominal;
     p.free = frame.gear_tolerance > 0;
-    p.tolerance = p.free ? frame.gear_tolerance : kGearTolerance;
+    p.tolerance = frame.gear_tolerance >= 0 ? frame.gear_tolerance : kGearTolerance;
     list.push_back(std::move(p));
   }
   return list;

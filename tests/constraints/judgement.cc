@@ -46,7 +46,8 @@ struct Rows {
 
   Verdict judged(std::vector<std::string> contradictions = {}) const {
     Grounds grounds;
-    grounds.endpoint.rms = kMicrometre;
+    grounds.workspace.rms = kMicrometre;
+    grounds.workspace.poses = 1;
     grounds.target = 1e-3;
     grounds.converged = true;
     grounds.contradictions = std::move(contradictions);

@@ -110,11 +110,14 @@ TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
     EXPECT_NEAR(std::sqrt(expected(i, i) / exact(i, i)), 1, 1e-3) << rx90().parameters()[i].name;
   }
   // The block gives the scale: without its step the end position is known far worse.
-  const EndpointSigma with = expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan);
+  const ExpectedSigma with =
+      expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan, {});
   cell.sets[2].reference = -1;
-  const EndpointSigma without =
-      expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan);
-  EXPECT_GT(without.median, 3 * with.median);
+  const ExpectedSigma without =
+      expected_sigma(rx90(), values(rx90()), cell.sets, cell.targets, plan, {});
+  EXPECT_GT(without.endpoint.median, 3 * with.endpoint.median);
+  EXPECT_GT(without.workspace.median, 3 * with.workspace.median);
+  EXPECT_LT(with.workspace.rms, with.endpoint.rms);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_F(DataSetFile, RefusesUnknownKeysEverywhere) {
   head += "observation: x.csv\n";
   EXPECT_EQ(error(kRow),
             "dataset.yaml:3: data set: unknown key 'observation'; known: dq, observations, robot, "
-            "sets, target");
+            "sets, target, workspace");
   head = "robot: arm.robot.yaml\nobservations: observations.csv\n";
   sets = only("tracker: {method: position, nois: 2.0e-5}");
   EXPECT_THAT(error(kRow), HasSubstr("dataset.yaml:4: set tracker: unknown key 'nois'"));

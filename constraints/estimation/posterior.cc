@@ -1,0 +1,186 @@
+// C = (W^T W + Lambda)^-1 over free and considered unknowns together; the estimate keeps the
+// considered ones where they are, and errs by what they are off as the posterior follows them.
+// A given place of a set may be off by a motion of it all: columns of the world's motions, of the
+// rows of that set alone.
+#include "constraints/estimation/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kMotionColumns = 6;
+/// Of a gear ratio without a tolerance: tooth counts are exact, a ball screw or a belt less so.
+constexpr double kHeldRatio = 2e-5;
+constexpr double kExact = 1e-12;  ///< m or rad: of what is exact
+
+/// A set whose place is given: the system of its rows, and 1 over the sigma of each motion of it.
+struct GivenPlace {
+  Eigen::VectorXd weight;
+  Eigen::MatrixXd R;
+};
+
+/// W^T W of the columns asked for, and the precision that is known of each beforehand.
+class Information {
+ public:
+  Information(const Equations& equations, const Adjusted& adjusted, const Eigen::MatrixXd& R)
+      : equations_(equations), adjusted_(adjusted), R_(R) {
+    for (const int c : free_columns(equations, adjusted.prior))
+      add(c, prior_weight(equations, adjusted.prior, c));
+  }
+
+  /// Parameters of links and gears that are fixed. Where base and tool are put is then what they
+  /// are called by.
+  void add_fixed() {
+    const auto& parameters = equations_.robot().parameters();
+    for (int i = 0; i < equations_.robot_columns(); ++i) {
+      const Parameter& p = parameters[static_cast<size_t>(i)];
+      const bool held = adjusted_.candidate[i] && !adjusted_.prior.free[i];
+      if (!adjusted_.prior.free[i] && !held && p.tolerance > 0 && is_own(p))
+        add(i, 1 / (p.part == Part::gear && !p.free ? std::min(kHeldRatio, p.tolerance)
+                                                    : p.tolerance));
+    }
+  }
+
+  void add_known() {
+    const auto& sets = equations_.data().sets;
+    for (int s = 0; s < static_cast<int>(sets.size()); ++s) {
+      if (equations_.plan(s).items.empty()) continue;
+      const std::vector<KnownLength> known = sets[s].method->known_lengths();
+      const bool plane = sets[s].method->touches() == TouchedSurface::plane;
+      for (size_t i = 0; i < known.size(); ++i) {
+        const double stated = plane ? sets[s].given.place : sets[s].given.length;
+        const double sigma = stated >= 0 ? stated : kBelieved * std::abs(known[i].value);
+        if (known[i].by_row && sigma > 0)
+          add(static_cast<int>(R_.cols()) - 1 - equations_.known_lengths() +
+                  equations_.known_at(s) + static_cast<int>(i),
+              1 / sigma);
+      }
+      if (sets[s].method->place_known()) add_place(s);
+    }
+  }
+
+  /// Of columns(); the one held for the scale with what follows it.
+  Eigen::MatrixXd covariance() const {
+    const auto n = static_cast<Eigen::Index>(columns_.size());
+    const auto m = n + kMotionColumns * static_cast<Eigen::Index>(places_.size());
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(m, m);
+    const Eigen::MatrixXd W = R_(Eigen::all, columns_);
+    H.topLeftCorner(n, n) = W.transpose() * W;
+    for (Eigen::Index i = 0; i < n; ++i) H(i, i) += std::pow(weights_[i], 2);
+    Eigen::Index at = n;
+    for (const GivenPlace& place : places_) {
+      const Eigen::MatrixXd M = place.R.middleCols(equations_.columns(), kMotionColumns);
+      H.block(0, at, n, kMotionColumns) = place.R(Eigen::all, columns_).transpose() * M;
+      H.block(at, 0, kMotionColumns, n) = H.block(0, at, n, kMotionColumns).transpose();
+      H.block(at, at, kMotionColumns, kMotionColumns) = M.transpose() * M;
+      H.block(at, at, kMotionColumns, kMotionColumns) +=
+          place.weight.cwiseAbs2().asDiagonal().toDenseMatrix();
+      at += kMotionColumns;
+    }
+    const Eigen::VectorXd unit = H.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd C = unit.asDiagonal() *
+                              inverse_of_positive(unit.asDiagonal() * H * unit.asDiagonal()) *
+                              unit.asDiagonal();
+    if (adjusted_.scale < 0) return spread(C);
+    const Eigen::MatrixXd all = spread(C);
+    Eigen::VectorXd follow = spread_rows(-C * asked_by(adjusted_.scale, m));
+    follow[adjusted_.scale] = 1;
+    return all + std::pow(adjusted_.scale_sigma, 2) * follow * follow.transpose();
+  }
+
+ private:
+  /// W^T w of all unknowns, w the column of a parameter that is held.
+  Eigen::VectorXd asked_by(int held, Eigen::Index unknowns) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(unknowns);
+    auto at = static_cast<Eigen::Index>(columns_.size());
+    all.head(at) = R_(Eigen::all, columns_).transpose() * R_.col(held);
+    for (const GivenPlace& place : places_) {
+      all.segment(at, kMotionColumns) =
+          place.R.middleCols(equations_.columns(), kMotionColumns).transpose() * place.R.col(held);
+      at += kMotionColumns;
+    }
+    return all;
+  }
+
+  Eigen::VectorXd spread_rows(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(equations_.columns());
+    for (size_t i = 0; i < columns_.size(); ++i)
+      if (columns_[i] < all.size()) all[columns_[i]] = x[static_cast<Eigen::Index>(i)];
+    return all;
+  }
+
+  void add(int column, double weight) {
+    columns_.push_back(column);
+    weights_.conservativeResize(weights_.size() + 1);
+    weights_[weights_.size() - 1] = weight;
+  }
+
+  /// The system of the rows of one set alone: what a motion of it would look like beside the rest.
+  void add_place(int set) {
+    Weighting alone{adjusted_.fitted.noise.used, adjusted_.fitted.noise.outlier};
+    const Observations& rows = equations_.data().rows;
+    for (int row = 0; row < rows.rows(); ++row)
+      if (rows.set[static_cast<size_t>(row)] != set) alone.outlier[static_cast<size_t>(row)] = 1;
+    const Set& at = equations_.data().sets[static_cast<size_t>(set)];
+    // The distance of a plane is a length that is known, and in doubt as such.
+    const bool centre = at.method->touches() != TouchedSurface::plane;
+    const double place = !centre               ? 0
+                         : at.given.place >= 0 ? at.given.place
+                                               : kBelieved * distance(set);
+    const double turn = at.given.turn >= 0 ? at.given.turn : kBelieved;
+    GivenPlace given{Eigen::VectorXd(kMotionColumns),
+                     equations_.linearise(adjusted_.fitted.state, alone, true).R};
+    for (int i = 0; i < kMotionColumns; ++i) {
+      const double sigma = i < 3 ? place : centre ? 0 : turn;
+      given.weight[i] = 1 / std::max(sigma, kExact);
+    }
+    places_.push_back(std::move(given));
+  }
+
+  /// Of the endpoint from the world's origin, on average over the rows of a set.
+  double distance(int set) const {
+    const auto& items = equations_.plan(set).items;
+    double sum = 0;
+    for (const SetPlan::Item& item : items)
+      sum += locate(equations_.robot(), adjusted_.fitted.state.xi,
+                    equations_.data().rows.q.row(item.row).transpose())
+                 .p.norm();
+    return sum / static_cast<double>(items.size());
+  }
+
+  Eigen::MatrixXd spread(const Eigen::MatrixXd& C) const {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(equations_.columns(), equations_.columns());
+    for (size_t i = 0; i < columns_.size(); ++i)
+      for (size_t j = 0; j < columns_.size(); ++j)
+        if (columns_[i] < all.rows() && columns_[j] < all.rows())
+          all(columns_[i], columns_[j]) =
+              C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    return all;
+  }
+
+  const Equations& equations_;
+  const Adjusted& adjusted_;
+  const Eigen::MatrixXd& R_;
+  std::vector<int> columns_;
+  Eigen::VectorXd weights_;
+  std::vector<GivenPlace> places_;
+};
+
+}  // namespace
+
+Eigen::MatrixXd posterior(const Equations& equations, const Adjusted& adjusted,
+                          const Eigen::MatrixXd& R, bool considered) {
+  Information information(equations, adjusted, R);
+  if (considered) {
+    information.add_fixed();
+    information.add_known();
+  }
+  return information.covariance();
+}
+
+}  // namespace selfcal
