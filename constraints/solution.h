@@ -98,6 +98,7 @@ struct EndpointSigma {
   double rms = 0, median = 0, max = 0;  ///< m
   double angle = 0;                     ///< rad, rms of how it is turned
   int poses = 0;  ///< 0 where nothing was identified or no pose was found: not known
+  std::vector<double> by_pose = {};  ///< m, in the order of the poses
 };
 
 /// The end position is known, to the target (m).
@@ -127,6 +128,57 @@ struct RobotScale {
   std::vector<std::string> contradictions;  ///< in words
 };
 
+/// A part of the end position's doubt in the workspace, 1 sigma (m); the squares add up.
+struct BudgetLine {
+  std::string source;
+  double sigma = 0;
+};
+
+/// What is left of the rows beyond the spread of their immediate repeats, over that spread.
+struct LackOfFit {
+  double F = 0, p_value = -1;  ///< p negative without repeats
+  double freedoms = 0, repeat_freedoms = 0;
+};
+
+/// Whether what is left of the lengths looks like independent normal noise.
+struct ResidualTests {
+  int count = 0;
+  double skewness = 0, kurtosis = 0;  ///< 0 and 3 of normal noise
+  double normality_p = -1, autocorrelation = 0, autocorrelation_p = -1;  ///< p negative: too few
+};
+
+struct Correlation {
+  std::string a, b;
+  double value = 0;
+};
+
+/// Of poses that were measured repeatedly, after; the worst pose (m).
+struct PoseRepeats {
+  int poses = 0;
+  double accuracy = 0, repeatability = 0;
+};
+
+/// A part of the workspace.
+struct GridCell {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world, of its poses
+  double sigma = 0;                                  ///< m
+  double bias = -1;  ///< m, length of the mean residual of the rows there; negative without rows
+  int poses = 0, rows = 0;
+};
+
+/// How good the result is, as metrology says it.
+struct Uncertainty {
+  double freedoms = 0;
+  double k = 0;         ///< coverage factor of 95 % (Student)
+  double expanded = 0;  ///< m, k times the end position's sigma in the workspace
+  std::vector<BudgetLine> budget;
+  LackOfFit lack_of_fit;
+  ResidualTests residuals;
+  std::vector<Correlation> correlations;  ///< of the robot's parameters, beyond 0.9
+  PoseRepeats repeats;
+  std::vector<GridCell> grid;
+};
+
 struct Observability {
   double condition = 0, o1 = 0, o2 = 0, o3 = 0, o4 = 0, o5 = 0;
 };
@@ -151,6 +203,7 @@ struct Solution {
   EndpointSigma workspace;        ///< over where it counts: the verdict's
   bool orientation_seen = false;  ///< rows tell how the endpoint is turned
   RobotScale scale;
+  Uncertainty uncertainty;  ///< without budget where nothing was identified
   double prior_chi2 = 0;
   double prior_dof = 0;
   double prior_widening = 1;

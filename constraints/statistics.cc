@@ -90,6 +90,10 @@ double f_exceeds(double value, double upper_freedom, double lower_freedom) {
       boost::math::fisher_f_distribution<double>(upper_freedom, lower_freedom), value));
 }
 
+double student_quantile(double probability, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), probability);
+}
+
 double student_below(double value, double freedom) {
   return boost::math::cdf(boost::math::students_t_distribution<double, Fast>(freedom), value);
 }

@@ -15,6 +15,9 @@ double log_chi_square_below(double value, double freedom);
 /// Probability that an F variable exceeds `value`.
 double f_exceeds(double value, double upper_freedom, double lower_freedom);
 
+/// Value that a Student t variable of `freedom` (any positive number) stays below with
+/// `probability`.
+double student_quantile(double probability, double freedom);
 /// Probability that a Student t variable of `freedom` (any positive number) stays below `value`.
 double student_below(double value, double freedom);
 

@@ -10,7 +10,8 @@ namespace selfcal {
 namespace {
 
 constexpr size_t kMostListedItems = 12;
-constexpr double kAlone = 0.9;  ///< share of the scale that one length carries alone
+constexpr double kToldShare = 0.1;  ///< of the end position's doubt: less is not told
+constexpr double kAlone = 0.9;      ///< share of the scale that one length carries alone
 
 [[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
   char text[512];
@@ -194,6 +195,12 @@ std::string summary(const DataSet& data, const Solution& solution) {
   const bool alone = lengths.size() == 1 && lengths.front().share > kAlone;
   list(text, "The scale stands on", lengths,
        [alone](const ScaleLength& each) { return scale_line(each, alone); });
+  std::vector<BudgetLine> budget = solution.uncertainty.budget;
+  std::erase_if(budget, [&](const BudgetLine& each) {
+    return each.sigma < kToldShare * solution.workspace.rms;
+  });
+  list(text, "The end position's doubt in the workspace (1 sigma)", budget,
+       [](const BudgetLine& each) { return phrase("%.3g mm: ", 1e3 * each.sigma) + each.source; });
   list(text, "Held", solution.gauge,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Not excited by these rows", solution.unexcited,

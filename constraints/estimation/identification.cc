@@ -8,11 +8,11 @@
 
 #include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/angles.h"
-#include "constraints/estimation/half_samples.h"
+#include "constraints/estimation/covariance_sources.h"
 #include "constraints/estimation/judgement.h"
-#include "constraints/estimation/posterior.h"
 #include "constraints/estimation/results.h"
 #include "constraints/estimation/robot_scale.h"
+#include "constraints/estimation/uncertainty.h"
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/identifiability/excitation.h"
 #include "constraints/identifiability/gauge.h"
@@ -25,33 +25,7 @@
 namespace selfcal {
 namespace {
 
-/// Halves of rows with independent noise differ by up to so much more than is expected.
-constexpr double kChance = 1.5;
 constexpr int kPoses = 500;  ///< at which the end position is judged
-
-/// The part of the posterior of the fitted unknowns that the rows' noise makes, not the priors.
-Eigen::MatrixXd noise_part(const Equations& equations, const Adjusted& adjusted) {
-  const Eigen::MatrixXd& C = adjusted.fitted.covariance;
-  Eigen::VectorXd precision(C.rows());
-  for (int c = 0; c < equations.columns(); ++c)
-    precision[c] = std::pow(prior_weight(equations, adjusted.prior, c), 2);
-  return C - C * precision.asDiagonal() * C;
-}
-
-/// What halves of the rows differ by and their noise does not explain, judged by the end position
-/// at the poses of `question`: the squares of its columns add to the covariance.
-Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
-                              EndpointQuestion question) {
-  const Eigen::MatrixXd difference = half_sample_differences(equations, adjusted).transpose();
-  const Eigen::Index n = equations.robot_columns();
-  const double splits = static_cast<double>(difference.cols());
-  question.covariance = difference.topRows(n) * difference.topRows(n).transpose() / splits;
-  const double seen = std::pow(endpoint_sigma(question).rms, 2);
-  question.covariance = noise_part(equations, adjusted).topLeftCorner(n, n);
-  const double explained = std::pow(endpoint_sigma(question).rms, 2);
-  const double share = std::max(0.0, 1 - kChance * explained / seen);
-  return std::sqrt(share / splits) * difference;
-}
 
 std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
 
@@ -161,20 +135,18 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
 
   const Weighting weighting{fitted.noise.used, fitted.noise.outlier};
   const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
-  Eigen::MatrixXd C = posterior(equations, adjusted, R);
   EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
   const bool nothing = nothing_free(adjusted);
   EndpointQuestion where_it_counts = question;
   where_it_counts.poses =
       workspace_poses(robot, question.xi, data.workspace, data.rows.q, kPoses, options.seed);
-  if (!nothing) {
-    const Eigen::MatrixXd shared = shared_errors(
-        equations, adjusted, where_it_counts.poses.rows() > 0 ? where_it_counts : question);
-    C += shared * shared.transpose();
-  }
+  std::vector<CovarianceSource> sources = covariance_sources(
+      equations, adjusted, R, where_it_counts.poses.rows() > 0 ? where_it_counts : question);
   const ScaleJudgement scale =
       nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
-  for (const Eigen::VectorXd& doubt : scale.doubts) C += doubt * doubt.transpose();
+  for (const Eigen::VectorXd& doubt : scale.doubts)
+    sources.push_back({"a length given that is contradicted", doubt * doubt.transpose()});
+  const Eigen::MatrixXd C = sum(sources);
   solution.scale = scale.scale;
   const Identifiability rank = add_posterior(equations, adjusted, R, C, solution);
 
@@ -196,6 +168,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.endpoint = endpoint_sigma(question);
   where_it_counts.covariance = question.covariance;
   solution.workspace = endpoint_sigma(where_it_counts);
+  solution.uncertainty = uncertainty(equations, adjusted, sources, after, where_it_counts);
   solution.orientation_seen = orientation_is_seen(equations);
   Grounds grounds{solution.endpoint,
                   solution.workspace,

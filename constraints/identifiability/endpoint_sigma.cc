@@ -81,6 +81,7 @@ EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
   std::vector<double> variance(static_cast<size_t>(poses));
   for (Eigen::Index i = 0; i < poses; ++i)
     variance[static_cast<size_t>(i)] = D.shift.middleRows<3>(3 * i).squaredNorm();
+  for (const double each : variance) result.by_pose.push_back(std::sqrt(each));
   std::sort(variance.begin(), variance.end());
   const auto count = static_cast<double>(poses);
   result.poses = static_cast<int>(poses);

@@ -131,6 +131,48 @@ Json of_scale(const RobotScale& scale) {
                        {"against_maker", scale.against_maker}});
 }
 
+/// Probabilities are negative where there is none.
+Json of_uncertainty(const Uncertainty& u) {
+  const auto line = [](const BudgetLine& each) {
+    return Json::object({{"source", each.source}, {"sigma", finite(each.sigma)}});
+  };
+  const auto pair = [](const Correlation& each) {
+    return Json::object({{"a", each.a}, {"b", each.b}, {"value", finite(each.value)}});
+  };
+  const auto cell = [](const GridCell& each) {
+    return Json::object({{"center", array_of(each.center, finite)},
+                         {"sigma", finite(each.sigma)},
+                         {"bias", sigma(each.bias)},
+                         {"poses", each.poses},
+                         {"rows", each.rows}});
+  };
+  const auto figure = [](bool known, double number) { return known ? finite(number) : Json(); };
+  const bool fit = u.lack_of_fit.p_value >= 0, normal = u.residuals.normality_p >= 0;
+  const bool ordered = u.residuals.autocorrelation_p >= 0, repeated = u.repeats.poses > 0;
+  return Json::object({{"freedoms", finite(u.freedoms)},
+                       {"k95", finite(u.k)},
+                       {"expanded", finite(u.expanded)},
+                       {"budget", array_of(u.budget, line)},
+                       {"lack_of_fit",
+                        {{"F", figure(fit, u.lack_of_fit.F)},
+                         {"p_value", sigma(u.lack_of_fit.p_value)},
+                         {"freedoms", figure(fit, u.lack_of_fit.freedoms)},
+                         {"repeat_freedoms", finite(u.lack_of_fit.repeat_freedoms)}}},
+                       {"residuals",
+                        {{"count", u.residuals.count},
+                         {"skewness", figure(normal, u.residuals.skewness)},
+                         {"kurtosis", figure(normal, u.residuals.kurtosis)},
+                         {"normality_p", sigma(u.residuals.normality_p)},
+                         {"autocorrelation", figure(ordered, u.residuals.autocorrelation)},
+                         {"autocorrelation_p", sigma(u.residuals.autocorrelation_p)}}},
+                       {"correlations", array_of(u.correlations, pair)},
+                       {"repeats",
+                        {{"poses", u.repeats.poses},
+                         {"accuracy", figure(repeated, u.repeats.accuracy)},
+                         {"repeatability", figure(repeated, u.repeats.repeatability)}}},
+                       {"grid", array_of(u.grid, cell)}});
+}
+
 Json of_prior(const Solution& solution) {
   return Json::object({{"value", finite(solution.prior_chi2)},
                        {"dof", finite(solution.prior_dof)},
@@ -172,6 +214,8 @@ nlohmann::ordered_json to_json(const Solution& solution, const std::string& robo
   json["endpoint_sigma"] = of_endpoint(solution.endpoint, solution.orientation_seen);
   json["endpoint_sigma"]["workspace"] = of_endpoint(solution.workspace, solution.orientation_seen);
   json["scale"] = of_scale(solution.scale);
+  json["uncertainty"] =
+      solution.uncertainty.budget.empty() ? Json() : of_uncertainty(solution.uncertainty);
   json["prior_chi2"] = of_prior(solution);
   json["observability"] = of_observability(solution.observability);
   json["warnings"] = solution.warnings;

@@ -54,10 +54,11 @@ Solution example() {
 
 TEST(SolutionJson, HasTheKeysOfTheFormatInItsOrder) {
   const auto json = to_json(example(), "arm", "sha256:0");
-  EXPECT_THAT(keys(json), ElementsAre("robot", "model_hash", "converged", "stop_reason",
-                                      "iterations", "verdict", "parameters", "covariance", "gauge",
-                                      "unexcited", "sets", "rejected", "residual", "endpoint_sigma",
-                                      "scale", "prior_chi2", "observability", "warnings"));
+  EXPECT_THAT(keys(json),
+              ElementsAre("robot", "model_hash", "converged", "stop_reason", "iterations",
+                          "verdict", "parameters", "covariance", "gauge", "unexcited", "sets",
+                          "rejected", "residual", "endpoint_sigma", "scale", "uncertainty",
+                          "prior_chi2", "observability", "warnings"));
   EXPECT_THAT(keys(json["parameters"][0]),
               ElementsAre("name", "frame", "unit", "nominal", "value", "sigma", "prior_sigma",
                           "status", "grouped_with"));

@@ -16,7 +16,7 @@ namespace selfcal::recovery {
 namespace {
 
 std::vector<SetPart> mixture(int kind) {
-  switch (kind % 5) {
+  switch (kind % 7) {
     case 0:
       return {{"tracker", entry({{"method", "position"}, {"frame", "unknown"}}), 90}};
     case 1:
@@ -27,6 +27,13 @@ std::vector<SetPart> mixture(int kind) {
     case 3:
       return {{"nest", entry({{"method", "position-constraint"}}), 90},
               {"ball", entry({{"method", "sphere"}, {"radius", "0.15"}}), 90}};
+    case 4:
+      return {{"shelf", entry({{"method", "plane-normal"}}), 90},
+              {"side", entry({{"method", "plane-normal"}}), 90},
+              {"tracker", entry({{"method", "position"}}), 30}};
+    case 5:
+      return {{"socket", entry({{"method", "location-constraint"}}), 60},
+              {"tracker", entry({{"method", "position"}}), 30}};
     default: {
       std::vector<SetPart> parts;
       for (const char* name : {"a", "b", "c", "d"})

@@ -1,0 +1,62 @@
+// With C0 the posterior of the free unknowns and Lambda the precision of their priors
+//   C0 = (C0 - C0 Lambda C0) + C0 Lambda C0,
+// the first of the rows' noise, the second of the priors; the others come on top.
+#include "constraints/estimation/covariance_sources.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/estimation/half_samples.h"
+#include "constraints/estimation/posterior.h"
+
+namespace selfcal {
+namespace {
+
+/// Halves of rows with independent noise differ by up to so much more than is expected.
+constexpr double kChance = 1.5;
+
+Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
+  const Eigen::MatrixXd& C = adjusted.fitted.covariance;
+  Eigen::VectorXd precision(C.rows());
+  for (int c = 0; c < equations.columns(); ++c)
+    precision[c] = std::pow(prior_weight(equations, adjusted.prior, c), 2);
+  return C * precision.asDiagonal() * C;
+}
+
+/// What halves of the rows differ by and their `noise` does not explain.
+Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
+                              const Eigen::MatrixXd& noise, EndpointQuestion question) {
+  const Eigen::MatrixXd difference = half_sample_differences(equations, adjusted).transpose();
+  const Eigen::Index n = equations.robot_columns();
+  const double splits = static_cast<double>(difference.cols());
+  const Eigen::MatrixXd C = difference * difference.transpose() / splits;
+  question.covariance = C.topLeftCorner(n, n);
+  const double seen = std::pow(endpoint_sigma(question).rms, 2);
+  question.covariance = noise.topLeftCorner(n, n);
+  const double explained = std::pow(endpoint_sigma(question).rms, 2);
+  return std::max(0.0, 1 - kChance * explained / seen) * C;
+}
+
+}  // namespace
+
+std::vector<CovarianceSource> covariance_sources(const Equations& equations,
+                                                 const Adjusted& adjusted, const Eigen::MatrixXd& R,
+                                                 const EndpointQuestion& question) {
+  const Eigen::MatrixXd& fitted = adjusted.fitted.covariance;
+  const Eigen::MatrixXd priors = prior_part(equations, adjusted), noise = fitted - priors;
+  const Eigen::MatrixXd exact =
+      adjusted.scale < 0 ? fitted : posterior(equations, adjusted, R, false);
+  return {{"noise of the rows", noise},
+          {"the maker's tolerances", priors},
+          {"held scale", exact - fitted},
+          {"what was given", posterior(equations, adjusted, R, true) - exact},
+          {"rows that share errors", shared_errors(equations, adjusted, noise, question)}};
+}
+
+Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources) {
+  Eigen::MatrixXd C = sources.front().C;
+  for (size_t i = 1; i < sources.size(); ++i) C += sources[i].C;
+  return C;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,29 @@
+// What the doubt of the fitted unknowns comes from.
+#pragma once
+
+#include <Eigen/Dense>
+#include <string_view>
+#include <vector>
+
+#include "constraints/estimation/adjustment.h"
+#include "constraints/identifiability/endpoint_sigma.h"
+
+namespace selfcal {
+
+/// One part of the covariance of columns().
+struct CovarianceSource {
+  std::string_view name;
+  Eigen::MatrixXd C;
+};
+
+/// Noise of the rows, the maker's tolerances, the scale where a length is held for it, what was
+/// given (see posterior.h), and what halves of the rows differ by beside all that, judged by the
+/// end position at the poses of `question`. `R` is whitened, with the columns beside the unknowns.
+std::vector<CovarianceSource> covariance_sources(const Equations& equations,
+                                                 const Adjusted& adjusted, const Eigen::MatrixXd& R,
+                                                 const EndpointQuestion& question);
+
+/// The sum of all.
+Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources);
+
+}  // namespace selfcal
