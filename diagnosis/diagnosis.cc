@@ -6,6 +6,7 @@
 
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/attribution.h"
 #include "diagnosis/report/detectable.h"
 #include "diagnosis/report/experiment_design.h"
@@ -17,6 +18,7 @@
 #include "diagnosis/search/simulation_based_calibration.h"
 #include "diagnosis/validation/folds.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -70,17 +72,18 @@ class Diagnostician {
       bench_ = std::make_unique<EvidenceEvaluator>(
           view_.whitened(),
           structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
-                     comparable_readings(view_.geometry(), data_.rows.q)),
+                     comparable_readings(view_.geometry(), data_.rows.q),
+                     noise_of_visits(data_.rows, rows, view_.left())),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
-      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms ||
-          !std::isfinite(posterior_.log_total)) {
+      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms) {
         result_.problem =
             "too few rows for a diagnosis: beyond what calibration takes they leave " +
             format_number(std::floor(bench_->marginal_likelihood(0).freedom())) +
             " equations, at least 10 are needed";
         return;
       }
+      expects(std::isfinite(posterior_.log_total), "the evidence of finite rows is finite");
       const Hypothesis& best = posterior_.hypotheses.front();
       const auto [columns, sigma] = MarginalLikelihood::unfold(bench_->terms(best));
       const double variance =
@@ -110,9 +113,10 @@ class Diagnostician {
     Correction correction;
     for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       const DenseEquations rows = view_.kept();
+      const double of_visits = noise_of_visits(data_.rows, rows, view_.left());
       const EvidenceEvaluator bench(view_.whitened(),
-                                    noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
-                                    view_.parameters(), rule);
+                                    noise_alone(data_.rows, rows, view_.by_joint(rows), of_visits),
+                                    all, view_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
       best = with_named(bench.grow(best, kMostEffects), result_.verdict, all, posterior_);
@@ -120,6 +124,7 @@ class Diagnostician {
       const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
                               bench.noise_variance(0);
       const bool again = view_.refine(view_.residuals(columns, sigma), variance);
+      result_.noise = view_.noise() * std::hypot(1.0, of_visits);
       if (again && pass + 1 < kDiagnosisPasses) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
         const Candidate& each = all.list[best.candidates[i]];
@@ -128,7 +133,6 @@ class Diagnostician {
       }
       break;
     }
-    result_.noise = view_.noise();
     return correction;
   }
 
