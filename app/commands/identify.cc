@@ -55,6 +55,8 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   if (arguments.effects.empty()) return robot;
   ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
   if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
+  if (data.order_is_time)
+    std::fputs("note: the rows carry no time: their order is taken for it\n", stderr);
   Problems problems;
   const auto geometry = geometry_of(robot);
   std::vector<Node> entries = effect_entries(*robot);

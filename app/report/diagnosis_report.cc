@@ -65,6 +65,8 @@ std::string gap_table(const Diagnosis& diagnosis) {
       gap.rows, 1e3 * gap.rms_nominal);
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += " " + closed + ", each with its 95 % interval.";
+  if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())
+    text += " " + left_out + ".";
   return text + "</p>";
 }
 

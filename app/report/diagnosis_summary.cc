@@ -24,6 +24,8 @@ std::string gap_lines(const Diagnosis& diagnosis) {
                   gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += "     " + closed + "\n";
+  if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())
+    text += "     " + left_out + "\n";
   return text;
 }
 

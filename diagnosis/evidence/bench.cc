@@ -182,7 +182,7 @@ double EvidenceEvaluator::evidence(int candidate) const {
                           : 0;
 }
 
-double EvidenceEvaluator::best_found() const {
+EvidenceEvaluator::Found EvidenceEvaluator::best_found() const {
   int home = 0;
   for (int s = 1; s < structures(); ++s)
     if (structure(s).kind == 0 &&
@@ -191,9 +191,10 @@ double EvidenceEvaluator::best_found() const {
   const Hypothesis none{
       {}, home, marginal_likelihoods_[home].log_evidence({}) + log_prior({}, home), {}};
   const Hypothesis one = with_best(none, marginal_likelihoods_[home]);
-  if (one.candidates.empty()) return -INFINITY;
+  if (one.candidates.empty()) return {none, -INFINITY};
   const Hypothesis two = with_best(one, marginal_likelihoods_[home].given(terms(one)));
-  return std::max(one.log_weight, two.log_weight) - none.log_weight;
+  const Hypothesis& best = two.log_weight > one.log_weight ? two : one;
+  return {best, best.log_weight - none.log_weight};
 }
 
 /// `h` and one candidate more, `rest` being what `h` leaves.

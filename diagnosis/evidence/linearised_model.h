@@ -47,6 +47,8 @@ class LinearisedModel {
   /// leverage.
   Eigen::VectorXd geometry_leaves(const Whitened& rows) const;
   const std::vector<char>& outlier() const { return put_aside_; }
+  /// Times are places in the file: see DataSet.
+  bool order_is_time() const { return data_.order_is_time; }
   /// As known so far, by set.
   std::vector<Scale> noise_of_sets() const;
   /// 1 sigma of one scalar (m), pooled over the sets.

@@ -45,6 +45,11 @@ std::string of_noise(const LinearisedModel& view, const DataSet& data) {
          "is";
 }
 
+std::string of_order(const DataSet& data) {
+  if (!data.order_is_time) return {};
+  return "the rows carry no time: their order is taken for it, a second from one to the next";
+}
+
 }  // namespace
 
 std::string warning_of_own_effects(const Robot& robot) {
@@ -62,7 +67,7 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   if (gap.rows == 0)
     return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
            "not known";
-  const bool named = diagnosis.verdict.effect != kUnknown;
+  const bool named = diagnosis.verdict.effect != kUnknown || !diagnosis.named.empty();
   const bool worse = gap.rms_all > gap.rms_before;
   if (named && gap.rms_after >= gap.rms_before)
     return std::string(
@@ -88,7 +93,8 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
 std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
                                      const Closing& closing) {
   std::vector<std::string> list;
-  for (const std::string& each : {of_fits(closing), of_gears(view), of_noise(view, data)})
+  for (const std::string& each :
+       {of_fits(closing), of_gears(view), of_noise(view, data), of_order(data)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/discrepancy.h"
@@ -139,6 +140,24 @@ TEST(Visits, ShowAZeroThatMovedBetweenThem) {
   const Diagnosis diagnosis = diagnose(session.robot, session.data, without_practice());
   EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
   EXPECT_THAT(diagnosis.verdict.where, testing::ElementsAre("j3"));
+}
+
+TEST(OrderOfRows, StandsForTheTimeAndIsSaid) {
+  TwoSessions sessions;
+  DataSet& data = sessions.before;
+  const int rows = data.rows.rows();
+  data.order_is_time = true;
+  data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows - 1);
+  for (int row = 25; row < rows; ++row)
+    data.rows.q(row, 2) -= 5e-4;  // the 26th and all that follow
+  const Diagnosis diagnosis = diagnose(sessions.robot, data, without_practice());
+  EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
+  EXPECT_THAT(diagnosis.verdict.where, testing::ElementsAre("j3"));
+  int told = 0;
+  ASSERT_EQ(std::sscanf(diagnosis.verdict.shape.c_str(), "from row %d on", &told), 1)
+      << diagnosis.verdict.shape;
+  EXPECT_NEAR(told, 26, 2);
+  EXPECT_THAT(diagnosis.warnings, testing::Contains(testing::HasSubstr("order is taken for it")));
 }
 
 }  // namespace
