@@ -77,7 +77,7 @@ struct Where {
 struct NextStep {
   std::string what;
   std::vector<std::string> separates;
-  double probability_after = 0;
+  double probability_after = 0;  ///< NaN where it is not known
   Observations rows;  ///< to measure: readings, set, and what else shall hold (nothing measured)
 };
 
@@ -106,6 +106,7 @@ struct Diagnosis {
   std::vector<Detectable> detectable;
   std::vector<Untestable> untestable;
   std::vector<NextStep> next;
+  std::string next_why;  ///< why there is none of these, or why they promise little
   std::vector<Outlier> rejected;
   std::vector<std::string> warnings;
   Correction found;                    ///< the effects of `model`, in its order

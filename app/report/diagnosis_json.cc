@@ -159,6 +159,7 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
                          {"separates", each.separates},
                          {"probability_after", finite(each.probability_after)}});
   });
+  json["next_why"] = diagnosis.next_why;
   json["rejected"] = array_of(diagnosis.rejected, [](const Outlier& each) {
     return Json::object({{"row", each.row},
                          {"set", each.set},
@@ -185,6 +186,8 @@ nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data
       if (each.rows.velocity.rows() > 0) one["dq"] = cells(each.rows.velocity, row);
       if (each.rows.time.size() > 0 && !data.order_is_time)
         one["time"] = finite(each.rows.time[row]);
+      if (!each.rows.repeat.empty() && each.rows.repeat[row] >= 0)
+        one["repeat"] = "n" + std::to_string(each.rows.repeat[row]);
       rows.push_back(std::move(one));
     }
     return Json::object({{"what", each.what},
@@ -192,6 +195,7 @@ nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data
                          {"probability_after", finite(each.probability_after)},
                          {"rows", rows}});
   });
+  json["why"] = diagnosis.next_why;
   return json;
 }
 

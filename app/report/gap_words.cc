@@ -73,6 +73,14 @@ std::string false_rows_in_words(const Diagnosis& diagnosis) {
   return text;
 }
 
+std::string next_in_words(const NextStep& step) {
+  std::string list;
+  for (const std::string& each : step.separates)
+    if (each != kUnknown) list += (list.empty() ? "" : " or ") + each;
+  if (std::isnan(step.probability_after)) return " (tells " + list + ")";
+  return printed(" (then %.0f %% sure, of ", 100 * step.probability_after) + list + ")";
+}
+
 std::string closed_in_words(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
   const bool named = !diagnosis.named.empty();

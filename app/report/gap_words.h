@@ -22,6 +22,9 @@ std::string closed_in_words(const Diagnosis& diagnosis);
 /// "3 rows kept aside are false readings …; with them 2.1 mm calibrated, …"; empty without such.
 std::string false_rows_in_words(const Diagnosis& diagnosis);
 
+/// " (then 95 % sure of joint_compliance@j2 or backlash@j1)", " (tells how much is noise)".
+std::string next_in_words(const NextStep& step);
+
 /// " at j1, j2 and j3"; empty for the whole robot.
 std::string places_in_words(const std::vector<std::string>& where);
 /// "joint compliance".

@@ -108,6 +108,21 @@ TEST(DiagnosisSummary, SaysHowManyRowsAreLeftOutAndWhatItIsWithThem) {
   EXPECT_EQ(to_json(diagnosis)["gap"]["with_false_rows"]["rms_all"], 2.25e-3);
 }
 
+TEST(DiagnosisSummary, SaysWhatToMeasureNextOrWhyNothing) {
+  Diagnosis diagnosis = named({true});
+  diagnosis.next = {{"repeat 12 rows", {"backlash@j1", "none"}, 0.9, {}},
+                    {"repeat 24 rows", {"unknown", "how much is noise"}, NAN, {}}};
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("repeat 12 rows (then 90 % sure, of backlash@j1 or none)"));
+  EXPECT_THAT(summary(diagnosis), HasSubstr("repeat 24 rows (tells how much is noise)"));
+  diagnosis.next.clear();
+  diagnosis.next_why = "nothing looks like what is named";
+  EXPECT_THAT(summary(diagnosis), HasSubstr("Next: nothing; nothing looks like what is named"));
+  const auto file = next_json(diagnosis, {});
+  EXPECT_TRUE(file["steps"].empty());
+  EXPECT_EQ(file["why"], "nothing looks like what is named");
+}
+
 TEST(DiagnosisSummary, GivesNoIntervalSoNearTheNoise) {
   Diagnosis diagnosis = named({true});
   diagnosis.gap.closed = {0.5};
