@@ -10,12 +10,13 @@
 namespace selfcal {
 namespace {
 
-constexpr int kMoments = 24;    ///< at which a step may have happened
-constexpr int kFewTimes = 40;   ///< up to which it may have happened between any two
-constexpr int kMostWaves = 64;  ///< a turn
-constexpr int kProfile = 30;    ///< waves a turn, of a profile over the whole turn
-constexpr double kWarms = 0.2;  ///< K
-constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
+constexpr int kMoments = 24;      ///< at which a step may have happened
+constexpr int kFewTimes = 40;     ///< up to which it may have happened between any two
+constexpr int kMostWaves = 64;    ///< a turn
+constexpr int kProfile = 30;      ///< waves a turn, of a profile over the whole turn
+constexpr double kWarms = 0.2;    ///< K
+constexpr double kAssumed = 0.6;  ///< doubt of masses that are usual ones, over their torques
+constexpr int kFewestRows = 8;    ///< of a surface that is to show its form or its shift
 
 Node entry(std::string_view effect, const std::string& at) {
   Node node = Node::map();
@@ -102,6 +103,7 @@ class Maker {
       const Node stiff = entry("joint_compliance", at);
       add({stiff});
       add({stiff, with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      if (statics->mechanics().masses_assumed) all_.list.back().doubt = kAssumed;
       add({entry("link_compliance", at)});
     } else if (loads) {
       add({with(entry("joint_compliance", at), "lumps", std::string("true"))});

@@ -6,6 +6,7 @@
 #include "constraints/site.h"
 #include "constraints/statistics.h"
 #include "diagnosis/evidence/rows.h"
+#include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/findings.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
@@ -36,7 +37,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
                                  const DiagnosisOptions& options, const Progress& progress)
     : data_(data),
       most_rejected_(options.most_rejected),
-      geometry_(geometry_of(std::move(robot))),
+      geometry_(with_mass_of_its_size(geometry_of(std::move(robot)))),
       site_(site_of(*geometry_, data)),
       candidates_(selfcal::candidates(*geometry_, data, site_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),

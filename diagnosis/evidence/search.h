@@ -96,7 +96,7 @@ class EvidenceEvaluator {
   /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
   double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
-  /// at most three families.
+  /// at most five families.
   Hypothesis grow(Hypothesis h, size_t most) const;
 
   static const std::vector<double>& sizes();

@@ -45,6 +45,16 @@ std::string of_noise(const LinearisedModel& view, const DataSet& data) {
          "is";
 }
 
+std::string of_masses(const LinearisedModel& view) {
+  const Statics* statics = view.geometry().statics();
+  if (!statics || !statics->mechanics().masses_assumed) return {};
+  double mass = 0;
+  for (const Link& link : statics->mechanics().links) mass += link.mass.value_or(0);
+  return "the file gives no masses of the links: usual ones are taken, " +
+         format_number(std::round(mass)) +
+         " kg moving; `mass:` and `payload:` of the data sheet, or those of the links, are better";
+}
+
 std::string of_order(const DataSet& data) {
   if (!data.order_is_time) return {};
   return "the rows carry no time: their order is taken for it, a second from one to the next";
@@ -94,7 +104,7 @@ std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet&
                                      const Closing& closing) {
   std::vector<std::string> list;
   for (const std::string& each :
-       {of_fits(closing), of_gears(view), of_noise(view, data), of_order(data)})
+       {of_fits(closing), of_gears(view), of_noise(view, data), of_order(data), of_masses(view)})
     if (!each.empty()) list.push_back(each);
   return list;
 }
