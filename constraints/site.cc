@@ -28,10 +28,20 @@ Eigen::Vector3d thin_direction(const std::vector<Eigen::Vector3d>& points,
   return n.dot(centre) > 0 ? Eigen::Vector3d(-n) : n;  // towards the robot
 }
 
+/// Its rows hold lengths that an instrument measured.
+bool measures_lengths(const Method& method) {
+  const std::vector<std::string> columns = method.columns();
+  const std::vector<MeasuredColumn> own = method.measures();
+  return std::ranges::count(columns, "x") > 0 ||
+         std::ranges::any_of(
+             own, [](const MeasuredColumn& each) { return each.quantity == Quantity::length; });
+}
+
 SiteSet site_of_set(const Robot& robot, const DataSet& data, int set) {
   SiteSet site;
   site.name = data.sets[set].name;
   site.touch = data.sets[set].method->touches() == TouchedSurface::plane;
+  site.lengths = measures_lengths(*data.sets[set].method);
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
   if (points.empty()) return site;
   for (const Eigen::Vector3d& p : points) site.centre += p / static_cast<double>(points.size());

@@ -2,31 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/attribution.h"
+#include "diagnosis/report/closing.h"
 #include "diagnosis/report/detectable.h"
 #include "diagnosis/report/experiment_design.h"
-#include "diagnosis/report/holdout_validation.h"
-#include "diagnosis/report/named.h"
+#include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
 #include "diagnosis/search/causes.h"
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
 #include "diagnosis/validation/folds.h"
-#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kDiagnosisPasses = 4;
 constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
-constexpr size_t kMostEffects = 60;
-constexpr double kMostGrown = 2100;  ///< equations
-constexpr double kTried = 0.05;      ///< least probable cause that is tried alone
-constexpr int kMostTried = 4;
 
 class Diagnostician {
  public:
@@ -42,26 +38,53 @@ class Diagnostician {
     if (!result_.problem.empty()) return std::move(result_);
     result_.noise = view_.noise() * shared_noise();
     result_.candidates = cause_results(view_, *bench_, posterior_);
-    tell("asking noise the same question", 0.75);
-    const NullDistribution null(view_, *bench_, data_.rows, options_.resamples, options_.seed);
-    result_.p_value = null.p_of(bench_->best_found());
-    result_.verdict = decided(named_cause(view_, *bench_, posterior_, result_.candidates, options_),
-                              posterior_, result_.p_value, options_);
-    tell("practising on simulated sessions", 0.8);
-    result_.practice = calibrate_by_simulation(view_, *bench_, null, options_);
-    for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
-      *each = calibrated(*each, result_.practice);
+    name();
     result_.where = attribution(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable(view_, *bench_, options_, result_);
-    result_.next = next_steps(view_, data_, result_);
+    NextSteps next = next_steps(view_, data_, result_);
+    result_.next = std::move(next.steps);
+    result_.next_why = std::move(next.why);
     tell("closing the gap", 0.85);
-    close();
+    close_gap(view_, *bench_, posterior_, data_, options_, result_);
     result_.why = verdict_in_words(result_);
     return std::move(result_);
   }
 
  private:
+  /// What noise does not do as well, with probabilities as often true as they say.
+  void name() {
+    tell("asking noise the same question", 0.75);
+    const NullDistribution null(view_, *bench_, data_.rows, options_.resamples, options_.seed,
+                                options_.most_rejected);
+    ByNoise p{null.p_of(bench_->best_found().log_odds), 1};
+    CauseResult named = named_cause(view_, *bench_, posterior_, result_.candidates, options_);
+    const bool structure = posterior_.unknown > 0.5 || named.effect == kUnknown;
+    if (structure)
+      p.unknown = p_of_unknown(view_, *bench_, best_with_structure(), data_.rows,
+                               options_.resamples, options_.seed);
+    const bool asked_unknown = named.effect == kUnknown;
+    result_.verdict = decided(std::move(named), posterior_, p, options_);
+    result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;
+    tell("practising on simulated sessions", 0.8);
+    result_.practice = calibrate_by_simulation(view_, *bench_, null, options_);
+    for (CauseResult& each : result_.candidates) {
+      each.p_value = each.effect != kUnknown ? p.known : structure ? p.unknown : NAN;
+      each.probability = calibrated(each.probability, result_.practice);
+    }
+    for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
+      *each = calibrated(*each, result_.practice);
+    agree(result_.candidates, result_.verdict);
+    result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
+  }
+
+  /// The most probable causes beside structure of no known one.
+  Hypothesis best_with_structure() const {
+    for (const Hypothesis& h : posterior_.hypotheses)
+      if (bench_->structure(h.structure).kind > 0) return h;
+    return {};
+  }
+
   /// Every cause on rows without the false ones, until neither these nor the noise change.
   void weigh() {
     for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
@@ -70,17 +93,18 @@ class Diagnostician {
       bench_ = std::make_unique<EvidenceEvaluator>(
           view_.whitened(),
           structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
-                     comparable_readings(view_.geometry(), data_.rows.q)),
+                     comparable_readings(view_.geometry(), data_.rows.q),
+                     noise_of_visits(data_.rows, rows, view_.left())),
           view_.candidates(), view_.parameters(), options_.search);
       posterior_ = bench_->search();
-      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms ||
-          !std::isfinite(posterior_.log_total)) {
+      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms) {
         result_.problem =
             "too few rows for a diagnosis: beyond what calibration takes they leave " +
             format_number(std::floor(bench_->marginal_likelihood(0).freedom())) +
             " equations, at least 10 are needed";
         return;
       }
+      expects(std::isfinite(posterior_.log_total), "the evidence of finite rows is finite");
       const Hypothesis& best = posterior_.hypotheses.front();
       const auto [columns, sigma] = MarginalLikelihood::unfold(bench_->terms(best));
       const double variance =
@@ -98,89 +122,6 @@ class Diagnostician {
       if (bench_->structure(h.structure).kind == 0)
         return std::hypot(1.0, bench_->structure(h.structure).kappa);
     return 1;
-  }
-
-  /// All that the rows say of the named causes and their like: from more rows than were weighed for
-  /// the name, and again with the noise that it leaves.
-  Correction grown(Hypothesis best) {
-    view_.weigh(kMostGrown);
-    const Candidates all = with_profiles(view_.candidates());
-    SearchRule rule = options_.search;
-    rule.noise_is_known = true;  // each pass takes it from what the one before leaves
-    Correction correction;
-    for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
-      const DenseEquations rows = view_.kept();
-      const EvidenceEvaluator bench(view_.whitened(),
-                                    noise_alone(data_.rows, rows, view_.by_joint(rows)), all,
-                                    view_.parameters(), rule);
-      best.structure = 0;
-      // What is named is in the model, even where all the rest together makes up for it.
-      best = with_named(bench.grow(best, kMostEffects), result_.verdict, all, posterior_);
-      const auto [columns, sigma] = MarginalLikelihood::unfold(bench.terms(best));
-      const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
-                              bench.noise_variance(0);
-      const bool again = view_.refine(view_.residuals(columns, sigma), variance);
-      if (again && pass + 1 < kDiagnosisPasses) continue;
-      for (size_t i = 0; i < best.candidates.size(); ++i) {
-        const Candidate& each = all.list[best.candidates[i]];
-        correction.push_back({each.entries.front(), {}, names(result_.verdict, each)});
-        bench.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
-      }
-      break;
-    }
-    result_.noise = view_.noise();
-    return correction;
-  }
-
-  /// The best explanation with what is named; beside an unknown one, of what is probable all the
-  /// same.
-  Hypothesis believed() const {
-    const CauseResult& verdict = result_.verdict;
-    if (verdict.effect == kNone) return {};
-    const auto candidate = [&](int c) -> const Candidate& { return view_.candidates().list[c]; };
-    const auto probable = [&](int c) { return posterior_.family.at(candidate(c).effect) > 0.5; };
-    const auto named = [&](int c) { return names(verdict, candidate(c)); };
-    for (const Hypothesis& h : posterior_.hypotheses)
-      if (!h.candidates.empty() &&
-          (verdict.effect == kUnknown ? std::ranges::all_of(h.candidates, probable)
-                                      : std::ranges::any_of(h.candidates, named)))
-        return h;
-    return {};
-  }
-
-  /// Geometry alone against geometry with what is named, and with everything found.
-  void close() {
-    const Hypothesis best = believed();
-    const double noise = result_.noise;
-    if (!best.candidates.empty()) result_.found = grown(best);
-    // What nobody knows is no noise; nor is what more of the named effects explains.
-    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
-    Closing closing = validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_,
-                                          result_.found, view_.site(), result_.noise, options_);
-    result_.judged = std::move(closing.judged);
-    result_.gap = gap_of(result_.judged, options_.seed);
-    result_.rejected = std::move(closing.rejected);
-    for (int row = 0; row < data_.rows.rows(); ++row)
-      if (view_.outlier()[row])
-        result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
-                                    "no explanation comes near it: a false reading"});
-    result_.model = closing.model;
-    result_.values = closing.all.fitted.state.xi;
-    result_.converged = closing.converged;
-    close_each();
-    result_.warnings = warnings_of(view_, data_, closing);
-  }
-
-  /// What each of the probable causes would close alone.
-  void close_each() {
-    int tried = 0;
-    for (CauseResult& each : result_.candidates) {
-      if (each.correction.empty() || each.probability < kTried || ++tried > kMostTried) continue;
-      const Closing alone =
-          validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_, each.correction,
-                              view_.site(), result_.noise, options_);
-      each.rms_after = gap_of(alone.judged, options_.seed).rms_all;
-    }
   }
 
   void tell(std::string_view stage, double share) const {
@@ -203,9 +144,14 @@ void judge_by_folds(const std::shared_ptr<const Robot>& robot, const DataSet& da
     if (progress) progress("judging by folds", 0.9 + 0.1 * fold / kFolds);
     const DataSet part = with_fold(data, fold);
     const Diagnosis of_fold = Diagnostician(robot, part, options, {}).run();
-    diagnosis.judged.insert(diagnosis.judged.end(), of_fold.judged.begin(), of_fold.judged.end());
+    int first = 0;  // the number of the fold's first block
+    for (const JudgedRow& row : diagnosis.judged) first = std::max(first, row.block + 1);
+    for (JudgedRow row : of_fold.judged) {
+      row.block += first;
+      diagnosis.judged.push_back(row);
+    }
   }
-  diagnosis.gap = gap_of(diagnosis.judged, options.seed);
+  diagnosis.gap = gap_of(diagnosis.judged, options.seed, diagnosis.floor_freedom);
   diagnosis.gap.judged_on = "folds";
 }
 

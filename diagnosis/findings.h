@@ -1,7 +1,9 @@
 // What a diagnosis may be asked and what it answers with.
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,11 @@ struct CauseResult {
   std::string shape = {};  ///< since when, how fast: "from 1840 s on"; empty where there is no such
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
+  /// Of the search on noise that it answers to, (1 + k) / (1 + B); NaN where it was not asked.
+  double p_value = std::numeric_limits<double>::quiet_NaN();
+  /// Of a named one: the share of the gap that it closes alone, and that it adds to the other named
+  /// ones.
+  std::optional<double> closes_alone = {}, closes_beside = {};
   Correction correction = {};  ///< with its values
 };
 
@@ -70,7 +77,7 @@ struct Where {
 struct NextStep {
   std::string what;
   std::vector<std::string> separates;
-  double probability_after = 0;
+  double probability_after = 0;  ///< NaN where it is not known
   Observations rows;  ///< to measure: readings, set, and what else shall hold (nothing measured)
 };
 
@@ -89,20 +96,24 @@ struct Diagnosis {
   Gap gap;
   std::vector<JudgedRow> judged;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
-  std::string why;      ///< the verdict in words
-  double p_value = 1;   ///< of the verdict's evidence under a resampled null
+  /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
+  std::vector<CauseResult> named;
+  std::string why;     ///< the verdict in words
+  double p_value = 1;  ///< of the verdict, or of what it was refused for; (1 + k) / (1 + B)
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
   SimulationBasedCalibration practice;
   Where where;
   std::vector<Detectable> detectable;
   std::vector<Untestable> untestable;
   std::vector<NextStep> next;
+  std::string next_why;  ///< why there is none of these, or why they promise little
   std::vector<Outlier> rejected;
   std::vector<std::string> warnings;
   Correction found;                    ///< the effects of `model`, in its order
   std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values
   Eigen::VectorXd values;
-  double noise = 0;  ///< m, 1 sigma of one scalar
+  double noise = 0;                                                ///< m, 1 sigma of one scalar
+  double floor_freedom = std::numeric_limits<double>::infinity();  ///< that it is known by
 };
 
 }  // namespace selfcal

@@ -49,6 +49,7 @@ struct SiteSet {
   bool touch = false;                                ///< a flat surface was touched
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
+  bool lengths = false;  ///< an instrument measured positions or lengths
 };
 
 /// Where and when the rows were taken; empty for a robot outside a data set.

@@ -21,6 +21,8 @@ struct Link {
 struct Mechanics {
   Eigen::Vector3d gravity{0, 0, -9.81};  ///< m/s^2, world frame
   std::vector<Link> links;               ///< from the world to the tool
+  /// The masses are a usual distribution of the whole robot's, no maker's figures.
+  bool masses_assumed = false;
 
   bool masses_known() const;
   /// Index of the link that joint `j` moves.

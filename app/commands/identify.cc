@@ -9,6 +9,7 @@
 #include "app/report/summary.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/site.h"
+#include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/search/shapes.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
@@ -55,8 +56,10 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   if (arguments.effects.empty()) return robot;
   ChosenEffects chosen = choose_effects(robot, data, arguments.effects);
   if (!chosen.problem.empty()) return tl::unexpected(chosen.problem);
+  if (data.order_is_time)
+    std::fputs("note: the rows carry no time: their order is taken for it\n", stderr);
   Problems problems;
-  const auto geometry = geometry_of(robot);
+  const auto geometry = with_mass_of_its_size(geometry_of(robot));
   std::vector<Node> entries = effect_entries(*robot);
   std::erase_if(entries, [&](const Node& each) { return is_asked(each, arguments.effects); });
   entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());

@@ -1,6 +1,8 @@
 // One function for each part of diagnosis.json, in the order of the file.
 #include "app/report/diagnosis_json.h"
 
+#include <cmath>
+
 #include "io/files/json_parts.h"
 
 namespace selfcal {
@@ -20,13 +22,19 @@ Json of_gap(const Gap& gap) {
                             {"noise_floor", known(gap.noise_floor)}});
   const auto add = [&](const Closed& closed, const char* fraction, const char* interval) {
     json[fraction] = closed.fraction ? finite(*closed.fraction) : Json(nullptr);
+    const bool bounded = closed.fraction && std::isfinite(closed.least + closed.most);
     json[interval] =
-        closed.fraction ? Json::array({finite(closed.least), finite(closed.most)}) : Json(nullptr);
+        bounded ? Json::array({finite(closed.least), finite(closed.most)}) : Json(nullptr);
   };
   add(gap.closed, "closed_fraction", "closed_interval");
   add(gap.closed_all, "closed_all", "closed_all_interval");
   json["judged_on"] = gap.judged_on;
   json["rows"] = gap.rows;
+  json["false_rows"] = gap.false_rows;
+  const Rms& all = gap.with_false_rows;
+  json["with_false_rows"] = Json::object({{"rms_before", known(all.before)},
+                                          {"rms_after", known(all.after)},
+                                          {"rms_all", known(all.all)}});
   return json;
 }
 
@@ -38,12 +46,22 @@ Json of_value(const NamedValue& p) {
                        {"usual", {p.usual_least, p.usual_most}}});
 }
 
-Json of_candidate(const CauseResult& cause, double p_value) {
+Json or_null(const std::optional<double>& value) { return value ? finite(*value) : Json(nullptr); }
+
+Json of_named(const CauseResult& cause) {
+  return Json::object({{"effect", cause.effect},
+                       {"where", cause.where},
+                       {"probability", finite(cause.probability)},
+                       {"closes_alone", or_null(cause.closes_alone)},
+                       {"closes_beside", or_null(cause.closes_beside)}});
+}
+
+Json of_candidate(const CauseResult& cause) {
   return Json::object({{"effect", cause.effect},
                        {"where", cause.where},
                        {"shape", cause.shape},
                        {"probability", finite(cause.probability)},
-                       {"p_value", finite(p_value)},
+                       {"p_value", finite(cause.p_value)},
                        {"rms_after", cause.rms_after > 0 ? finite(cause.rms_after) : Json(nullptr)},
                        {"survival", finite(cause.survival)},
                        {"visible", finite(cause.visible)},
@@ -120,9 +138,8 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
                                   {"probability", finite(diagnosis.verdict.probability)},
                                   {"p_value", finite(diagnosis.p_value)},
                                   {"why", diagnosis.why}});
-  json["candidates"] = array_of(diagnosis.candidates, [&](const CauseResult& each) {
-    return of_candidate(each, diagnosis.p_value);
-  });
+  json["verdict"]["named"] = array_of(diagnosis.named, of_named);
+  json["candidates"] = array_of(diagnosis.candidates, of_candidate);
   json["practice"] = Json::object({{"sessions", diagnosis.practice.sessions},
                                    {"right", finite(diagnosis.practice.right)},
                                    {"false_alarms", finite(diagnosis.practice.false_alarms)},
@@ -142,6 +159,7 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
                          {"separates", each.separates},
                          {"probability_after", finite(each.probability_after)}});
   });
+  json["next_why"] = diagnosis.next_why;
   json["rejected"] = array_of(diagnosis.rejected, [](const Outlier& each) {
     return Json::object({{"row", each.row},
                          {"set", each.set},
@@ -166,7 +184,10 @@ nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data
       Json one = {{"set", data.sets[each.rows.set[row]].name}, {"q", cells(each.rows.q, row)}};
       if (each.rows.wrench.rows() > 0) one["wrench"] = cells(each.rows.wrench, row);
       if (each.rows.velocity.rows() > 0) one["dq"] = cells(each.rows.velocity, row);
-      if (each.rows.time.size() > 0) one["time"] = finite(each.rows.time[row]);
+      if (each.rows.time.size() > 0 && !data.order_is_time)
+        one["time"] = finite(each.rows.time[row]);
+      if (!each.rows.repeat.empty() && each.rows.repeat[row] >= 0)
+        one["repeat"] = "n" + std::to_string(each.rows.repeat[row]);
       rows.push_back(std::move(one));
     }
     return Json::object({{"what", each.what},
@@ -174,6 +195,7 @@ nlohmann::ordered_json next_json(const Diagnosis& diagnosis, const DataSet& data
                          {"probability_after", finite(each.probability_after)},
                          {"rows", rows}});
   });
+  json["why"] = diagnosis.next_why;
   return json;
 }
 

@@ -65,6 +65,8 @@ std::string gap_table(const Diagnosis& diagnosis) {
       gap.rows, 1e3 * gap.rms_nominal);
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += " " + closed + ", each with its 95 % interval.";
+  if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())
+    text += " " + left_out + ".";
   return text + "</p>";
 }
 
@@ -135,13 +137,11 @@ std::string limits(const Diagnosis& diagnosis) {
 }
 
 std::string next(const Diagnosis& diagnosis) {
-  if (diagnosis.next.empty()) return "";
+  if (diagnosis.next.empty() && diagnosis.next_why.empty()) return "";
   std::string text = "<h2>What to measure next</h2><ul>";
   for (const NextStep& step : diagnosis.next)
-    text += "<li>" + escaped(step.what) +
-            printed(": then %.0f %% sure, of ", 100 * step.probability_after) +
-            escaped_list(step.separates);
-  return text + "</ul>";
+    text += "<li>" + escaped(step.what + next_in_words(step));
+  return text + "</ul><p class=muted>" + escaped(diagnosis.next_why) + "</p>";
 }
 
 /// "1.2e-03 ± 1e-05 rad", for each value on a line of its own.

@@ -24,6 +24,8 @@ std::string gap_lines(const Diagnosis& diagnosis) {
                   gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += "     " + closed + "\n";
+  if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())
+    text += "     " + left_out + "\n";
   return text;
 }
 
@@ -63,11 +65,10 @@ std::string summary(const Diagnosis& diagnosis) {
   const std::string where = share_line("by joint:", diagnosis.where.by_joint) +
                             share_line("by set:  ", diagnosis.where.by_set);
   if (!where.empty()) text += "\nWhere what calibration leaves lies:\n" + where;
-  if (!diagnosis.next.empty()) {
-    text += "\nNext:\n";
-    for (const NextStep& step : diagnosis.next)
-      text += "  " + step.what + printed(" (then %.0f %% sure)\n", 100 * step.probability_after);
-  }
+  if (!diagnosis.next.empty()) text += "\nNext:\n";
+  for (const NextStep& step : diagnosis.next) text += "  " + step.what + next_in_words(step) + "\n";
+  if (!diagnosis.next_why.empty())
+    text += (diagnosis.next.empty() ? "\nNext: nothing; " : "  ") + diagnosis.next_why + "\n";
   if (!diagnosis.rejected.empty())
     text += printed("\n%d rows put aside as false (diagnosis.json names them)\n",
                     static_cast<int>(diagnosis.rejected.size()));

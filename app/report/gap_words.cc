@@ -19,8 +19,10 @@ bool only_named(const Diagnosis& diagnosis) {
 double percent(double share) { return std::round(100 * share) + 0.0; }
 
 std::string closed_by(const Closed& closed, const std::string& words) {
-  return printed("%.0f %% ", percent(*closed.fraction)) + words +
-         printed(" (%.0f to %.0f %%)", percent(closed.least), percent(closed.most));
+  const std::string share = printed("%.0f %% ", percent(*closed.fraction)) + words;
+  if (!std::isfinite(closed.least + closed.most))
+    return share + " (so near the noise that no interval can be given)";
+  return share + printed(" (%.0f to %.0f %%)", percent(closed.least), percent(closed.most));
 }
 
 }  // namespace
@@ -38,10 +40,11 @@ std::string places_in_words(const std::vector<std::string>& where) {
 }
 
 std::string named_in_words(const Diagnosis& diagnosis) {
-  const CauseResult& verdict = diagnosis.verdict;
-  if (!names_effect(verdict.effect)) return "";
-  return effect_in_words(verdict.effect) + places_in_words(verdict.where) +
-         (only_named(diagnosis) ? " (named; nothing else was found)" : " (named)");
+  std::string text;
+  for (const CauseResult& each : diagnosis.named)
+    text += (text.empty() ? "" : "; ") + effect_in_words(each.effect) + places_in_words(each.where);
+  if (text.empty()) return "";
+  return text + (only_named(diagnosis) ? " (named; nothing else was found)" : " (named)");
 }
 
 std::string found_in_words(const Diagnosis& diagnosis) {
@@ -55,9 +58,32 @@ std::string found_in_words(const Diagnosis& diagnosis) {
          which + ")";
 }
 
+std::string false_rows_in_words(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (gap.false_rows == 0) return "";
+  const bool one = gap.false_rows == 1;
+  std::string text =
+      printed("%d row%s kept aside that no model comes near %s left out; with %s ", gap.false_rows,
+              one ? "" : "s", one ? "is" : "are", one ? "it" : "them");
+  text += printed("%.4g mm calibrated", 1e3 * gap.with_false_rows.before);
+  if (!diagnosis.named.empty())
+    text += printed(", %.4g mm with what is named", 1e3 * gap.with_false_rows.after);
+  if (!diagnosis.found.empty())
+    text += printed(", %.4g mm with everything found", 1e3 * gap.with_false_rows.all);
+  return text;
+}
+
+std::string next_in_words(const NextStep& step) {
+  std::string list;
+  for (const std::string& each : step.separates)
+    if (each != kUnknown) list += (list.empty() ? "" : " or ") + each;
+  if (std::isnan(step.probability_after)) return " (tells " + list + ")";
+  return printed(" (then %.0f %% sure, of ", 100 * step.probability_after) + list + ")";
+}
+
 std::string closed_in_words(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
-  const bool named = names_effect(diagnosis.verdict.effect);
+  const bool named = !diagnosis.named.empty();
   const bool found = !found_in_words(diagnosis).empty();
   std::string text;
   if (named && gap.closed.fraction)

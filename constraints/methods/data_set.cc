@@ -175,6 +175,7 @@ DataSet merged(const DataSet& before, const DataSet& after) {
     later.time.array() += before.rows.time.maxCoeff<Eigen::PropagateNumbers>() -
                           later.time.minCoeff<Eigen::PropagateNumbers>();
   all.rows = joined(before.rows, later);
+  all.order_is_time = before.order_is_time || after.order_is_time;
   return all;
 }
 

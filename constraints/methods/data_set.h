@@ -33,7 +33,9 @@ struct Set {
 struct DataSet {
   std::vector<Set> sets;
   Observations rows;
-  bool speeds = true;      ///< dq are velocities; false: only their signs mean something
+  bool speeds = true;  ///< dq are velocities; false: only their signs mean something
+  /// The file has no times: the order of the rows stands for them, a second from one to the next.
+  bool order_is_time = false;
   double target = 1.0e-3;  ///< end-position accuracy wanted in the workspace (m, 1 sigma)
   Workspace workspace = {};
 };

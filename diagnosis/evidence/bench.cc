@@ -11,7 +11,6 @@ namespace {
 constexpr double kLeastSeen = 1e-3;  ///< share that survives below which a candidate says nothing
 constexpr int kAgreements = 3;
 constexpr double kWorthwhile = 5;  ///< log evidence that a cause must bring to be reckoned with
-constexpr double kSlack = 0.25;    ///< of slack columns, over the main ones
 
 double log_add(double a, double b) {
   const double top = std::max(a, b);
@@ -80,7 +79,7 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
     for (const int k : candidate.slack) slack += rows.C.col(k).squaredNorm();
     for (const int k : candidate.slack) {
       block.columns.push_back(k);
-      unit.push_back(slack > 0 ? kSlack * scale * std::sqrt(whole / slack) : 0);
+      unit.push_back(slack > 0 ? candidate.doubt * scale * std::sqrt(whole / slack) : 0);
     }
     block.unit =
         Eigen::Map<const Eigen::VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));
@@ -182,7 +181,7 @@ double EvidenceEvaluator::evidence(int candidate) const {
                           : 0;
 }
 
-double EvidenceEvaluator::best_found() const {
+EvidenceEvaluator::Found EvidenceEvaluator::best_found() const {
   int home = 0;
   for (int s = 1; s < structures(); ++s)
     if (structure(s).kind == 0 &&
@@ -191,9 +190,10 @@ double EvidenceEvaluator::best_found() const {
   const Hypothesis none{
       {}, home, marginal_likelihoods_[home].log_evidence({}) + log_prior({}, home), {}};
   const Hypothesis one = with_best(none, marginal_likelihoods_[home]);
-  if (one.candidates.empty()) return -INFINITY;
+  if (one.candidates.empty()) return {none, -INFINITY};
   const Hypothesis two = with_best(one, marginal_likelihoods_[home].given(terms(one)));
-  return std::max(one.log_weight, two.log_weight) - none.log_weight;
+  const Hypothesis& best = two.log_weight > one.log_weight ? two : one;
+  return {best, best.log_weight - none.log_weight};
 }
 
 /// `h` and one candidate more, `rest` being what `h` leaves.

@@ -10,11 +10,13 @@
 namespace selfcal {
 namespace {
 
-constexpr int kMoments = 24;    ///< at which a step may have happened
-constexpr int kFewTimes = 40;   ///< up to which it may have happened between any two
-constexpr int kMostWaves = 64;  ///< a turn
-constexpr int kProfile = 30;    ///< waves a turn, of a profile over the whole turn
-constexpr int kFewestRows = 8;  ///< of a surface that is to show its form or its shift
+constexpr int kMoments = 24;      ///< at which a step may have happened
+constexpr int kFewTimes = 40;     ///< up to which it may have happened between any two
+constexpr int kMostWaves = 64;    ///< a turn
+constexpr int kProfile = 30;      ///< waves a turn, of a profile over the whole turn
+constexpr double kWarms = 0.2;    ///< K
+constexpr double kAssumed = 0.6;  ///< doubt of masses that are usual ones, over their torques
+constexpr int kFewestRows = 8;    ///< of a surface that is to show its form or its shift
 
 Node entry(std::string_view effect, const std::string& at) {
   Node node = Node::map();
@@ -58,7 +60,9 @@ class Maker {
     }
     joint_ = -1;
     of_time();
+    of_tool();
     of_touch();
+    of_devices();
     spread_priors();
     return std::move(all_);
   }
@@ -99,6 +103,7 @@ class Maker {
       const Node stiff = entry("joint_compliance", at);
       add({stiff});
       add({stiff, with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      if (statics->mechanics().masses_assumed) all_.list.back().doubt = kAssumed;
       add({entry("link_compliance", at)});
     } else if (loads) {
       add({with(entry("joint_compliance", at), "lumps", std::string("true"))});
@@ -149,12 +154,38 @@ class Maker {
       cannot("base_drift", "base", "the rows carry no time");
     }
     if (!robot_.statics()) return cannot("thermal_expansion", "", std::string(kNoStatics));
-    if (data_.rows.temperature.size() == 0 || !spreads(data_.rows.temperature, 0.2))
+    if (!warms())
       return cannot("thermal_expansion", "", "the rows carry no temperatures that change");
     add({entry("thermal_expansion", "")});
     for (const double share : {0.125, 0.25, 0.5, 1.0})
       if (site_.end > site_.begin)
         add({with(entry("thermal_expansion", ""), "lag", share * (site_.end - site_.begin))});
+  }
+
+  void of_tool() {
+    const std::vector<double> at = moments(-1);
+    for (const double moment : at) add({with(entry("tool_shift", "probe"), "moment", moment)});
+    if (at.empty()) cannot("tool_shift", "probe", "the rows carry no time");
+    const Statics* statics = robot_.statics();
+    if (!statics) return cannot("tool_compliance", "probe", std::string(kNoStatics));
+    if (statics->mechanics().gravity.norm() > 0 || site_.loads)
+      add({entry("tool_compliance", "probe")});
+    else
+      cannot("tool_compliance", "probe", "without gravity the rows carry no loads");
+  }
+
+  /// Instruments that measure lengths, whose unit may be off or grow with the air's temperature.
+  void of_devices() {
+    for (size_t s = 0; s < site_.sets.size(); ++s) {
+      const SiteSet& set = site_.sets[s];
+      if (!set.lengths || rows_of(static_cast<int>(s)) < kFewestRows) continue;
+      add({entry("scale_error", set.name)});
+      if (warms()) add({with(entry("scale_error", set.name), "by", std::string("temperature"))});
+    }
+  }
+
+  bool warms() const {
+    return data_.rows.temperature.size() > 0 && spreads(data_.rows.temperature, kWarms);
   }
 
   void of_touch() {

@@ -20,6 +20,7 @@ struct Candidate {
   std::vector<Node> entries = {};
   std::vector<int> main = {};   ///< its parameters, counted over all candidates' effects
   std::vector<int> slack = {};  ///< parameters that only take up what the main ones have wrong
+  double doubt = 0.25;          ///< size of those, together, over the main ones
   int joint = -1;               ///< at which it acts; -1 elsewhere
   std::string needs = {};       ///< what rows must have so that it can be seen
   double log_prior = 0;         ///< of the place and the shape within the family

@@ -8,9 +8,12 @@
 #include "diagnosis/evidence/discrepancy.h"
 
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <span>
 
+#include "diagnosis/evidence/visits.h"
+#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -29,13 +32,19 @@ constexpr double kJoints = 1.0;                          ///< rad
 constexpr double kTurned = 2.0;                          ///< rad, of errors of one joint
 constexpr double kPlace = 0.4;                           ///< m
 constexpr double kTime = 0.1;                            ///< of the whole
+constexpr double kOfVisits[] = {1, 0.5, 0};              ///< shares of a visit's noise
 
 class Kernel {
  public:
   Kernel(const Observations& data, const DenseEquations& rows,
          const std::vector<Eigen::Isometry3d>& ends, Eigen::MatrixXd by_joint,
          const Eigen::MatrixXd& alike)
-      : data_(data), rows_(rows), ends_(ends), by_joint_(std::move(by_joint)), alike_(alike) {
+      : data_(data),
+        rows_(rows),
+        ends_(ends),
+        by_joint_(std::move(by_joint)),
+        alike_(alike),
+        visit_(visits(data)) {
     std::vector<double> times;  // a row need not have one
     std::ranges::copy_if(data.time, std::back_inserter(times),
                          [](double t) { return std::isfinite(t); });
@@ -49,8 +58,8 @@ class Kernel {
     return closeness != KernelDomain::time || span_ > 0;
   }
 
-  /// Covariance of noise of one and of the readings' rounding.
-  Eigen::MatrixXd rounded() const {
+  /// Covariance of noise of one, of so much of the visits' own noise and of the readings' rounding.
+  Eigen::MatrixXd noise(double of_visits) const {
     const Eigen::MatrixXd rounding = by_joint_ * (reading_steps(data_.q) / 2).asDiagonal();
     const auto n = static_cast<Eigen::Index>(rows_.row.size());
     Eigen::MatrixXd K = Eigen::MatrixXd::Identity(n, n);
@@ -62,6 +71,8 @@ class Kernel {
         for (Eigen::Index k = 0; k < rounding.cols(); ++k)
           if (data_.q(a, k) == data_.q(b, k)) shared += rounding(i, k) * rounding(j, k);
         K(i, j) += shared / 3;  // uniform within half a digit either way
+        if (visit_[a] == visit_[b])
+          K(i, j) += of_visits * of_visits * direction_.row(i).dot(direction_.row(j));
         if (i != j) K(j, i) = K(i, j);
       }
     return K;
@@ -124,10 +135,11 @@ class Kernel {
   }
 
   double close(KernelDomain closeness, int a, int b) const {
-    if (repeats(a, b)) return 1;
+    // Repeats that lie minutes apart are as far from each other as that: no closeness knows of
+    // another one, or the covariance would be none.
     switch (closeness) {
       case KernelDomain::same:
-        return 0;
+        return repeats(a, b) ? 1 : 0;
       case KernelDomain::joints:
         return bell((alike_.row(a) - alike_.row(b)).squaredNorm() / (kJoints * kJoints));
       case KernelDomain::place:
@@ -147,9 +159,19 @@ class Kernel {
   const std::vector<Eigen::Isometry3d>& ends_;
   const Eigen::MatrixXd by_joint_;
   const Eigen::MatrixXd& alike_;
+  const std::vector<int> visit_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
 };
+
+/// Its lower Cholesky factor.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
+  Eigen::MatrixXd root = cholesky_root(covariance);
+  const Eigen::VectorXd missing = root.rowwise().squaredNorm() - covariance.diagonal();
+  expects((missing.array().abs() <= 1e-6 * covariance.diagonal().array()).all(),
+          "what rows share is a covariance");
+  return root;
+}
 
 }  // namespace
 
@@ -192,37 +214,64 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 }
 
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
-                                               const Eigen::MatrixXd& by_joint) {
-  return {{0, 0, cholesky_root(Kernel(data, rows, {}, by_joint, data.q).rounded()), 1, 1}};
+                                               const Eigen::MatrixXd& by_joint, double of_visits) {
+  const Kernel kernel(data, rows, {}, by_joint, data.q);
+  return {{0, of_visits, root_of(kernel.noise(of_visits)), 1, 1}};
 }
 
-std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
-                                              const std::vector<Eigen::Isometry3d>& ends,
-                                              const Eigen::MatrixXd& by_joint,
-                                              const Eigen::MatrixXd& alike) {
-  const Kernel kernel(data, rows, ends, by_joint, alike);
-  const Eigen::MatrixXd noise = kernel.rounded();
+namespace {
+
+/// Noise, and what a configuration's repeats share of it; where visits have a noise of their own,
+/// all of that, half of it and none: some of what lies between two visits may have a cause.
+void add_noise(const Kernel& kernel, double of_visits, std::vector<DiscrepancyCovariance>& list) {
   const Eigen::MatrixXd same = kernel.of(KernelDomain::same);
-  std::vector<DiscrepancyCovariance> list;
-  for (const auto& [kappa, probability] : kShared)
-    list.push_back({0, kappa, cholesky_root(noise + kappa * kappa * same), 1, probability});
+  for (const double share : kOfVisits) {
+    const double visits = share * of_visits;
+    const Eigen::MatrixXd noise = kernel.noise(visits);
+    const double once = 1 + visits * visits;  // variance of one visit
+    for (const auto& [kappa, probability] : kShared)
+      list.push_back({0, std::sqrt(visits * visits + kappa * kappa * once),
+                      root_of(noise + kappa * kappa * once * same), 1,
+                      of_visits > 0 ? probability / std::size(kOfVisits) : probability});
+    if (of_visits == 0) return;
+  }
+}
+
+/// What no known effect explains, beside the noise.
+void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
+                  std::vector<DiscrepancyCovariance>& list) {
+  const Eigen::MatrixXd noise = kernel.noise(of_visits);
+  const double once = 1 + of_visits * of_visits;
+  const Eigen::MatrixXd same = once * kernel.of(KernelDomain::same);
   const Eigen::MatrixXd usual = noise + kUsual * kUsual * same;
   for (const KernelDomain closeness :
        {KernelDomain::same, KernelDomain::joints, KernelDomain::place, KernelDomain::time}) {
     if (!kernel.possible(closeness)) continue;
     const bool alone = closeness == KernelDomain::same;
-    const Eigen::MatrixXd K = alone ? same : kernel.of(closeness);
+    const Eigen::MatrixXd K = once * kernel.of(closeness);
     const auto sizes = alone ? std::span<const double>(kMore) : std::span<const double>(kSizes);
     for (const double kappa : sizes)
       list.push_back({static_cast<int>(closeness), kappa,
-                      cholesky_root((alone ? noise : usual) + kappa * kappa * K), 1, 1});
+                      root_of((alone ? noise : usual) + kappa * kappa * K), 1, 1});
   }
-  for (Eigen::Index joint = 0; joint < by_joint.cols(); ++joint) {
-    const Eigen::MatrixXd K = kernel.of_joint(joint);
+  for (Eigen::Index joint = 0; joint < joints; ++joint) {
+    const Eigen::MatrixXd K = once * kernel.of_joint(joint);
     for (const double kappa : kOfJoint)
       list.push_back({static_cast<int>(KernelDomain::turned), kappa,
-                      cholesky_root(usual + kappa * kappa * K), 1, 1});
+                      root_of(usual + kappa * kappa * K), 1, 1});
   }
+}
+
+}  // namespace
+
+std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
+                                              const std::vector<Eigen::Isometry3d>& ends,
+                                              const Eigen::MatrixXd& by_joint,
+                                              const Eigen::MatrixXd& alike, double of_visits) {
+  const Kernel kernel(data, rows, ends, by_joint, alike);
+  std::vector<DiscrepancyCovariance> list;
+  add_noise(kernel, of_visits, list);
+  add_unknowns(kernel, of_visits, by_joint.cols(), list);
   double unknown = 0;
   for (const DiscrepancyCovariance& each : list) unknown += each.kind > 0;
   for (DiscrepancyCovariance& each : list)

@@ -13,7 +13,7 @@ namespace selfcal {
 
 /// What close means.
 enum class KernelDomain {
-  same = 1,    ///< only immediate repeats: anything that a configuration brings along
+  same = 1,    ///< only repeats: anything that a configuration brings along, at every visit
   joints = 2,  ///< similar joint readings
   place = 3,   ///< near each other in the cell
   time = 4,    ///< soon after each other, as the tool sees it: of the base it would be a drift
@@ -21,25 +21,26 @@ enum class KernelDomain {
 };
 std::string_view to_string(KernelDomain closeness);
 
-/// Noise alone first (and noise that immediate repeats share a part of), then every closeness at
-/// several sizes over the noise. `rows` are the
-/// equations that the workbench sees, `ends` the endpoint's pose by row of the data set.
-/// `by_joint` (equations x joints) is what an error of each joint's reading moves an equation. That
-/// of half the reading's last digit is shared by rows of one reading, however often they are
-/// repeated.
-/// `alike` (rows x joints) are the readings as they are compared, see comparable_readings.
+/// Noise alone first (and noise that repeats share a part of), then every closeness at several
+/// sizes over the noise. `of_visits` is the noise from visit to visit over that of immediate
+/// repeats, see noise_of_visits. `rows` are the equations that the workbench sees, `ends` the
+/// endpoint's pose by row of the data set. `by_joint` (equations x joints) is what an error of each
+/// joint's reading moves an equation. That of half the reading's last digit is shared by rows of
+/// one reading, however often they are repeated. `alike` (rows x joints) are the readings as they
+/// are compared, see comparable_readings.
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
                                               const Eigen::MatrixXd& by_joint,
-                                              const Eigen::MatrixXd& alike);
+                                              const Eigen::MatrixXd& alike, double of_visits = 0);
 
 /// Readings `q` (rows x joints) as angles: of a joint that slides, half a turn for all that it
 /// moves in these rows.
 Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q);
 
-/// Only the first of these.
+/// Only noise, its visits' own included.
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
-                                               const Eigen::MatrixXd& by_joint);
+                                               const Eigen::MatrixXd& by_joint,
+                                               double of_visits = 0);
 
 /// Step to which each joint's readings are rounded (rad or m): the largest of 1, 2, 5 times a power
 /// of ten that they are all multiples of; 0 below 1e-9.

@@ -6,6 +6,7 @@
 #include "constraints/site.h"
 #include "constraints/statistics.h"
 #include "diagnosis/evidence/rows.h"
+#include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/findings.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
@@ -36,7 +37,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
                                  const DiagnosisOptions& options, const Progress& progress)
     : data_(data),
       most_rejected_(options.most_rejected),
-      geometry_(geometry_of(std::move(robot))),
+      geometry_(with_mass_of_its_size(geometry_of(std::move(robot)))),
       site_(site_of(*geometry_, data)),
       candidates_(selfcal::candidates(*geometry_, data, site_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
@@ -54,6 +55,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
       extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
       std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
   put_aside_ = fitted.noise.outlier;
+  left_ = all_.y;
   weigh(kMostWeighed);
 
   nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
@@ -78,11 +80,15 @@ void LinearisedModel::weigh(double most) {
   weighed_ = weighed_rows(data_.rows, static_cast<double>(all_.row.size()), most);
 }
 
-DenseEquations LinearisedModel::kept() const {
+std::vector<char> LinearisedModel::taking_part() const {
   std::vector<char> take = weighed_;
   for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !put_aside_[row];
-  return selfcal::kept(all_, take);
+  return take;
 }
+
+DenseEquations LinearisedModel::kept() const { return selfcal::kept(all_, taking_part()); }
+
+Eigen::VectorXd LinearisedModel::left() const { return left_(equations_of(all_, taking_part())); }
 
 Whitened LinearisedModel::of(const DenseEquations& rows) const {
   Whitened out;
@@ -156,6 +162,7 @@ bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) 
                most_rejected_);
   if (outlier == put_aside_ && std::abs(variance - 1) < 0.1) return false;
   put_aside_ = std::move(outlier);
+  left_ = residuals;
   scale_ *= std::sqrt(variance);
   return true;
 }

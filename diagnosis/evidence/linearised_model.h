@@ -47,6 +47,8 @@ class LinearisedModel {
   /// leverage.
   Eigen::VectorXd geometry_leaves(const Whitened& rows) const;
   const std::vector<char>& outlier() const { return put_aside_; }
+  /// Times are places in the file: see DataSet.
+  bool order_is_time() const { return data_.order_is_time; }
   /// As known so far, by set.
   std::vector<Scale> noise_of_sets() const;
   /// 1 sigma of one scalar (m), pooled over the sets.
@@ -58,6 +60,9 @@ class LinearisedModel {
   /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of every
   /// row, put aside or not, when fitted to the kept ones; whitened at the current scale.
   Eigen::VectorXd residuals(const std::vector<int>& effects, const Eigen::VectorXd& prior) const;
+  /// What the best explanation so far leaves, by equation of kept(); at first
+  /// the geometry's fit.
+  Eigen::VectorXd left() const;
   /// Takes the noise from the variance of the best explanation and puts aside the rows whose
   /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
   bool refine(const Eigen::VectorXd& residuals, double variance);
@@ -68,6 +73,8 @@ class LinearisedModel {
   void weigh(double most);
 
  private:
+  /// By row: weighed and not put aside.
+  std::vector<char> taking_part() const;
   Whitened of(const DenseEquations& rows) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.
   void bound_noise();
@@ -86,6 +93,7 @@ class LinearisedModel {
   std::vector<Scale> noise_;     ///< by set, at a scale of one
   std::vector<char> weighed_;    ///< by row: takes part in choosing the causes
   std::vector<char> put_aside_;  ///< by row of the data set
+  Eigen::VectorXd left_;         ///< by equation of all()
   double scale_ = 1;
   double least_ = 0;  ///< variance of the noise, at least, at a scale of one
 };

@@ -105,13 +105,13 @@ std::pair<std::vector<int>, Eigen::VectorXd> MarginalLikelihood::unfold(
           Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))};
 }
 
-double MarginalLikelihood::of_noise(double left) const {
+double MarginalLikelihood::of_noise(double left, double freedom) const {
   left = std::max(left, 1e-300);
-  const double log = -nu_ / 2 * std::log(left);
+  const double log = -freedom / 2 * std::log(left);
   if (least() <= 0) return log;
   const double value = left / least();
-  const bool far_above = value > nu_ + 10 * std::sqrt(2 * nu_) + 50;  // where the probability is 1
-  return far_above ? log : log + log_chi_square_below(value, nu_);
+  const double surely = freedom + 10 * std::sqrt(2 * freedom) + 50;  // where the probability is 1
+  return value > surely ? log : log + log_chi_square_below(value, freedom);
 }
 
 double MarginalLikelihood::variance(double left) const {
@@ -119,7 +119,7 @@ double MarginalLikelihood::variance(double left) const {
 }
 
 double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
-  if (terms.empty()) return constant_ + of_noise(yy_);
+  if (terms.empty()) return constant_ + of_noise(yy_, nu_);
   const Block& only = *terms.front().block;
   if (terms.size() > 1 || only.group < 0 || only.columns.size() > kMost) {
     const std::vector<int> columns = unfold(terms).first;
@@ -142,7 +142,7 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
     explained += s.z[i] * s.z[i];
     half_log_det += std::log(s.L[i][i]);
   }
-  const double log = constant_ - half_log_det + of_noise(yy_ - explained);
+  const double log = constant_ - half_log_det + of_noise(yy_ - explained, nu_);
   if (only.positive.empty()) return log;
   using Rows = Eigen::Matrix<double, kMost, kMost, Eigen::RowMajor>;
   return log + of_signs(terms, Eigen::Map<const Rows>(&s.L[0][0]).topLeftCorner(s.n, s.n),
@@ -175,8 +175,41 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms,
                             Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
   const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
-  return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - z.squaredNorm()) +
+  return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - z.squaredNorm(), nu_) +
          of_signs(terms, L, z);
+}
+
+double MarginalLikelihood::log_evidence_of(const Eigen::VectorXd& y) const {
+  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(fixed_->rows->pull.size());
+  return constant_ + of_noise(beyond_geometry(y, no_pull).squaredNorm(), nu_);
+}
+
+double MarginalLikelihood::gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
+                                          const std::vector<int>& out) const {
+  if (out.empty() || terms.empty()) return 0;
+  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(fixed_->rows->pull.size());
+  const auto [columns, D] = unfold(terms);
+  Eigen::MatrixXd X(fixed_->Q.rows(), D.size() + 1);  // of the terms, then of y
+  for (Eigen::Index i = 0; i < D.size(); ++i)
+    X.col(i) = D[i] * beyond_geometry(fixed_->rows->C.col(columns[i]), no_pull);
+  X.col(D.size()) = beyond_geometry(y, no_pull);
+  // An equation left out is one with an unknown of its own.
+  Eigen::MatrixXd free(X.rows(), static_cast<Eigen::Index>(out.size()));
+  for (size_t i = 0; i < out.size(); ++i)
+    free.col(static_cast<Eigen::Index>(i)) =
+        beyond_geometry(Eigen::VectorXd::Unit(y.size(), out[i]), no_pull);
+  const auto gain = [&](const Eigen::MatrixXd& of, double freedom) {
+    const auto c = of.leftCols(D.size());
+    const Eigen::MatrixXd L =
+        cholesky_root(Eigen::MatrixXd::Identity(D.size(), D.size()) + c.transpose() * c);
+    const double all = of.col(D.size()).squaredNorm();
+    const double explained = solve_lower(L, c.transpose() * of.col(D.size())).squaredNorm();
+    return of_noise(all - explained, freedom) - of_noise(all, freedom) -
+           L.diagonal().array().log().sum();
+  };
+  const Eigen::MatrixXd Q = orthogonal_columns(free).Q;
+  const Eigen::MatrixXd less = X - Q * (Q.transpose() * X).eval();
+  return gain(less, nu_ - static_cast<double>(out.size())) - gain(X, nu_);
 }
 
 MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms) const {

@@ -74,6 +74,12 @@ class MarginalLikelihood {
   double log_evidence(std::span<const Term> terms) const;
   /// The same for any number of terms, from G of their columns (as gram() gives it) in their order.
   double log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const;
+  /// What rows `y` (no strain on the priors) say without any term.
+  double log_evidence_of(const Eigen::VectorXd& y) const;
+  /// By how much the terms' log evidence over that of none grows when equations `out` of `y` are
+  /// left out; signs are not asked.
+  double gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
+                        const std::vector<int>& out) const;
   /// Posterior means of the terms' columns, one after the other, and their covariance over s^2.
   struct Estimate {
     Eigen::VectorXd mean;
@@ -108,9 +114,9 @@ class MarginalLikelihood {
   const double* block(int group) const { return &kept_[fixed_->at[group]]; }
   /// s^2 at least.
   double least() const { return fixed_->rows->least / fixed_->structure.noise; }
-  /// The part of the log evidence that the noise decides, where `left` squares (Q) are not
-  /// explained.
-  double of_noise(double left) const;
+  /// The part of the log evidence that the noise decides, where `left` squares (Q) of `freedom` are
+  /// not explained.
+  double of_noise(double left, double freedom) const;
   /// s^2 where `left` squares are not explained.
   double variance(double left) const;
   /// What the signs of the terms' parameters add to the log evidence. L: lower Cholesky factor of

@@ -73,11 +73,16 @@ std::vector<char> weighed_rows(const Observations& rows, double equations, doubl
   return take;
 }
 
-DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
+std::vector<int> equations_of(const DenseEquations& all, const std::vector<char>& take) {
   std::vector<int> rows;
   for (size_t i = 0; i < all.row.size(); ++i)
     if (all.row[i] < 0 || take[static_cast<size_t>(all.row[i])])
       rows.push_back(static_cast<int>(i));
+  return rows;
+}
+
+DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
+  const std::vector<int> rows = equations_of(all, take);
   DenseEquations some{all.W(rows, Eigen::all), all.y(rows), all.shift(rows, Eigen::all), {}};
   for (const int i : rows) some.row.push_back(all.row[i]);
   return some;

@@ -22,6 +22,8 @@ std::vector<Scale> declared_noise(const DataSet& data);
 /// configurations, with all their repeats; none that are kept aside to judge.
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most);
 
+/// Those of the rows that `take` (by row) holds, and those that no row carries.
+std::vector<int> equations_of(const DenseEquations& all, const std::vector<char>& take);
 /// The equations of the rows that `take` (by row) holds, and those that no row carries.
 DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 

@@ -7,6 +7,11 @@
 #include <set>
 
 namespace selfcal {
+namespace {
+
+constexpr size_t kMostFamilies = 5;  ///< that a set of causes grows to
+
+}  // namespace
 
 /// One search on a bench: what it has visited so far.
 class Search {
@@ -202,7 +207,8 @@ Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
             return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
           }))
         continue;
-      if (families.size() >= 3 && !families.contains(all_.list[static_cast<size_t>(c)].effect))
+      if (families.size() >= kMostFamilies &&
+          !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = with(h, c, rest);
       if (more.log_weight > best.log_weight + 1) best = std::move(more);

@@ -64,10 +64,13 @@ class EvidenceEvaluator {
   Posterior search() const { return search(rule_.extended_singles, rule_.extended_pairs); }
   /// So many singles extended to pairs, so many pairs to triples.
   Posterior search(int singles, int pairs) const;
-  /// Largest log evidence times prior of one candidate, or of that one and the best beside it, over
-  /// that of none, in the noise that explains the rows best without any: the statistic of the null
-  /// distribution.
-  double best_found() const;
+  /// The most probable candidate, or that one and the best beside it, in the noise that explains
+  /// the rows best without any: the statistic of the null distribution.
+  struct Found {
+    Hypothesis hypothesis;
+    double log_odds = 0;  ///< log evidence times prior over that of none
+  };
+  Found best_found() const;
 
   const MarginalLikelihood& marginal_likelihood(int structure) const {
     return marginal_likelihoods_[structure];
@@ -93,7 +96,7 @@ class EvidenceEvaluator {
   /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
   double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
-  /// at most three families.
+  /// at most five families.
   Hypothesis grow(Hypothesis h, size_t most) const;
 
   static const std::vector<double>& sizes();

@@ -6,11 +6,16 @@
 
 namespace selfcal {
 
-/// For the verdict and the cause most easily taken for it: each kind of further rows tried on
-/// paper. What a cause of the estimated size would leave when explained by the
-/// other one says how sure one would then be. The best ones, at most three; empty when nothing is
-/// confounded.
-std::vector<NextStep> next_steps(const LinearisedModel& view, const DataSet& data,
-                                 const Diagnosis& diagnosis);
+struct NextSteps {
+  std::vector<NextStep> steps;
+  std::string why;  ///< there are none, or they promise little; empty otherwise
+};
+
+/// For each named cause and the one most easily taken for it, and where none is named for the most
+/// probable one and noise: each kind of further rows tried on paper. What a cause of the estimated
+/// size would leave when explained by the other one says how sure one would then be. For structure
+/// that no known effect explains: what would show of which kind it is. The best ones; never none
+/// without a reason.
+NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis);
 
 }  // namespace selfcal

@@ -60,18 +60,19 @@ class Further {
         first_(data.rows.rows()) {}
 
   std::vector<CandidateRows> run() {
+    twice_at_once();
     with_payload();
     if (data_.rows.velocity.rows() > 0) {
       DataSet back = copies_, fast = copies_;
       back.rows.velocity.bottomRows(count()) *= -1;
       fast.rows.velocity.bottomRows(count()) *= kFaster;
-      add("approached from the other side", std::move(back));
+      add("approached from the other side", std::move(back), "play or an after-effect");
       if (data_.speeds) add("at three times the speed", std::move(fast));
     }
     if (data_.rows.time.size() > 0) {
       DataSet again = copies_;
       again.rows.time.tail(count()).setConstant(view_.site().end + 1);
-      add("once more at the end", std::move(again));
+      add("once more at the end", std::move(again), "what changes with time");
     }
     joints_elsewhere();
     constexpr double kHalf = std::numbers::pi;
@@ -83,9 +84,25 @@ class Further {
  private:
   Eigen::Index count() const { return copies_.rows.q.rows() - first_; }
 
-  void add(const std::string& how, DataSet both) {
+  void add(const std::string& how, DataSet both, const std::string& tells = {}) {
     const Eigen::Index more = both.rows.q.rows() - first_;
-    list_.push_back({"repeat " + std::to_string(more) + " rows " + how, std::move(both)});
+    list_.push_back({"repeat " + std::to_string(more) + " rows " + how, std::move(both), tells});
+  }
+
+  /// Each of the copies as a repeat of itself.
+  void twice_at_once() {
+    std::vector<int> rows(static_cast<size_t>(first_));
+    std::iota(rows.begin(), rows.end(), 0);
+    for (auto row = static_cast<int>(first_); row < copies_.rows.rows(); ++row)
+      rows.insert(rows.end(), 2, row);
+    DataSet twice = copies_;
+    twice.rows = taken(copies_.rows, rows);
+    std::vector<int>& repeat = twice.rows.repeat;
+    repeat.resize(rows.size(), -1);
+    const int taken_ids = repeat.empty() ? 0 : std::ranges::max(repeat) + 1;
+    for (auto i = static_cast<size_t>(first_); i < rows.size(); ++i)
+      repeat[i] = taken_ids + rows[i] - static_cast<int>(first_);
+    add("twice at once", std::move(twice), "how much is noise");
   }
 
   void with_payload() {
@@ -102,7 +119,8 @@ class Further {
       rows.wrench.row(row).head<3>() +=
           payload *
           (endpoint(rows.q.row(row).transpose()).at.R.transpose() * mechanics.gravity).transpose();
-    add("with a payload of " + format_number(payload) + " kg", std::move(loaded));
+    add("with a payload of " + format_number(payload) + " kg", std::move(loaded),
+        "what gives way to a load");
   }
 
   /// The ball that the touches of a set so far lie in: the surface may end there.
@@ -148,7 +166,7 @@ class Further {
       rows.q.row(rows_of[s][used[s]++]) = found.rows.q.row(i);
     }
     if (found.rows.rows() > 0)
-      add("with the joints elsewhere in their range", std::move(elsewhere));
+      add("with the joints elsewhere in their range", std::move(elsewhere), "where it lies");
   }
 
   Endpoint endpoint(const Eigen::VectorXd& q) const {

@@ -1,5 +1,5 @@
 // A judging row that no model comes near is a false one: it would drown every figure, is left
-// out of them and named.
+// out of them, named, and figures with it stand beside them.
 #include "diagnosis/report/holdout_validation.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "constraints/estimation/judgement.h"
 #include "constraints/statistics.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/validation/folds.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
 
@@ -49,7 +50,7 @@ struct Left {
   Judged nominal, geometric, named, whole;
 };
 
-/// The figures of the rows that some model comes near, and what is put aside.
+/// The figures of every judging row, and which of them no model comes near.
 void take_rows(const Left& left, const DataSet& data, double noise, Closing& closing) {
   // A set that only judges has a noise of its own: what its data sheet says, if it does.
   const Judged& whole = left.whole;
@@ -59,6 +60,7 @@ void take_rows(const Left& left, const DataSet& data, double noise, Closing& clo
     return row.lengths * std::pow(row.factor * (whole.aligned[row.set] ? nuisance : noise), 2);
   };
   const auto square = [](const RowResidual& row) { return row.length * row.length; };
+  const std::vector<int> block = blocks_of_judging(data);
   for (size_t i = 0; i < whole.check.size(); ++i) {
     const RowResidual& before = left.geometric.check[i];
     const RowResidual& after = left.named.check[i];
@@ -66,13 +68,13 @@ void take_rows(const Left& left, const DataSet& data, double noise, Closing& clo
     if (all.lengths == 0) continue;
     const double near = std::min({before.length, after.length, all.length});
     const double limit = chi_quantile(all.lengths, kFar);
-    if (near > kBeyond * limit * std::max(noise, whole.check_scale[all.set].length)) {
+    const bool false_reading =
+        near > kBeyond * limit * std::max(noise, whole.check_scale[all.set].length);
+    if (false_reading)
       closing.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
                                   "neither the geometry nor any effect found comes near it"});
-      continue;
-    }
-    closing.judged.push_back(
-        {square(left.nominal.check[i]), square(before), square(after), square(all), floor_of(all)});
+    closing.judged.push_back({square(left.nominal.check[i]), square(before), square(after),
+                              square(all), floor_of(all), block[all.row], false_reading});
   }
 }
 

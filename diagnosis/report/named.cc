@@ -3,19 +3,15 @@
 #include <algorithm>
 
 namespace selfcal {
+namespace {
 
-bool names(const CauseResult& verdict, const Candidate& candidate) {
-  return candidate.effect == verdict.effect &&
-         (verdict.where.empty() || std::ranges::count(verdict.where, candidate.at) > 0);
-}
-
-Hypothesis with_named(Hypothesis h, const CauseResult& verdict, const Candidates& all,
-                      const Posterior& posterior) {
-  if (!names_effect(verdict.effect)) return h;
-  CauseResult one{.effect = verdict.effect};
+/// `h` and what it lacks of one cause.
+void add_named(Hypothesis& h, const CauseResult& cause, const Candidates& all,
+               const Posterior& posterior) {
+  CauseResult one{.effect = cause.effect};
   const auto named = [&](int c) { return names(one, all.list[static_cast<size_t>(c)]); };
   const std::vector<std::string> anywhere{""};
-  for (const std::string& at : verdict.where.empty() ? anywhere : verdict.where) {
+  for (const std::string& at : cause.where.empty() ? anywhere : cause.where) {
     one.where.clear();
     if (!at.empty()) one.where.push_back(at);
     if (std::ranges::any_of(h.candidates, named)) continue;
@@ -27,6 +23,23 @@ Hypothesis with_named(Hypothesis h, const CauseResult& verdict, const Candidates
       break;
     }
   }
+}
+
+}  // namespace
+
+bool names(const CauseResult& cause, const Candidate& candidate) {
+  return candidate.effect == cause.effect &&
+         (cause.where.empty() || std::ranges::count(cause.where, candidate.at) > 0);
+}
+
+bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate) {
+  return std::ranges::any_of(named,
+                             [&](const CauseResult& each) { return names(each, candidate); });
+}
+
+Hypothesis with_named(Hypothesis h, const std::vector<CauseResult>& named, const Candidates& all,
+                      const Posterior& posterior) {
+  for (const CauseResult& each : named) add_named(h, each, all, posterior);
   return h;
 }
 

@@ -5,11 +5,12 @@
 
 namespace selfcal {
 
-/// The candidate is of the verdict's effect and at one of its places.
-bool names(const CauseResult& verdict, const Candidate& candidate);
+/// The candidate is of the cause's effect and at one of its places.
+bool names(const CauseResult& cause, const Candidate& candidate);
+bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate);
 
-/// `h` and what it lacks of what the verdict names, as the most probable hypothesis has that.
-Hypothesis with_named(Hypothesis h, const CauseResult& verdict, const Candidates& all,
+/// `h` and what it lacks of what is named, as the most probable hypothesis has that.
+Hypothesis with_named(Hypothesis h, const std::vector<CauseResult>& named, const Candidates& all,
                       const Posterior& posterior);
 
 }  // namespace selfcal

@@ -45,6 +45,21 @@ std::string of_noise(const LinearisedModel& view, const DataSet& data) {
          "is";
 }
 
+std::string of_masses(const LinearisedModel& view) {
+  const Statics* statics = view.geometry().statics();
+  if (!statics || !statics->mechanics().masses_assumed) return {};
+  double mass = 0;
+  for (const Link& link : statics->mechanics().links) mass += link.mass.value_or(0);
+  return "the file gives no masses of the links: usual ones are taken, " +
+         format_number(std::round(mass)) +
+         " kg moving; `mass:` and `payload:` of the data sheet, or those of the links, are better";
+}
+
+std::string of_order(const DataSet& data) {
+  if (!data.order_is_time) return {};
+  return "the rows carry no time: their order is taken for it, a second from one to the next";
+}
+
 }  // namespace
 
 std::string warning_of_own_effects(const Robot& robot) {
@@ -62,7 +77,7 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   if (gap.rows == 0)
     return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
            "not known";
-  const bool named = diagnosis.verdict.effect != kUnknown;
+  const bool named = diagnosis.verdict.effect != kUnknown || !diagnosis.named.empty();
   const bool worse = gap.rms_all > gap.rms_before;
   if (named && gap.rms_after >= gap.rms_before)
     return std::string(
@@ -88,7 +103,8 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
 std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
                                      const Closing& closing) {
   std::vector<std::string> list;
-  for (const std::string& each : {of_fits(closing), of_gears(view), of_noise(view, data)})
+  for (const std::string& each :
+       {of_fits(closing), of_gears(view), of_noise(view, data), of_order(data), of_masses(view)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -11,7 +11,8 @@ namespace selfcal {
 
 struct Diagnosis;
 
-/// Fits that failed, gear ratios that were off, noise that only a data sheet tells.
+/// Fits that failed, gear ratios that were off, noise that only a data sheet tells, rows without a
+/// time.
 std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
                                      const Closing& closing);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 
 #include "diagnosis/search/sign_flip_test.h"
 
@@ -19,16 +21,24 @@ constexpr size_t kMostExplaining = 20;  ///< candidates
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
-/// What the linear parameters do not say of an entry.
-std::string shape_in_words(const Node& entry) {
-  constexpr std::pair<const char*, const char*> kTold[] = {
-      {"moment", "from %.0f s on"}, {"settle", "settling in %.0f s"}, {"lag", "lagging by %.0f s"}};
-  for (const auto& [key, words] : kTold) {
+/// What the linear parameters do not say of an entry. Where the order of the rows is the time, row
+/// 1 is at 0 s.
+std::string shape_in_words(const Node& entry, bool order_is_time) {
+  constexpr struct {
+    const char *key, *seconds, *rows;
+    int first;  ///< row that stands for 0 s
+  } kTold[] = {{"moment", "from %.0f s on", "from row %.0f on", 1},
+               {"settle", "settling in %.0f s", "settling in %.0f rows", 0},
+               {"lag", "lagging by %.0f s", "lagging by %.0f rows", 0}};
+  for (const auto& [key, seconds, rows, first] : kTold) {
     const Node* field = entry.find(key);
     const auto value = field ? written_number(field->text) : std::nullopt;
     if (!value) continue;
     char text[64];
-    std::snprintf(text, sizeof text, words, *value);
+    if (order_is_time)
+      std::snprintf(text, sizeof text, rows, std::ceil(*value) + first);
+    else
+      std::snprintf(text, sizeof text, seconds, *value);
     return text;
   }
   return entry.find("half_waves") ? "wandering" : "";
@@ -110,7 +120,7 @@ class Teller {
   void add_parameters(int c, const MarginalLikelihood::Estimate& estimate, Eigen::Index first,
                       CauseResult& cause) const {
     Node entry = candidate(c).entries.front();
-    if (cause.shape.empty()) cause.shape = shape_in_words(entry);
+    if (cause.shape.empty()) cause.shape = shape_in_words(entry, view_.order_is_time());
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);
@@ -185,57 +195,7 @@ Shares shares(const EvidenceEvaluator& bench, const Posterior& posterior) {
   return {before - after, after - noise};
 }
 
-/// "backlash at j1 and j2".
-std::string with_places(const CauseResult& cause) {
-  std::string words = cause.effect;
-  for (size_t i = 0; i < cause.where.size(); ++i)
-    words += (i == 0 ? " at " : " and ") + cause.where[i];
-  return words;
-}
-
 }  // namespace
-
-std::string verdict_in_words(const Diagnosis& diagnosis) {
-  const CauseResult& verdict = diagnosis.verdict;
-  char text[200];
-  if (verdict.effect == kNone) {
-    const bool noise = diagnosis.p_value > DiagnosisOptions{}.name_below_p;
-    if (noise)
-      std::snprintf(text, sizeof text,
-                    "no cause is named: noise alone explains what calibration leaves (as much is "
-                    "found in %.2g of resampled rows)",
-                    diagnosis.p_value);
-    else
-      std::snprintf(text, sizeof text,
-                    "no cause is named: what calibration leaves may be noise (probability %.2g), "
-                    "though resampled rows show as much in %.2g of cases only",
-                    verdict.probability, diagnosis.p_value);
-    return text;
-  }
-  if (verdict.effect == kUnknown) {
-    std::string beside;
-    for (const CauseResult& each : diagnosis.candidates)
-      if (names_effect(each.effect) && each.probability > 0.5)
-        beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
-    return "there is structure that no known effect explains" + beside +
-           ": look at the machine, or repeat some configurations to be sure of the noise";
-  }
-  std::string words = with_places(verdict);
-  if (!verdict.shape.empty()) words += " (" + verdict.shape + ")";
-  for (size_t i = 0; i < verdict.confounded_with.size() && i < 3; ++i)
-    words +=
-        (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + verdict.confounded_with[i];
-  if (!verdict.confounded_with.empty()) words += ")";
-  std::snprintf(text, sizeof text, ", causes the gap (probability %.2f", verdict.probability);
-  words += text;
-  if (!verdict.confounded_with.empty()) {
-    std::snprintf(text, sizeof text, ", with these %.2f", verdict.together);
-    words += text;
-  }
-  std::snprintf(text, sizeof text, ", p %.2g)", diagnosis.p_value);
-  words += text;
-  return words;
-}
 
 std::string label(const std::string& effect, const std::string& at) {
   return at.empty() ? effect : effect + "@" + at;
@@ -272,16 +232,46 @@ CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& be
   return part.left > kMostLeft * (part.left + part.explained) ? unknown : known;
 }
 
-CauseResult decided(CauseResult named, const Posterior& posterior, double p,
+CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
                     const DiagnosisOptions& options) {
-  if (named.effect == kUnknown) return named;
-  // DiscrepancyCovariance of no known cause is no matter of signs: repeats of a configuration tell
-  // of it.
-  const bool noise_does_as_well = p > options.name_below_p;
-  if (named.effect != kNone && !noise_does_as_well) return named;
-  if (posterior.unknown > kSurelyUnknown)
+  const bool structure = p.unknown <= options.name_below_p;
+  if (named.effect == kUnknown && structure) return named;
+  if (names_effect(named.effect) && p.known <= options.name_below_p) return named;
+  if (named.effect != kUnknown && structure && posterior.unknown > kSurelyUnknown)
     return {.effect = kUnknown, .probability = posterior.unknown};
-  return {.effect = kNone, .probability = std::max(posterior.none, least_probability_of_none(p))};
+  const double noise = named.effect == kUnknown ? p.unknown : p.known;
+  return {.effect = kNone,
+          .probability = std::max(posterior.none, least_probability_of_none(noise))};
+}
+
+std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
+                                     const CauseResult& verdict, const ByNoise& p,
+                                     const DiagnosisOptions& options) {
+  std::vector<CauseResult> list;
+  if (verdict.effect == kNone) return list;
+  if (p.known <= options.name_below_p)
+    std::ranges::copy_if(causes, std::back_inserter(list), [&](const CauseResult& each) {
+      return names_effect(each.effect) && each.effect != verdict.effect &&
+             each.probability >= kSure;
+    });
+  std::ranges::stable_sort(list, std::ranges::greater{}, &CauseResult::visible);
+  if (names_effect(verdict.effect)) list.insert(list.begin(), verdict);
+  return list;
+}
+
+void agree(std::vector<CauseResult>& causes, CauseResult& verdict) {
+  const auto of = [&](const std::string& effect) {
+    return std::ranges::find(causes, effect, &CauseResult::effect);
+  };
+  const auto none = of(kNone);
+  if (verdict.effect == kNone && none != causes.end() && verdict.probability > none->probability) {
+    const double others = (1 - verdict.probability) / std::max(1 - none->probability, 1e-12);
+    for (CauseResult& each : causes) each.probability *= std::min(others, 1.0);
+    none->probability = verdict.probability;
+  }
+  std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
+  if (const auto own = of(verdict.effect); own != causes.end())
+    verdict.probability = own->probability;
 }
 
 }  // namespace selfcal

@@ -19,13 +19,25 @@ CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& be
                         const Posterior& posterior, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 
-/// `named` where the rows bear it: noise does as well with probability `p`, and then there is
-/// `none` or, without a known cause, structure.
-CauseResult decided(CauseResult named, const Posterior& posterior, double p,
+/// How often noise does as well: as a known cause, and as structure of no known one.
+struct ByNoise {
+  double known = 1, unknown = 1;
+};
+
+/// `named` where the rows bear it: where noise does as well too often, there is `none` or, without
+/// a known cause, structure.
+CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
                     const DiagnosisOptions& options);
 
-/// The verdict in a sentence or two.
-std::string verdict_in_words(const Diagnosis& diagnosis);
+/// What is named beside a verdict, which comes first: each known cause that is sure; the largest
+/// first. None where the verdict is `none`.
+std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
+                                     const CauseResult& verdict, const ByNoise& p,
+                                     const DiagnosisOptions& options);
+
+/// One probability for one thing: that of `none` among `causes` becomes the verdict's where that is
+/// none, the others' give way in proportion; then the verdict has that of its entry.
+void agree(std::vector<CauseResult>& causes, CauseResult& verdict);
 
 /// "joint_compliance@j2", or the effect alone.
 std::string label(const std::string& effect, const std::string& at);

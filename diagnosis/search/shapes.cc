@@ -6,6 +6,7 @@
 
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/visits.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
@@ -44,7 +45,9 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
   const LinearisedModel view(robot, data, options, {});
   const DenseEquations rows = view.kept();
   const Candidates all = with_profiles(view.candidates());
-  const EvidenceEvaluator bench(view.whitened(), noise_alone(data.rows, rows, view.by_joint(rows)),
+  const EvidenceEvaluator bench(view.whitened(),
+                                noise_alone(data.rows, rows, view.by_joint(rows),
+                                            noise_of_visits(data.rows, rows, view.left())),
                                 all, view.parameters(), options.search);
   for (const std::string& each : asked) {
     std::map<std::string, std::pair<double, int>> best;  // by place

@@ -4,38 +4,158 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 
+#include "diagnosis/evidence/rows.h"
+
 namespace selfcal {
+namespace {
+
+using SignRandom = std::mt19937_64;
+
+constexpr double kLeastOfRow = 0.05;  ///< of a row's noise beyond the geometry, that is scaled up
+
+double drawn_sign(SignRandom& random) { return (random() & 1) ? 1 : -1; }
+
+/// `residual` with one sign for each configuration, and one for each equation that no row carries.
+Eigen::VectorXd flipped(const Eigen::VectorXd& residual, const DenseEquations& kept,
+                        const Observations& data, SignRandom& random) {
+  std::map<std::pair<int, int>, double> sign;  // by repeat group, or by row
+  Eigen::VectorXd out = residual;
+  for (Eigen::Index e = 0; e < out.size(); ++e) {
+    const int row = kept.row[static_cast<size_t>(e)];
+    const bool repeated = row >= 0 && !data.repeat.empty() && data.repeat[row] >= 0;
+    const std::pair<int, int> key = repeated ? std::pair(1, data.repeat[row]) : std::pair(0, row);
+    const auto [found, made] = sign.try_emplace(key, 0.0);
+    if (made) found->second = drawn_sign(random);
+    out[e] *= found->second;
+  }
+  return out;
+}
+
+/// The search's own outliers, which it finds farther from its best explanation than noise reaches.
+class OutliersOfSearch {
+ public:
+  OutliersOfSearch(const DenseEquations& kept, const Whitened& rows, std::size_t count, double most)
+      : kept_(kept), rows_(rows), count_(count), most_(most) {}
+
+  /// How much the best of `bench`, which looks at `y`, gains by them.
+  double gain(const EvidenceEvaluator& bench, const EvidenceEvaluator::Found& best,
+              const Eigen::VectorXd& y) {
+    if (best.hypothesis.candidates.empty()) return 0;
+    rows_.y = y;
+    rows_.pull.setZero();
+    const auto terms = bench.terms(best.hypothesis);
+    const auto [columns, sigma] = MarginalLikelihood::unfold(terms);
+    const std::vector<char> far = far_rows(kept_, left_of(rows_, rows_, columns, sigma),
+                                           static_cast<double>(rows_.A.cols()), count_, most_);
+    std::vector<int> out;
+    for (size_t e = 0; e < kept_.row.size(); ++e)
+      if (kept_.row[e] >= 0 && far[kept_.row[e]]) out.push_back(static_cast<int>(e));
+    return bench.marginal_likelihood(best.hypothesis.structure).gained_without(terms, y, out);
+  }
+
+ private:
+  const DenseEquations& kept_;
+  Whitened rows_;
+  std::size_t count_;
+  double most_;
+};
+
+/// Residuals dealt out anew to the rows of a set, each row's as a whole and with a sign of its own.
+class Dealer {
+ public:
+  Dealer(const DenseEquations& kept, const Observations& data) {
+    std::map<std::pair<int, size_t>, std::vector<std::vector<Eigen::Index>>> alike;
+    for (size_t e = 0; e < kept.row.size();) {
+      size_t end = e + 1;
+      while (end < kept.row.size() && kept.row[end] == kept.row[e]) ++end;
+      std::vector<Eigen::Index> of_row(end - e);
+      std::iota(of_row.begin(), of_row.end(), static_cast<Eigen::Index>(e));
+      if (kept.row[e] >= 0) alike[{data.set[kept.row[e]], end - e}].push_back(std::move(of_row));
+      e = end;
+    }
+    for (auto& [key, rows] : alike) groups_.push_back(std::move(rows));
+  }
+
+  Eigen::VectorXd dealt(const Eigen::VectorXd& residual, SignRandom& random) const {
+    Eigen::VectorXd out = residual;
+    for (const auto& rows : groups_) {
+      std::vector<size_t> from(rows.size());
+      std::iota(from.begin(), from.end(), size_t{0});
+      std::shuffle(from.begin(), from.end(), random);
+      for (size_t i = 0; i < rows.size(); ++i) {
+        const double sign = drawn_sign(random);
+        for (size_t k = 0; k < rows[i].size(); ++k)
+          out[rows[i][k]] = sign * residual[rows[from[i]][k]];
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::vector<std::vector<std::vector<Eigen::Index>>> groups_;  ///< rows alike, their equations
+};
+
+/// Log evidence times prior of the most probable structure over that of the most probable noise.
+double found_structure(const EvidenceEvaluator& bench, const Eigen::VectorXd& y) {
+  double noise = -INFINITY, structure = -INFINITY;
+  for (int s = 0; s < bench.structures(); ++s) {
+    const double log =
+        bench.marginal_likelihood(s).log_evidence_of(y) + std::log(bench.structure(s).probability);
+    double& best = bench.structure(s).kind == 0 ? noise : structure;
+    best = std::max(best, log);
+  }
+  return structure - noise;
+}
+
+}  // namespace
+
+double share_as_good(const std::vector<double>& found, double seen) {
+  const auto as_good = std::ranges::count_if(found, [&](double each) { return each >= seen; });
+  return (1.0 + static_cast<double>(as_good)) / (1.0 + static_cast<double>(found.size()));
+}
 
 NullDistribution::NullDistribution(const LinearisedModel& view, EvidenceEvaluator& bench,
-                                   const Observations& data, int resamples,
-                                   unsigned long long seed) {
+                                   const Observations& data, int resamples, unsigned long long seed,
+                                   double most_rejected) {
   const Whitened rows = view.whitened();
   const DenseEquations kept = view.kept();
   const Eigen::VectorXd residual = view.geometry_residuals(rows);
-  std::mt19937_64 random(seed);
+  SignRandom random(seed);
+  OutliersOfSearch outliers(kept, rows, static_cast<size_t>(data.rows()), most_rejected);
   const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows.pull.size());
   for (int i = 0; i < resamples; ++i) {
-    std::map<std::pair<int, int>, double> sign;  // by repeat group, or by row
-    Eigen::VectorXd flipped = residual;
-    for (Eigen::Index e = 0; e < flipped.size(); ++e) {
-      const int row = kept.row[static_cast<size_t>(e)];
-      const bool repeated = row >= 0 && !data.repeat.empty() && data.repeat[row] >= 0;
-      const std::pair<int, int> key = repeated ? std::pair(1, data.repeat[row]) : std::pair(0, row);
-      const auto [found, made] = sign.try_emplace(key, 0.0);
-      if (made) found->second = (random() & 1) ? 1 : -1;
-      flipped[e] *= found->second;
-    }
-    bench.look_at(flipped, no_pull, true);
-    found_.push_back(bench.best_found());
+    const Eigen::VectorXd y = flipped(residual, kept, data, random);
+    bench.look_at(y, no_pull, true);
+    const EvidenceEvaluator::Found best = bench.best_found();
+    found_.push_back(best.log_odds + std::max(0.0, outliers.gain(bench, best, y)));
   }
   bench.look_at(rows.y, rows.pull);
 }
 
-double NullDistribution::p_of(double found) const {
-  const auto as_good = std::ranges::count_if(found_, [&](double each) { return each >= found; });
-  return (1.0 + static_cast<double>(as_good)) / (1.0 + static_cast<double>(found_.size()));
+double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
+                    const Hypothesis& known, const Observations& data, int resamples,
+                    unsigned long long seed) {
+  Whitened rows = view.whitened();
+  const DenseEquations kept = view.kept();
+  if (!known.candidates.empty()) {
+    const auto terms = bench.terms(known);
+    rows.y -= rows.C(Eigen::all, MarginalLikelihood::unfold(terms).first) *
+              bench.marginal_likelihood(known.structure).estimate(terms).mean;
+  }
+  const Eigen::VectorXd residual = view.geometry_residuals(rows);
+  // What the geometry takes of a row's noise is given back, so that one row's is as good as
+  // another's.
+  const Eigen::VectorXd noise =
+      residual.cwiseQuotient(view.geometry_leaves(rows).cwiseMax(kLeastOfRow).cwiseSqrt());
+  const Dealer dealer(kept, data);
+  SignRandom random(seed);
+  std::vector<double> found;
+  for (int i = 0; i < resamples; ++i)
+    found.push_back(found_structure(bench, dealer.dealt(noise, random)));
+  return share_as_good(found, found_structure(bench, residual));
 }
 
 double least_probability_of_none(double p) {

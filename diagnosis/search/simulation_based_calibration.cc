@@ -72,7 +72,8 @@ class Simulator {
     else
       for (const auto& [family, p] : posterior.family)
         if (p > best.probability) best = {.effect = family, .probability = p};
-    return decided(std::move(best), posterior, null_.p_of(bench_.best_found()), options_);
+    return decided(std::move(best), posterior, {null_.p_of(bench_.best_found().log_odds), 0},
+                   options_);
   }
 
   Eigen::VectorXd normal(Eigen::Index size) {

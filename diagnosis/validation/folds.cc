@@ -1,17 +1,22 @@
 #include "diagnosis/validation/folds.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <numeric>
 
 namespace selfcal {
 namespace {
 
 constexpr int kStretches = 2 * kFolds;
 
-/// By row: how many configurations of its set came before.
-std::vector<int> places(const Observations& rows, std::map<int, int>& count) {
+/// Of each of the rows `of`: how many configurations of its set came before among them; `count` by
+/// set.
+std::vector<int> places(const Observations& rows, const std::vector<int>& of,
+                        std::map<int, int>& count) {
   std::vector<int> place;
   std::map<std::pair<int, int>, int> known;  // by set and repeat
-  for (int row = 0; row < rows.rows(); ++row) {
+  for (const int row : of) {
     const int set = rows.set[row], repeat = rows.repeat.empty() ? -1 : rows.repeat[row];
     if (repeat < 0) {
       place.push_back(count[set]++);
@@ -28,13 +33,32 @@ std::vector<int> places(const Observations& rows, std::map<int, int>& count) {
 
 DataSet with_fold(const DataSet& data, int fold) {
   DataSet part = data;
+  std::vector<int> all(static_cast<size_t>(data.rows.rows()));
+  std::iota(all.begin(), all.end(), 0);
   std::map<int, int> count;
-  const std::vector<int> place = places(data.rows, count);
+  const std::vector<int> place = places(data.rows, all, count);
   for (int row = 0; row < data.rows.rows(); ++row) {
     const int stretch = place[row] * kStretches / count[data.rows.set[row]];
     part.rows.check[row] = stretch % kFolds == fold;
   }
   return part;
+}
+
+std::vector<int> blocks_of_judging(const DataSet& data) {
+  std::vector<int> judging;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (data.rows.check[row]) judging.push_back(row);
+  std::map<int, int> count;
+  const std::vector<int> place = places(data.rows, judging, count);
+  std::vector<int> block(static_cast<size_t>(data.rows.rows()), -1);
+  std::map<std::pair<int, int>, int> number;  // by set and its own number of the block
+  for (size_t i = 0; i < judging.size(); ++i) {
+    const int set = data.rows.set[judging[i]];
+    const int length = static_cast<int>(std::lround(std::cbrt(static_cast<double>(count[set]))));
+    const std::pair<int, int> key{set, place[i] / std::max(length, 1)};
+    block[judging[i]] = number.try_emplace(key, static_cast<int>(number.size())).first->second;
+  }
+  return block;
 }
 
 }  // namespace selfcal

@@ -1,5 +1,8 @@
-// Judging without rows kept aside: each third of the rows judges what the others find.
+// Which rows judge together: blocks of those kept aside; without such, each third of the rows
+// judges what the others find.
 #pragma once
+
+#include <vector>
 
 #include "constraints/methods/data_set.h"
 
@@ -11,5 +14,10 @@ inline constexpr int kFolds = 3;
 /// two of six stretches of each set's configurations in their order, so that it leaves out moments
 /// and places; repeats stay together.
 DataSet with_fold(const DataSet& data, int fold);
+
+/// By row of `data`, the number of its block among the `check` rows; -1 of the others. A block is
+/// as many configurations of one set in their order as the cube root of them all (as an interval by
+/// blocks wants it), each with its repeats.
+std::vector<int> blocks_of_judging(const DataSet& data);
 
 }  // namespace selfcal

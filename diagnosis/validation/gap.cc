@@ -1,9 +1,12 @@
-// closed = 1 - (after^2 - floor^2) / (before^2 - floor^2); its interval by resampling the rows that
-// judge.
+// closed = 1 - (after^2 - floor^2) / (before^2 - floor^2). Its interval: blocks of rows are drawn
+// with replacement (Kuensch 1989: rows that follow each other err alike), and with each draw the
+// floor's variance, which nu freedoms tell up to nu / chi-square(nu).
 #include "diagnosis/validation/gap.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <random>
 
 namespace selfcal {
@@ -14,32 +17,62 @@ constexpr double kWithinFloor = 1.05;  ///< before over floor below which nothin
 
 using Square = double JudgedRow::*;
 
-std::optional<double> fraction(const std::vector<JudgedRow>& rows, Square square) {
+struct Sums {
   double before = 0, after = 0, floor = 0;
+};
+
+/// By block.
+std::vector<Sums> sums_of(const std::vector<JudgedRow>& rows, Square square) {
+  std::map<int, Sums> blocks;
   for (const JudgedRow& row : rows) {
-    before += row.before;
-    after += row.*square;
-    floor += row.floor;
+    Sums& sums = blocks[row.block];
+    sums.before += row.before;
+    sums.after += row.*square;
+    sums.floor += row.floor;
   }
-  if (!(before > kWithinFloor * kWithinFloor * floor)) return std::nullopt;
-  return 1 - (after - floor) / (before - floor);
+  std::vector<Sums> list;
+  for (const auto& [block, sums] : blocks) list.push_back(sums);
+  return list;
 }
 
-/// A resample that lies within the floor says that nothing is closed.
-Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long long seed) {
-  Closed part{fraction(rows, square)};
+std::optional<double> fraction(const Sums& of) {
+  if (!(of.before > kWithinFloor * kWithinFloor * of.floor)) return std::nullopt;
+  return 1 - (of.after - of.floor) / (of.before - of.floor);
+}
+
+Sums total(const std::vector<Sums>& list) {
+  Sums sum;
+  for (const Sums& each : list) {
+    sum.before += each.before;
+    sum.after += each.after;
+    sum.floor += each.floor;
+  }
+  return sum;
+}
+
+/// A resample within the floor may say anything: it counts at either end.
+Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long long seed,
+              double floor_freedom) {
+  const std::vector<Sums> blocks = sums_of(rows, square);
+  Closed part{fraction(total(blocks))};
   if (!part.fraction) return part;
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<size_t> pick(0, rows.size() - 1);
-  std::vector<double> list;
-  std::vector<JudgedRow> drawn(rows.size());
+  std::uniform_int_distribution<size_t> pick(0, blocks.size() - 1);
+  std::chi_squared_distribution<double> spread(std::isfinite(floor_freedom) ? floor_freedom : 1);
+  std::vector<double> low, high;
+  std::vector<Sums> drawn(blocks.size());
   for (int i = 0; i < kResamples; ++i) {
-    for (JudgedRow& row : drawn) row = rows[pick(random)];
-    list.push_back(fraction(drawn, square).value_or(0));
+    for (Sums& each : drawn) each = blocks[pick(random)];
+    Sums sum = total(drawn);
+    if (std::isfinite(floor_freedom)) sum.floor *= floor_freedom / spread(random);
+    const std::optional<double> each = fraction(sum);
+    low.push_back(each.value_or(-INFINITY));
+    high.push_back(each.value_or(INFINITY));
   }
-  std::sort(list.begin(), list.end());
-  part.least = list[static_cast<size_t>(0.025 * kResamples)];
-  part.most = list[static_cast<size_t>(0.975 * kResamples)];
+  std::sort(low.begin(), low.end());
+  std::sort(high.begin(), high.end());
+  part.least = low[static_cast<size_t>(0.025 * kResamples)];
+  part.most = high[static_cast<size_t>(0.975 * kResamples)];
   return part;
 }
 
@@ -57,9 +90,15 @@ double largest(const std::vector<JudgedRow>& rows, Square square) {
 
 }  // namespace
 
-Gap gap_of(const std::vector<JudgedRow>& rows, unsigned long long seed) {
+Gap gap_of(const std::vector<JudgedRow>& all, unsigned long long seed, double floor_freedom) {
   Gap gap;
+  gap.with_false_rows = {rms(all, &JudgedRow::before), rms(all, &JudgedRow::after),
+                         rms(all, &JudgedRow::all)};
+  std::vector<JudgedRow> rows;
+  std::ranges::copy_if(all, std::back_inserter(rows),
+                       [](const JudgedRow& row) { return !row.false_reading; });
   gap.rows = static_cast<int>(rows.size());
+  gap.false_rows = static_cast<int>(all.size() - rows.size());
   if (rows.empty()) return gap;
   gap.rms_nominal = rms(rows, &JudgedRow::nominal);
   gap.rms_before = rms(rows, &JudgedRow::before);
@@ -69,8 +108,8 @@ Gap gap_of(const std::vector<JudgedRow>& rows, unsigned long long seed) {
   gap.max_after = largest(rows, &JudgedRow::after);
   gap.max_all = largest(rows, &JudgedRow::all);
   gap.noise_floor = rms(rows, &JudgedRow::floor);
-  gap.closed = closed(rows, &JudgedRow::after, seed);
-  gap.closed_all = closed(rows, &JudgedRow::all, seed);
+  gap.closed = closed(rows, &JudgedRow::after, seed, floor_freedom);
+  gap.closed_all = closed(rows, &JudgedRow::all, seed, floor_freedom);
   return gap;
 }
 

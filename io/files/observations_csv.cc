@@ -102,6 +102,11 @@ class RowReader {
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
     rows.temperature = to_matrix(std::move(temperature_), 1);
     rows.time = to_matrix(std::move(time_), 1);
+    if (!layout_.time) {
+      data_.order_is_time = true;
+      const Eigen::Index count = rows.q.rows();
+      rows.time = Eigen::VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
+    }
     rows.noise_factor = to_matrix(std::move(noise_factor_), 1);
     rows.set = std::move(set_);
     rows.group = std::move(group_);

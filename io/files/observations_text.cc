@@ -78,7 +78,7 @@ std::string observations_text(const DataSet& data) {
   add_columns(rows.velocity, speeds, columns);
   const Eigen::MatrixXd temperature = rows.temperature, time = rows.time;
   add_columns(temperature, {"temperature"}, columns);
-  add_columns(time, {"time"}, columns);
+  if (!data.order_is_time) add_columns(time, {"time"}, columns);
   const Eigen::MatrixXd noise_factor = rows.noise_factor;
   if ((noise_factor.array() != 1).any()) add_columns(noise_factor, {"noise_factor"}, columns);
   std::string text = line(columns, [](const TextColumn& column) { return column.name; });

@@ -49,6 +49,8 @@ struct Model {
   bool standard = false;                 ///< the file has a standard DH table, turned into frames
   std::vector<Frame> frames;             ///< from the world to the tool
   Eigen::MatrixXd coupling;              ///< joints x joints; empty when the file gives none
+  std::optional<double> mass;            ///< kg, of the whole robot, where frames give none
+  double payload = 0;                    ///< kg, that it may carry
 };
 
 /// What the parameters of a frame are called, in their order: of a whole pose or of five numbers.
@@ -64,7 +66,12 @@ Model read(const Node& node, Problems& problems);
 /// The file content of `model`.
 Node write(const Model& model);
 
-/// The frames as links. Frames without mass count as massless.
+/// With the masses and centres that are usual along the links of a robot of `mass` and `payload`,
+/// where the file gives the whole only; otherwise the same.
+Model with_usual_masses(Model model);
+
+/// The frames as links. Frames without mass count as massless; where all are and the whole robot's
+/// is known, those of with_usual_masses.
 Mechanics mechanics(const Model& model);
 
 /// Joint torque (N m; N for a prismatic joint) that gravity exerts on each joint variable at `q`

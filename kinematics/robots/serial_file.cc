@@ -54,6 +54,10 @@ Model read(const Node& node, Problems& problems) {
   if (const auto gravity = fields.numbers("gravity", 3)) model.gravity = *gravity;
   if (model.gravity.norm() > kMostGravity) fields.fail("gravity", "m/s^2, 9.81 on earth");
   const Convention convention = read_convention(fields);
+  model.mass = fields.optional_number("mass");
+  model.payload = fields.number("payload", 0.0);
+  if (model.mass && *model.mass <= 0) fields.fail("mass", "a mass above 0 kg");
+  if (model.payload < 0) fields.fail("payload", "a mass of at least 0 kg");
   const Node* frames = fields.node("frames");
   if (!frames || frames->kind != Node::Kind::list || frames->items.empty()) {
     fields.fail("frames", "a list of frames from the world to the tool");
@@ -77,6 +81,8 @@ Node write(const Model& model) {
   node.set("robot", Node::of(model.name));
   node.set("kind", Node::of(std::string("serial")));
   node.set("gravity", Node::of(Eigen::VectorXd(model.gravity)));
+  if (model.mass) node.set("mass", Node::of(*model.mass));
+  if (model.payload > 0) node.set("payload", Node::of(model.payload));
   Node frames = Node::list();
   for (const Frame& frame : model.frames) frames.items.push_back(write_frame(frame));
   node.set("frames", std::move(frames));

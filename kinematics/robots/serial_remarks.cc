@@ -65,7 +65,8 @@ void add_gravity(const Model& model, std::vector<std::string>& lines) {
     return;
   }
   const Eigen::VectorXd torques = gravity_torques(model, middle);
-  lines.emplace_back("static torques with every joint in the middle of its limits:");
+  lines.emplace_back(std::string("static torques with every joint in the middle of its limits") +
+                     (mechanics(model).masses_assumed ? ", by usual masses of the links:" : ":"));
   for (size_t j = 0; j < moving.size(); ++j) {
     const Frame& frame = model.frames[moving[j]];
     std::snprintf(text, sizeof text, "  %s %.2f %s", frame.name.c_str(), torques[j],

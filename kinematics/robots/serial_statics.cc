@@ -19,8 +19,11 @@ std::vector<Eigen::Isometry3d> frame_poses(const Model& model, const Eigen::Vect
   return poses;
 }
 
-Mechanics mechanics(const Model& model) {
+Mechanics mechanics(const Model& file) {
+  const Model model = with_usual_masses(file);
   Mechanics mechanics{model.gravity, {}};
+  for (size_t i = 0; i < model.frames.size(); ++i)
+    mechanics.masses_assumed |= model.frames[i].mass && !file.frames[i].mass;
   int joint = 0;
   for (const Frame& frame : model.frames) {
     const bool moves = frame.motion != Motion::fixed;

@@ -7,8 +7,8 @@ namespace selfcal {
 
 std::vector<std::string> listed_causes(const TrialWorld& world) {
   std::vector<std::string> names;
-  for (const auto* list : {&joint_causes(), &site_causes(), &touch_causes()}) {
-    if (list == &touch_causes() && !world.touches()) continue;
+  for (const auto* list : {&joint_causes(), &site_causes(), &tracked_causes(), &touch_causes()}) {
+    if (list == (world.touches() ? &tracked_causes() : &touch_causes())) continue;
     for (const auto& [name, maker] : *list) names.push_back(name);
   }
   return names;
@@ -16,7 +16,7 @@ std::vector<std::string> listed_causes(const TrialWorld& world) {
 
 TrialCause draw_cause(const std::string& effect, const TrialWorld& world, Random& random) {
   if (effect == "unknown") return draw_unknown(world, random);
-  for (const auto* list : {&joint_causes(), &site_causes(), &touch_causes()})
+  for (const auto* list : {&joint_causes(), &site_causes(), &tracked_causes(), &touch_causes()})
     if (const auto found = list->find(effect); found != list->end()) {
       TrialCause cause = found->second(world, random);
       cause.effect = effect;

@@ -31,6 +31,7 @@ using CauseMaker = TrialCause (*)(const TrialWorld&, Random&);
 /// (trial_site_causes.cc).
 const std::map<std::string, CauseMaker>& joint_causes();
 const std::map<std::string, CauseMaker>& site_causes();
+const std::map<std::string, CauseMaker>& tracked_causes();
 const std::map<std::string, CauseMaker>& touch_causes();
 
 /// One or two joints, the second with a share of 0.4 to 1 of the first, and a random sign.

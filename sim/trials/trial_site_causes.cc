@@ -1,6 +1,9 @@
 // What happens around the arm: heat, the base, the probe, the surfaces.
 //   thermal_expansion  every link grows with a temperature that lags the air by a lag of its own
 //   base_drift         the base wanders smoothly, its shift and its turn each on a walk of its own
+//   tool_shift         the tip moves aside within some seconds, and a little back later
+//   tool_compliance    a tool of a true mass on a spring that stiffens, askew to the flange
+//   scale_error        the tracker's unit follows the air, with a lag
 //   probe_pretravel    p0 + sin(phi) (p1 + p3 cos(3 (psi - psi0)))
 //   trigger_latency    a delay that jitters
 //   plane_form_error   quadratic and a little cubic
@@ -43,6 +46,49 @@ TrialCause base_drift(const TrialWorld& world, Random& random) {
           .act = [=](const Instant& at, Deviation& out) {
             out.tip += shift.at(at.time) * along +
                        turn.at(at.time) * about.cross(at.poses.back().translation());
+          }};
+}
+
+TrialCause tool_shift(const TrialWorld& world, Random& random) {
+  const double moment = uniform(random, 0.2, 0.8) * world.duration;
+  const Eigen::Vector3d aside = random_vector(random), back = 0.1 * random_vector(random);
+  return {.where = {"probe"},
+          .physics = "the tool moves in its clamp, and settles a little",
+          .act = [=](const Instant& at, Deviation& out) {
+            const double since = at.time - moment;
+            if (since < 0) return;
+            out.tip +=
+                1e-4 * at.poses.back().linear() * (aside + (1 - std::exp(-since / 600)) * back);
+          }};
+}
+
+TrialCause tool_compliance(const TrialWorld& world, Random& random) {
+  const int last = world.robot->statics()->mechanics().link_of(world.joints() - 1);
+  const double other = uniform(random, 0.5, 1), askew = uniform(random, 0, 3.14);
+  const double stiffening = uniform(random, 0, 0.01);  // 1/(N m)
+  const Eigen::Vector3d axis = {std::cos(askew), std::sin(askew), 0};
+  return {.where = {"probe"},
+          .physics = "a clamp that gives way more about one axis than about the other",
+          .act = [=, &world](const Instant& at, Deviation& out) {
+            const Eigen::Isometry3d& mount = at.poses[static_cast<size_t>(last)];
+            const Eigen::Vector3d arm = at.poses.back().translation() - mount.translation();
+            Eigen::Vector3d force, moment;
+            world.load(at, last + 1, mount.translation(), force, moment);
+            moment += arm.cross(2.0 * Eigen::Vector3d(0, 0, -9.81));  // a tool of 2 kg
+            const Eigen::Vector3d M = mount.linear().transpose() * moment;
+            Eigen::Vector3d turn = M.cwiseProduct(Eigen::Vector3d(1, 1, 0));
+            turn -= (1 - other) * axis * axis.dot(turn);
+            out.tip += 1e-5 / (1 + stiffening * M.norm()) * (mount.linear() * turn).cross(arm);
+          }};
+}
+
+TrialCause scale_error(const TrialWorld& world, Random& random) {
+  const AirRecord air = world.air.lagged(uniform(random, 0, 600));
+  return {.where = {"tracker"},
+          .physics = "the air bends and slows the beam as it grows warm",
+          .act = [=](const Instant& at, Deviation& out) {
+            out.tip +=
+                1e-6 * (air.at(at.time) - air.celsius.front()) * at.poses.back().translation();
           }};
 }
 
@@ -114,7 +160,14 @@ TrialCause fixture_shift(const TrialWorld& world, Random& random) {
 
 const std::map<std::string, CauseMaker>& site_causes() {
   static const std::map<std::string, CauseMaker> causes{{"thermal_expansion", thermal_expansion},
-                                                        {"base_drift", base_drift}};
+                                                        {"base_drift", base_drift},
+                                                        {"tool_shift", tool_shift},
+                                                        {"tool_compliance", tool_compliance}};
+  return causes;
+}
+
+const std::map<std::string, CauseMaker>& tracked_causes() {
+  static const std::map<std::string, CauseMaker> causes{{"scale_error", scale_error}};
   return causes;
 }
 

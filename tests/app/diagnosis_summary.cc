@@ -15,6 +15,7 @@ using ::testing::Not;
 Diagnosis named(const std::vector<bool>& found) {
   Diagnosis diagnosis;
   diagnosis.verdict = {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9};
+  diagnosis.named = {diagnosis.verdict};
   for (const bool each : found) diagnosis.found.push_back({Node::map(), {}, each});
   diagnosis.gap = {.rms_nominal = 2e-3,
                    .rms_before = 1e-3,
@@ -58,6 +59,7 @@ TEST(DiagnosisSummary, SaysThatNothingElseWasFoundWhereAllOfItIsNamed) {
 TEST(DiagnosisSummary, NamesNothingWhereTheVerdictIsUnknown) {
   Diagnosis diagnosis = named({false, false});
   diagnosis.verdict = {.effect = "unknown"};
+  diagnosis.named.clear();
   EXPECT_THAT(summary(diagnosis), HasSubstr("1 mm calibrated, 0.38 mm with everything found (2 "
                                             "effects, none named); noise"));
   EXPECT_THAT(summary(diagnosis),
@@ -90,6 +92,57 @@ TEST(DiagnosisJson, HasBothFiguresUncutAndNothingWhereTheyAreNotKnown) {
   const auto within = to_json(diagnosis)["gap"];
   EXPECT_TRUE(within["closed_fraction"].is_null() && within["closed_interval"].is_null());
   EXPECT_TRUE(within["closed_all"].is_null() && within["closed_all_interval"].is_null());
+}
+
+TEST(DiagnosisSummary, SaysHowManyRowsAreLeftOutAndWhatItIsWithThem) {
+  Diagnosis diagnosis = named({true, false});
+  EXPECT_THAT(summary(diagnosis), Not(HasSubstr("left out")));
+  diagnosis.gap.false_rows = 2;
+  diagnosis.gap.with_false_rows = {3e-3, 2.5e-3, 2.25e-3};
+  const char* const told =
+      "2 rows kept aside that no model comes near are left out; with them 3 mm calibrated, 2.5 mm "
+      "with what is named, 2.25 mm with everything found";
+  EXPECT_THAT(summary(diagnosis), HasSubstr(told));
+  EXPECT_THAT(report_page(diagnosis), HasSubstr(told));
+  EXPECT_EQ(to_json(diagnosis)["gap"]["false_rows"], 2);
+  EXPECT_EQ(to_json(diagnosis)["gap"]["with_false_rows"]["rms_all"], 2.25e-3);
+}
+
+TEST(DiagnosisSummary, SaysWhatToMeasureNextOrWhyNothing) {
+  Diagnosis diagnosis = named({true});
+  diagnosis.next = {{"repeat 12 rows", {"backlash@j1", "none"}, 0.9, {}},
+                    {"repeat 24 rows", {"unknown", "how much is noise"}, NAN, {}}};
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("repeat 12 rows (then 90 % sure, of backlash@j1 or none)"));
+  EXPECT_THAT(summary(diagnosis), HasSubstr("repeat 24 rows (tells how much is noise)"));
+  diagnosis.next.clear();
+  diagnosis.next_why = "nothing looks like what is named";
+  EXPECT_THAT(summary(diagnosis), HasSubstr("Next: nothing; nothing looks like what is named"));
+  const auto file = next_json(diagnosis, {});
+  EXPECT_TRUE(file["steps"].empty());
+  EXPECT_EQ(file["why"], "nothing looks like what is named");
+}
+
+TEST(DiagnosisSummary, GivesNoIntervalSoNearTheNoise) {
+  Diagnosis diagnosis = named({true});
+  diagnosis.gap.closed = {0.5};
+  EXPECT_THAT(summary(diagnosis), HasSubstr("is closed (so near the noise that no interval"));
+  EXPECT_EQ(to_json(diagnosis)["gap"]["closed_fraction"], 0.5);
+  EXPECT_TRUE(to_json(diagnosis)["gap"]["closed_interval"].is_null());
+}
+
+TEST(DiagnosisJson, NamesAllThatAreSureWithTheirShares) {
+  Diagnosis diagnosis = named({true, true});
+  diagnosis.named[0].closes_alone = 0.5;
+  diagnosis.named.push_back({.effect = "backlash", .where = {"j1"}, .closes_beside = 0.125});
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("joint compliance at j2 and j3; backlash at j1 (named"));
+  const auto list = to_json(diagnosis)["verdict"]["named"];
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0]["closes_alone"], 0.5);
+  EXPECT_EQ(list[1]["effect"], "backlash");
+  EXPECT_EQ(list[1]["closes_beside"], 0.125);
+  EXPECT_TRUE(list[1]["closes_alone"].is_null());
 }
 
 }  // namespace

@@ -65,6 +65,25 @@ TEST(Candidates, LetTheBaseDriftSettleAndWander) {
   EXPECT_EQ(wandering, 2);
 }
 
+TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
+  Session session(50);
+  session.site.sets = {{.name = "table", .touch = true}, {.name = "leica", .lengths = true}};
+  for (int row = 20; row < 50; ++row) session.data.rows.set[row] = 1;
+  const auto count = [&](const char* effect, const char* at) {
+    const Candidates all = session.candidates();
+    return std::ranges::count_if(
+        all.list, [&](const Candidate& each) { return each.effect == effect && each.at == at; });
+  };
+  EXPECT_EQ(count("tool_shift", "probe"), 24);
+  EXPECT_EQ(count("tool_compliance", "probe"), 1);
+  EXPECT_EQ(count("scale_error", "leica"), 1);
+  EXPECT_EQ(count("scale_error", "table"), 0);
+  session.data.rows.temperature = Eigen::VectorXd::LinSpaced(50, 20, 21);
+  EXPECT_EQ(count("scale_error", "leica"), 2);
+  session.data.rows.time.resize(0);
+  EXPECT_EQ(count("tool_shift", "probe"), 0);
+}
+
 TEST(Candidates, SayWhatTheRowsCannotTest) {
   const auto list = Session(50).candidates().untestable;
   EXPECT_TRUE(std::ranges::any_of(

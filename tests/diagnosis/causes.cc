@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
+#include "diagnosis/report/verdict.h"
 #include "diagnosis/search/sign_flip_test.h"
 
 namespace selfcal {
@@ -12,14 +16,62 @@ TEST(Decided, NamesNothingThatNoiseFindsAsOften) {
   Posterior posterior;
   posterior.none = 0.01;
   const CauseResult named{.effect = "backlash", .probability = 0.9};
-  EXPECT_EQ(decided(named, posterior, options.name_below_p, options).effect, "backlash");
-  const CauseResult noise = decided(named, posterior, 0.05, options);
+  EXPECT_EQ(decided(named, posterior, {options.name_below_p, 1}, options).effect, "backlash");
+  const CauseResult noise = decided(named, posterior, {0.05, 1}, options);
   EXPECT_EQ(noise.effect, kNone);
   EXPECT_EQ(noise.probability, least_probability_of_none(0.05));
   posterior.unknown = 0.8;
-  EXPECT_EQ(decided(named, posterior, 0.05, options).effect, kUnknown);
-  EXPECT_EQ(decided({.effect = kUnknown, .probability = 0.6}, posterior, 1, options).probability,
-            0.6);
+  EXPECT_EQ(decided(named, posterior, {0.05, 0.01}, options).effect, kUnknown);
+}
+
+TEST(Decided, LetsTheUnknownAnswerToNoiseAsWell) {
+  const DiagnosisOptions options;
+  Posterior posterior;
+  posterior.unknown = 0.8;
+  const CauseResult unknown{.effect = kUnknown, .probability = 0.8};
+  EXPECT_EQ(decided(unknown, posterior, {1, options.name_below_p}, options).probability, 0.8);
+  const CauseResult noise = decided(unknown, posterior, {0.005, 0.1}, options);
+  EXPECT_EQ(noise.effect, kNone);
+  EXPECT_EQ(noise.probability, least_probability_of_none(0.1));
+}
+
+std::vector<CauseResult> some_causes() {
+  return {{.effect = "backlash", .probability = 0.97, .visible = 1},
+          {.effect = kUnknown, .probability = 0.6},
+          {.effect = "joint_compliance", .probability = 0.95, .visible = 3},
+          {.effect = "zero_shift", .probability = 0.8, .visible = 9},
+          {.effect = kNone, .probability = 0.02}};
+}
+
+TEST(SureCauses, AreNamedTogetherWhicheverIsTheLargest) {
+  const DiagnosisOptions options;
+  const std::vector<CauseResult> causes = some_causes();
+  for (const int first : {0, 2}) {
+    const auto named = sure_causes(causes, causes[first], {0.005, 1}, options);
+    ASSERT_EQ(named.size(), 2u);
+    EXPECT_EQ(named[0].effect, causes[first].effect);
+    EXPECT_EQ(named[1].effect, causes[2 - first].effect);
+  }
+  const auto beside = sure_causes(causes, {.effect = kUnknown}, {0.005, 0.005}, options);
+  ASSERT_EQ(beside.size(), 2u);
+  EXPECT_EQ(beside[0].effect, "joint_compliance") << "the larger one first";
+  EXPECT_TRUE(sure_causes(causes, {.effect = kUnknown}, {0.2, 0.005}, options).empty())
+      << "noise does as well as a known cause";
+  EXPECT_TRUE(sure_causes(causes, {.effect = kNone}, {0.2, 1}, options).empty());
+}
+
+TEST(Agree, GivesOneThingOneProbability) {
+  std::vector<CauseResult> causes = some_causes();
+  CauseResult cause{.effect = "zero_shift", .probability = 0.5};
+  agree(causes, cause);
+  EXPECT_EQ(cause.probability, 0.8);
+  // What the resampled rows say of none is said in the table too, and the others give way to it.
+  CauseResult none{.effect = kNone, .probability = 0.51};
+  agree(causes, none);
+  const auto in_table = std::ranges::find(causes, kNone, &CauseResult::effect);
+  EXPECT_EQ(in_table->probability, 0.51);
+  EXPECT_NEAR(causes[1].probability, 0.97 / 2, 1e-12);
+  EXPECT_TRUE(std::ranges::is_sorted(causes, std::ranges::greater{}, &CauseResult::probability));
 }
 
 TEST(WithoutCause, IsUnknownWhereThatIsMoreProbableThanNot) {
@@ -36,6 +88,7 @@ Diagnosis with(CauseResult verdict) {
   Diagnosis diagnosis;
   diagnosis.p_value = 0.005;
   diagnosis.verdict = std::move(verdict);
+  if (names_effect(diagnosis.verdict.effect)) diagnosis.named = {diagnosis.verdict};
   diagnosis.candidates = {{.effect = kUnknown, .probability = 0.99},
                           {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9},
                           {.effect = "base_drift", .where = {"base"}, .probability = 0.8},
@@ -56,9 +109,36 @@ TEST(VerdictInWords, TellsOfLookAlikesWithTheProbabilityOfAllOfThem) {
 
 TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
   EXPECT_EQ(verdict_in_words(with({.effect = kUnknown, .probability = 0.99})),
-            "there is structure that no known effect explains, beside joint_compliance at j2 and "
-            "j3, base_drift at base: look at the machine, or repeat some configurations to be sure "
-            "of the noise");
+            "there is structure that no known effect explains (probability 0.99, p 0.005), beside "
+            "joint_compliance at j2 and j3, base_drift at base: look at the machine, or repeat "
+            "some configurations to be sure of the noise");
+}
+
+TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
+  Diagnosis diagnosis = with({.effect = "backlash", .where = {"j1"}, .probability = 0.97});
+  diagnosis.named.front().closes_alone = 0.4;
+  diagnosis.named.front().closes_beside = 0.25;
+  diagnosis.named.push_back({.effect = "joint_compliance",
+                             .where = {"j2", "j3"},
+                             .probability = 0.95,
+                             .closes_alone = 0.6,
+                             .closes_beside = 0.45});
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "backlash at j1 (probability 0.97, alone it closes 40 %, beside the others 25 %) and "
+            "joint_compliance at j2 and j3 (probability 0.95, alone it closes 60 %, beside the "
+            "others 45 %) cause the gap together (p 0.005)");
+}
+
+TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {
+  CauseResult cause{.effect = "zero_shift", .where = {"j6"}, .probability = 0.99};
+  cause.parameters = {{"j6.step", "rad", 0.0149, 1e-5, 5e-5, 5e-3}};
+  EXPECT_EQ(verdict_in_words(with(cause)).find("far beyond"), std::string::npos);
+  cause.parameters.front().value = -0.105;  // a tool that was remounted, six degrees
+  EXPECT_NE(verdict_in_words(with(cause))
+                .find("; j6.step = -0.105 rad is far beyond the usual 5e-05 to 0.005"),
+            std::string::npos);
+  cause.parameters.front().sigma = 0.05;  // and hardly known
+  EXPECT_EQ(verdict_in_words(with(cause)).find("far beyond"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 namespace selfcal {
 namespace {
 
@@ -45,6 +48,23 @@ TEST(Folds, KeepRepeatsTogetherAndLeaveOutStretches) {
     EXPECT_GE(changes, 2);
     EXPECT_LE(changes, 4);
   }
+}
+
+TEST(BlocksOfJudging, HoldAFewNeighboursOfOneSetAndTheirRepeats) {
+  DataSet data = forty_rows();  // 19 and 16 configurations: 35 rows beyond the repeats
+  for (int row = 0; row < 40; ++row) data.rows.check[row] = row >= 4;
+  const std::vector<int> block = blocks_of_judging(data);
+  for (int row = 0; row < 4; ++row) EXPECT_EQ(block[row], -1);
+  for (int row = 11; row < 16; ++row) EXPECT_EQ(block[row], block[10]);
+  // Of the second set's rows 5, 7, 9, 17, ... 39 (15 of them): as many as the cube root, 2.5, says.
+  std::map<int, int> of_block;
+  int most = 0;
+  for (int row = 5; row < 40; row += 2)
+    if (data.rows.set[row] == 1) most = std::max(most, ++of_block[block[row]]);
+  EXPECT_EQ(most, 2);
+  EXPECT_EQ(of_block.size(), 8u);
+  for (int row = 4; row < 40; ++row)
+    EXPECT_EQ(of_block.contains(block[row]), data.rows.set[row] == 1) << row;
 }
 
 }  // namespace

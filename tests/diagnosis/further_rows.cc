@@ -122,6 +122,20 @@ TEST_F(FurtherRowsOfAnArm, LoadTheToolBesideWhatItHolds) {
   EXPECT_LT(more.z(), -9) << "a kilogram at least, downwards";
 }
 
+TEST_F(FurtherRowsOfAnArm, RepeatEachRowAtOnce) {
+  const DataSet& both = arm().having("twice at once");
+  const Eigen::Index first = arm().data_.rows.q.rows();
+  ASSERT_EQ((both.rows.q.rows() - first) % 2, 0);
+  for (Eigen::Index row = first; row < both.rows.q.rows(); row += 2) {
+    EXPECT_EQ(both.rows.q.row(row), both.rows.q.row(row + 1));
+    EXPECT_GE(both.rows.repeat[row], 0);
+    EXPECT_EQ(both.rows.repeat[row], both.rows.repeat[row + 1]);
+    if (row > first) {
+      EXPECT_NE(both.rows.repeat[row], both.rows.repeat[row - 1]);
+    }
+  }
+}
+
 TEST_F(FurtherRowsOfAnArm, ComeFromTheOtherSide) {
   EXPECT_EQ(arm().having("from the other side").rows.velocity.bottomRows(1).maxCoeff(), -0.1);
 }

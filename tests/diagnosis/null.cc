@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnosis/evidence/discrepancy.h"
+#include "tests/diagnosis/two_sessions.h"
+
 namespace selfcal {
 namespace {
 
@@ -19,6 +22,70 @@ TEST(NullDistribution, CountsWhatIsAsGoodAndTheRowsThemselves) {
   EXPECT_EQ(null.p_of(4), 1.0 / 5);
   EXPECT_EQ(null.p_of(3), 2.0 / 5);
   EXPECT_EQ(null.p_of(0), 1);
+}
+
+/// A session's rows as the search sees them.
+struct Seen {
+  explicit Seen(const DataSet& session, double most_rejected = 0.02)
+      : data(session),
+        options(with(most_rejected)),
+        view(TwoSessions(2).robot, data, options, {}),
+        rows(view.kept()),
+        bench(view.whitened(),
+              structures(data.rows, rows, view.ends(), view.by_joint(rows),
+                         comparable_readings(view.geometry(), data.rows.q)),
+              view.candidates(), view.parameters(), options.search) {}
+
+  static DiagnosisOptions with(double most_rejected) {
+    DiagnosisOptions options = quick();
+    options.most_rejected = most_rejected;
+    return options;
+  }
+
+  const DataSet data;
+  const DiagnosisOptions options;
+  LinearisedModel view;
+  const DenseEquations rows;
+  EvidenceEvaluator bench;
+};
+
+/// 20 um of normal noise more.
+DataSet noisy(int rows, unsigned seed) {
+  DataSet data = TwoSessions(rows).before;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, kTrackerNoise);
+  for (double& each : data.rows.position.reshaped()) each += normal(random);
+  return data;
+}
+
+TEST(NullDistribution, LetsNoiseHaveTheOutliersThatTheSearchMayPutAside) {
+  DataSet data = noisy(120, 5);
+  for (const int row : {3, 21, 36, 48, 66, 87})
+    data.rows.position(row, row % 3) += 3e-4;  // ten sigma
+  Seen seen(data, 0);                          // nothing is put aside yet
+  const NullDistribution with(seen.view, seen.bench, data.rows, 40, 1, 0.1),
+      without(seen.view, seen.bench, data.rows, 40, 1, 0);
+  double more = 0, less = 0;
+  for (double found = -10; found < 40; found += 0.5) {
+    more += with.p_of(found) > without.p_of(found);
+    less += with.p_of(found) < without.p_of(found);
+  }
+  EXPECT_GE(more, 3) << "noise looks more like a cause once it may leave rows out";
+  EXPECT_EQ(less, 0);
+}
+
+TEST(UnknownByChance, IsRareForStructureAndNotForNoise) {
+  double sum = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Seen noise(noisy(60, seed));
+    sum += p_of_unknown(noise.view, noise.bench, {}, noise.data.rows, 99, 1) / 8;
+  }
+  EXPECT_NEAR(sum, 0.5, 0.3) << "even between 0 and 1: within three sigma of the mean of eight";
+  // A bulge of the cell of five times the noise, which no known effect makes.
+  DataSet data = noisy(120, 1);
+  for (auto p : data.rows.position.rowwise()) p.z() += 1.5e-4 * std::sin(4 * p.x() + 5 * p.y());
+  const Seen bulge(data);
+  EXPECT_EQ(p_of_unknown(bulge.view, bulge.bench, {}, data.rows, 99, 1), 0.01);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "kinematics/linear_algebra.h"
@@ -156,6 +157,33 @@ TEST(MarginalLikelihood, GivenSomeCausesWeighsOthersAsTogether) {
   std::vector<MarginalLikelihood::Term> both = first;
   both.push_back(second.front());
   EXPECT_NEAR(bench.given(first).log_evidence(second), bench.log_evidence(both), kRounding);
+}
+
+TEST(MarginalLikelihood, GainsByEquationsLeftOutWhatTheRowsWithoutThemGive) {
+  const Case one;
+  const MarginalLikelihood bench = one.bench();
+  const std::vector<int> out{2, 9};
+  std::vector<int> rest;
+  for (int i = 0; i < 14; ++i)
+    if (std::ranges::count(out, i) == 0) rest.push_back(i);
+  Whitened fewer = one.rows;
+  fewer.A = one.rows.A(rest, Eigen::all);
+  fewer.C = one.rows.C(rest, Eigen::all);
+  fewer.y = one.rows.y(rest);
+  const std::vector<MarginalLikelihood::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
+  const auto gain = [&](const Whitened& rows) {
+    const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(rows.A.rows(), rows.A.rows());
+    return worked_out_whole(rows, I, both) - worked_out_whole(rows, I, none);
+  };
+  EXPECT_NEAR(bench.gained_without(both, one.rows.y, out), gain(fewer) - gain(one.rows), kRounding);
+  EXPECT_EQ(bench.gained_without(both, one.rows.y, {}), 0);
+}
+
+TEST(MarginalLikelihood, WeighsOtherRowsWithoutLookingAtThem) {
+  Case one;
+  const MarginalLikelihood bench = one.bench();
+  one.rows.y *= 3;
+  EXPECT_NEAR(bench.log_evidence_of(one.rows.y), one.bench().log_evidence({}), kRounding);
 }
 
 TEST(MarginalLikelihood, NeverExplainsMoreThanThereIs) {

@@ -40,6 +40,10 @@ inline std::vector<EffectCase> effect_cases() {
       {"TriggerLatency", "effect: trigger_latency"},
       {"PlaneFormError", "effect: plane_form_error, at: table"},
       {"FixtureShift", "effect: fixture_shift, at: table, moment: 1000"},
+      {"ToolShift", "effect: tool_shift, at: probe, moment: 1000"},
+      {"ToolCompliance", "effect: tool_compliance, at: probe"},
+      {"ScaleError", "effect: scale_error, at: tracker"},
+      {"ScaleErrorByTemperature", "effect: scale_error, at: tracker, by: temperature"},
   };
 }
 
@@ -60,7 +64,7 @@ inline std::string entry_text(const EffectCase& each, const std::string& joint,
 inline Site random_site(std::mt19937_64& random) {
   Site site;
   site.sets = {{"table", true, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
-               {"tracker", false, {}, {}}};
+               {"tracker", false, {}, {}, true}};
   for (double t = 0; t <= 3600; t += 60) {
     site.times.push_back(t);
     site.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));

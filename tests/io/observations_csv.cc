@@ -264,6 +264,20 @@ TEST_F(ObservationsCsv, NumbersGroupsWithinTheirSetAfterTheNamedOnes) {
   EXPECT_EQ(error(rows), "observations.csv: set 'socket' names group 'right', which has no rows");
 }
 
+TEST_F(ObservationsCsv, TakesTheOrderOfTheRowsForTheTimeWhereTheFileHasNone) {
+  const std::string rows = "table,2,0\ntable,0,1\ntable,1,1\n";
+  const auto without = load("set,q1,q2\n" + rows);
+  ASSERT_TRUE(without.has_value()) << without.error().what;
+  EXPECT_TRUE(without->data.order_is_time);
+  EXPECT_EQ(without->data.rows.time, Eigen::Vector3d(0, 1, 2));
+  EXPECT_EQ(observations_text(without->data).find("time"), std::string::npos);
+  const auto with = load("set,q1,q2,time\ntable,2,0,5\ntable,0,1,\ntable,1,1,7\n");
+  ASSERT_TRUE(with.has_value()) << with.error().what;
+  EXPECT_FALSE(with->data.order_is_time);
+  EXPECT_EQ(with->data.rows.time[2], 7);
+  EXPECT_TRUE(std::isnan(with->data.rows.time[1]));
+}
+
 TEST_F(ObservationsCsv, NamesUnknownColumnsInOneNotice) {
   EXPECT_THAT(notices("set,operator,q1,q2,X,m1,q01,time\ntable,Bo,0,0,a,b,c,17\n"),
               ElementsAre("observations.csv: unknown columns are ignored: operator, X, m1, q01"));

@@ -73,5 +73,43 @@ TEST(SerialRemarks, SayWhereGravityPointsAndWhatHoldsTheArm) {
   EXPECT_THAT(light->text().remarks(), testing::Contains(HasSubstr("no masses given")));
 }
 
+const char* const kSilentArm =
+    "  - {name: base, joint: fixed, alpha: 1.5707963267948966}\n"
+    "  - {name: j1, joint: revolute}\n"
+    "  - {name: j2, joint: revolute, d: 0.5}\n"
+    "  - {name: tool, joint: fixed, d: 0.3}\n";
+
+TEST(UsualMasses, StandForTheWholeWhereTheFileGivesNoLinks) {
+  // 85 kg of 100 move: j1's link of 0.5 m by 0.5 + 0.15 x 0.5 = 0.575, j2's by 0.65 x 0.075 =
+  // 0.04875: 78.357 and 6.643 kg, at 0.25 m and at j2 itself; 0.3 x 10 kg at the tip.
+  const serial::Model model = model_of("mass: 100\npayload: 10\n" + with_frames(kSilentArm));
+  const Eigen::VectorXd level = serial::gravity_torques(model, Eigen::Vector2d(0, 0));
+  EXPECT_NEAR(level[0], -9.81 * (78.3567 * 0.25 + 6.6433 * 0.5 + 3 * 0.8), 1e-2);
+  EXPECT_NEAR(level[1], -9.81 * 3 * 0.3, kTorqueRounding);
+  EXPECT_TRUE(serial::mechanics(model).masses_assumed);
+  // The file that is written says what the one that was read does.
+  const Node back = serial::write(model);
+  EXPECT_EQ(back.find("mass")->text, "100");
+  EXPECT_EQ(back.find("payload")->text, "10");
+  for (const Node& frame : back.find("frames")->items) EXPECT_EQ(frame.find("mass"), nullptr);
+}
+
+TEST(UsualMasses, GiveWayToTheLinksOwn) {
+  const serial::Model model = model_of("mass: 100\n" + with_frames(kArm));
+  const serial::Model without = model_of(with_frames(kArm));
+  const Eigen::Vector2d q(0.3, -0.2);
+  EXPECT_EQ(serial::gravity_torques(model, q), serial::gravity_torques(without, q));
+  EXPECT_FALSE(serial::mechanics(model).masses_assumed);
+  EXPECT_FALSE(serial::mechanics(model_of(with_frames(kSilentArm))).masses_known());
+}
+
+TEST(UsualMasses, AreRefusedWhereTheyCannotBe) {
+  for (const char* line : {"mass: 0\n", "mass: -3\n", "payload: -1\n", "mass: heavy\n"}) {
+    Problems problems;
+    serial::read(parsed(line + with_frames(kSilentArm)), problems);
+    EXPECT_EQ(problems.list.size(), 1u) << line;
+  }
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -84,7 +84,8 @@ double visible_again(const MadeTrial& made) {
 TEST(TrialMachine, MakesEveryCauseAsVisibleAsAsked) {
   const std::vector<std::string> anywhere{"joint_compliance",   "link_compliance", "backlash",
                                           "transmission_error", "joint_coupling",  "zero_shift",
-                                          "thermal_expansion",  "base_drift",      "unknown"};
+                                          "thermal_expansion",  "base_drift",      "tool_shift",
+                                          "tool_compliance",    "unknown"};
   const std::vector<std::string> touched{"probe_pretravel", "trigger_latency", "plane_form_error",
                                          "fixture_shift"};
   const auto expect = [](const std::string& effect, bool touches) {
@@ -102,6 +103,7 @@ TEST(TrialMachine, MakesEveryCauseAsVisibleAsAsked) {
     expect(effect, false);
   }
   for (const std::string& effect : touched) expect(effect, true);
+  expect("scale_error", false);
 }
 
 TEST(TrialMachine, LeavesItsNoiseAloneWhereThereIsNoCause) {

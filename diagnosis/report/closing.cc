@@ -1,0 +1,163 @@
+#include "diagnosis/report/closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/visits.h"
+#include "diagnosis/report/holdout_validation.h"
+#include "diagnosis/report/named.h"
+#include "diagnosis/report/warnings.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kGrowthPasses = 4;
+constexpr size_t kMostEffects = 60;
+constexpr double kMostGrown = 2100;  ///< equations
+constexpr double kTried = 0.05;      ///< least probable cause that is tried alone
+constexpr int kMostTried = 4;
+
+class Closer {
+ public:
+  Closer(LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior,
+         const DataSet& data, const DiagnosisOptions& options, Diagnosis& result)
+      : view_(view),
+        posterior_(posterior),
+        data_(data),
+        options_(options),
+        result_(result),
+        freedom_(bench.marginal_likelihood(0).freedom()) {}
+
+  /// Geometry alone against geometry with what is named, and with everything found.
+  void run() {
+    const Hypothesis best = believed();
+    const double noise = result_.noise;
+    if (!best.candidates.empty()) result_.found = grown(best);
+    // What nobody knows is no noise; nor is what more of the named effects explains.
+    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
+    Closing closing = validated(result_.found);
+    result_.judged = std::move(closing.judged);
+    result_.gap = gap_of(result_.judged, options_.seed, freedom_);
+    result_.floor_freedom = freedom_;
+    result_.rejected = std::move(closing.rejected);
+    for (int row = 0; row < data_.rows.rows(); ++row)
+      if (view_.outlier()[row])
+        result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
+                                    "no explanation comes near it: a false reading"});
+    result_.model = closing.model;
+    result_.values = closing.all.fitted.state.xi;
+    result_.converged = closing.converged;
+    close_named();
+    close_candidates();
+    result_.warnings = warnings_of(view_, data_, closing);
+  }
+
+ private:
+  Closing validated(const Correction& correction) const {
+    return validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_, correction,
+                               view_.site(), result_.noise, options_);
+  }
+
+  Gap gap_with(Correction correction) const {
+    for (FoundEffect& each : correction) each.named = true;
+    return gap_of(validated(correction).judged, options_.seed, freedom_);
+  }
+
+  /// All that the rows say of the named causes and their like: from more rows than were weighed for
+  /// the name, and again with the noise that it leaves.
+  Correction grown(Hypothesis best) {
+    view_.weigh(kMostGrown);
+    const Candidates all = with_profiles(view_.candidates());
+    SearchRule rule = options_.search;
+    rule.noise_is_known = true;  // each pass takes it from what the one before leaves
+    Correction correction;
+    for (int pass = 0; pass < kGrowthPasses; ++pass) {
+      const DenseEquations rows = view_.kept();
+      const double of_visits = noise_of_visits(data_.rows, rows, view_.left());
+      const EvidenceEvaluator bench(view_.whitened(),
+                                    noise_alone(data_.rows, rows, view_.by_joint(rows), of_visits),
+                                    all, view_.parameters(), rule);
+      best.structure = 0;
+      // What is named is in the model, even where all the rest together makes up for it.
+      best = with_named(bench.grow(best, kMostEffects), result_.named, all, posterior_);
+      const auto [columns, sigma] = MarginalLikelihood::unfold(bench.terms(best));
+      const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
+                              bench.noise_variance(0);
+      const bool again = view_.refine(view_.residuals(columns, sigma), variance);
+      result_.noise = view_.noise() * std::hypot(1.0, of_visits);
+      if (again && pass + 1 < kGrowthPasses) continue;
+      for (size_t i = 0; i < best.candidates.size(); ++i) {
+        const Candidate& each = all.list[best.candidates[i]];
+        correction.push_back({each.entries.front(), {}, names_any(result_.named, each)});
+        bench.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
+      }
+      break;
+    }
+    return correction;
+  }
+
+  /// The best explanation with what is named; beside an unknown one, of what is probable all the
+  /// same.
+  Hypothesis believed() const {
+    const CauseResult& verdict = result_.verdict;
+    if (verdict.effect == kNone) return {};
+    const auto candidate = [&](int c) -> const Candidate& { return view_.candidates().list[c]; };
+    const auto probable = [&](int c) { return posterior_.family.at(candidate(c).effect) > 0.5; };
+    const auto named = [&](int c) { return names(verdict, candidate(c)); };
+    for (const Hypothesis& h : posterior_.hypotheses)
+      if (!h.candidates.empty() &&
+          (verdict.effect == kUnknown ? std::ranges::all_of(h.candidates, probable)
+                                      : std::ranges::any_of(h.candidates, named)))
+        return h;
+    return {};
+  }
+
+  /// The share of the gap that each named cause closes alone, and what the others leave of it.
+  void close_named() {
+    if (!result_.gap.closed.fraction) return;
+    const double all = *result_.gap.closed.fraction;
+    for (CauseResult& each : result_.named) {
+      const auto own = [&](const FoundEffect& found) { return found.named && of(each, found); };
+      Correction alone, others;
+      std::ranges::copy_if(result_.found, std::back_inserter(alone), own);
+      std::ranges::copy_if(result_.found, std::back_inserter(others),
+                           [&](const FoundEffect& found) { return found.named && !own(found); });
+      if (alone.empty()) continue;
+      each.closes_alone = others.empty() ? all : gap_with(alone).closed_all.fraction;
+      const std::optional<double> without =
+          others.empty() ? std::optional(0.0) : gap_with(others).closed_all.fraction;
+      if (without) each.closes_beside = all - *without;
+    }
+  }
+
+  static bool of(const CauseResult& cause, const FoundEffect& found) {
+    const Node* at = found.entry.find("at");
+    return names(cause, {.effect = found.entry.find("effect")->text, .at = at ? at->text : ""});
+  }
+
+  /// What each of the probable causes would leave alone.
+  void close_candidates() {
+    int tried = 0;
+    for (CauseResult& each : result_.candidates)
+      if (!each.correction.empty() && each.probability >= kTried && ++tried <= kMostTried)
+        each.rms_after = gap_with(each.correction).rms_all;
+  }
+
+  LinearisedModel& view_;
+  const Posterior& posterior_;
+  const DataSet& data_;
+  const DiagnosisOptions& options_;
+  Diagnosis& result_;
+  const double freedom_;
+};
+
+}  // namespace
+
+void close_gap(LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior,
+               const DataSet& data, const DiagnosisOptions& options, Diagnosis& into) {
+  Closer(view, bench, posterior, data, options, into).run();
+}
+
+}  // namespace selfcal

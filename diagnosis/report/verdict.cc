@@ -1,0 +1,111 @@
+#include "diagnosis/report/verdict.h"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+/// Of the usual largest: what is larger by more than two sigma is no usual cause.
+constexpr double kFarBeyond = 3;
+constexpr double kBeside = 0.5;  ///< least probability that is told beside the unknown
+
+[[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
+  char text[300];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  return text;
+}
+
+/// "backlash at j1 and j2".
+std::string with_places(const CauseResult& cause) {
+  std::string words = cause.effect;
+  for (size_t i = 0; i < cause.where.size(); ++i)
+    words += (i == 0 ? " at " : " and ") + cause.where[i];
+  return words;
+}
+
+/// ", or what these rows cannot tell from it (…)"; empty without look-alikes.
+std::string look_alikes(const CauseResult& cause) {
+  std::string words;
+  for (size_t i = 0; i < cause.confounded_with.size() && i < 3; ++i)
+    words +=
+        (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + cause.confounded_with[i];
+  return words.empty() ? words : words + ")";
+}
+
+std::string with_shape(const CauseResult& cause) {
+  return with_places(cause) + (cause.shape.empty() ? "" : " (" + cause.shape + ")");
+}
+
+std::string one_cause(const CauseResult& verdict, double p) {
+  std::string words = with_shape(verdict) + look_alikes(verdict) +
+                      phrase(", causes the gap (probability %.2f", verdict.probability);
+  if (!verdict.confounded_with.empty()) words += phrase(", with these %.2f", verdict.together);
+  return words + phrase(", p %.2g)", p);
+}
+
+std::string several_causes(const std::vector<CauseResult>& named, double p) {
+  std::string words;
+  for (size_t i = 0; i < named.size(); ++i) {
+    const CauseResult& each = named[i];
+    words += (i == 0                  ? ""
+              : i + 1 == named.size() ? " and "
+                                      : ", ") +
+             with_shape(each) + look_alikes(each) + phrase(" (probability %.2f", each.probability);
+    if (each.closes_alone && each.closes_beside)
+      words += phrase(", alone it closes %.0f %%, beside the others %.0f %%",
+                      100 * *each.closes_alone, 100 * *each.closes_beside);
+    words += ")";
+  }
+  return words + phrase(" cause the gap together (p %.2g)", p);
+}
+
+std::string unusual_sizes(const std::vector<CauseResult>& named) {
+  std::string words;
+  for (const CauseResult& each : named)
+    for (const NamedValue& v : each.parameters)
+      if (std::abs(v.value) - 2 * v.sigma > kFarBeyond * v.usual_most)
+        words += phrase(
+            "; %s = %.3g %s is far beyond the usual %.2g to %.2g: something else may "
+            "look like it",
+            v.name.c_str(), v.value, v.unit.c_str(), v.usual_least, v.usual_most);
+  return words;
+}
+
+std::string no_cause(const Diagnosis& diagnosis) {
+  if (diagnosis.p_value > DiagnosisOptions{}.name_below_p)
+    return phrase(
+        "no cause is named: noise alone explains what calibration leaves (as much is found in %.2g "
+        "of resampled rows)",
+        diagnosis.p_value);
+  return phrase(
+      "no cause is named: what calibration leaves may be noise (probability %.2g), though "
+      "resampled "
+      "rows show as much in %.2g of cases only",
+      diagnosis.verdict.probability, diagnosis.p_value);
+}
+
+}  // namespace
+
+std::string verdict_in_words(const Diagnosis& diagnosis) {
+  const CauseResult& verdict = diagnosis.verdict;
+  if (verdict.effect == kNone) return no_cause(diagnosis);
+  if (verdict.effect != kUnknown)
+    return (diagnosis.named.size() > 1 ? several_causes(diagnosis.named, diagnosis.p_value)
+                                       : one_cause(verdict, diagnosis.p_value)) +
+           unusual_sizes(diagnosis.named);
+  std::string beside;
+  for (const CauseResult& each : diagnosis.candidates)
+    if (names_effect(each.effect) && each.probability > kBeside)
+      beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
+  return "there is structure that no known effect explains" +
+         phrase(" (probability %.2f, p %.2g)", verdict.probability, diagnosis.p_value) + beside +
+         ": look at the machine, or repeat some configurations to be sure of the noise" +
+         unusual_sizes(diagnosis.named);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,14 @@
+// The verdict in a sentence or two.
+#pragma once
+
+#include <string>
+
+#include "diagnosis/findings.h"
+
+namespace selfcal {
+
+/// What is named, each with its probability and, of several, its share of the gap; what it cannot
+/// be told from; sizes far beyond the usual.
+std::string verdict_in_words(const Diagnosis& diagnosis);
+
+}  // namespace selfcal

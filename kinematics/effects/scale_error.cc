@@ -1,0 +1,58 @@
+// Scale error of a measuring device: the lengths that it measures are too long by a share
+//   s   or, with `by: temperature`,   k (T - T0),   T0 the reference (C; the rows' mean)
+// so that what it measures stands off the robot's model as if the tip, seen from the world's
+// origin, were that much farther out: shift = s p. Where the device's own origin is another, the
+// difference is a shift that its frame takes up. s: 1, k: 1/K.
+#include <cmath>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+class ScaleError final : public Effect {
+ public:
+  ScaleError(const EffectPlan& plan, int set) : set_(set) {
+    const std::string by = plan.fields.text("by", "");
+    if (!by.empty() && by != "temperature") plan.fields.fail("by", "temperature");
+    by_temperature_ = by == "temperature";
+    if (by_temperature_) {
+      parameters_ = {{"k", "1/K", 1e-7, 2e-5}};
+      reference_ = plan.fields.number("reference", plan.site.mean_temperature());
+    } else {
+      parameters_ = {{"s", "1", 1e-6, 5e-5}};
+    }
+  }
+
+  bool of_machine() const override { return false; }
+  std::string needs() const override {
+    return by_temperature_ ? "temperatures that change" : "lengths that are known otherwise";
+  }
+
+  void regressor(const Circumstances& at, Regressor& into) const override {
+    if (at.set != set_ || set_ < 0) return;
+    const double share = by_temperature_ ? at.temperature - reference_ : 1;
+    if (std::isnan(share)) return;
+    into.tip.col(0).head<3>() = share * at.poses.back().translation();
+  }
+
+ private:
+  void describe_shape(Node& node) const override {
+    if (!by_temperature_) return;
+    node.set("by", Node::of(std::string("temperature")));
+    node.set("reference", Node::of(reference_));
+  }
+
+  int set_;
+  bool by_temperature_ = false;
+  double reference_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_scale_error(const EffectPlan& plan) {
+  return std::make_unique<ScaleError>(plan, plan.set());
+}
+
+}  // namespace selfcal

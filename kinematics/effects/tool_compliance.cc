@@ -1,0 +1,67 @@
+// Compliance of the tool or its mount: all that follows the last moving frame turns about that
+// frame's origin O by
+//   omega = (bend_x M_x, bend_y M_y, twist M_z),   rad/(N m)
+// M the moment about O, in that frame's axes, of the tool's weight and of the wrench at its tip (a
+// rigid tool on a spring; a link that bends along its length is link_compliance). Where the tool's
+// frames have no mass, `mass` (kg, 1 where nothing is said) hangs at the tip.
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+/// Of the frames behind `last`; nothing where none of them has a mass.
+bool has_weight(const Mechanics& mechanics, int last) {
+  for (size_t k = static_cast<size_t>(last) + 1; k < mechanics.links.size(); ++k)
+    if (mechanics.links[k].mass > 0.0) return true;
+  return false;
+}
+
+class ToolCompliance final : public Effect {
+ public:
+  ToolCompliance(const EffectPlan& plan, const Mechanics& mechanics)
+      : last_(mechanics.link_of(static_cast<int>(plan.robot.joints().size()) - 1)) {
+    parameters_ = {{"bend_x", "rad/(N m)", 1e-6, 2e-4, true},
+                   {"bend_y", "rad/(N m)", 1e-6, 2e-4, true},
+                   {"twist", "rad/(N m)", 1e-6, 2e-4, true}};
+    if (!has_weight(mechanics, last_)) mass_ = plan.fields.number("mass", 1.0);
+    if (mass_ < 0) plan.fields.fail("mass", "at least 0 kg");
+  }
+
+  std::string needs() const override {
+    return "a tool whose tip stands off the last joint, and a load on it that changes";
+  }
+
+  void regressor(const Circumstances& at, Regressor& into) const override {
+    const Eigen::Isometry3d& mount = at.poses[static_cast<size_t>(last_)];
+    const Eigen::Vector3d arm = at.poses.back().translation() - mount.translation();
+    const Load load =
+        load_about(*at.mechanics, at.poses, at.wrench, last_ + 1, mount.translation());
+    const Eigen::Vector3d moment = load.moment + arm.cross(mass_ * at.mechanics->gravity);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d a = mount.linear().col(axis);
+      const Eigen::Vector3d omega = a * a.dot(moment);
+      into.tip.col(axis).head<3>() = omega.cross(arm);
+      into.tip.col(axis).tail<3>() = omega;
+    }
+  }
+
+ private:
+  void describe_shape(Node& node) const override {
+    if (mass_ > 0) node.set("mass", Node::of(mass_));
+  }
+
+  int last_;
+  double mass_ = 0;  ///< kg, at the tip
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_tool_compliance(const EffectPlan& plan) {
+  plan.expect_place("probe");
+  const Mechanics* mechanics = plan.mechanics();
+  if (!mechanics) return nullptr;
+  return std::make_unique<ToolCompliance>(plan, *mechanics);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,110 @@
+// What to measure next: something for every answer that leaves a question, or the reason why not.
+#include "diagnosis/report/experiment_design.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnosis/two_sessions.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+Node entry_of(const char* effect, const char* at, const char* key, const char* text) {
+  return recovery::entry({{"effect", effect}, {"at", at}, {key, text}});
+}
+
+/// Made once: it takes seconds.
+class NextStepsOfAnArm : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    data_ = std::make_unique<DataSet>(TwoSessions(30).before);
+    Observations& rows = data_->rows;
+    rows.velocity = Eigen::MatrixXd::Constant(rows.q.rows(), rows.q.cols(), 0.1);
+    for (Eigen::Index row = 0; row < rows.q.rows(); row += 2) rows.velocity.row(row) *= -1;
+    view_ = std::make_unique<LinearisedModel>(TwoSessions(2).robot, *data_, quick(), Progress{});
+  }
+  static void TearDownTestSuite() {
+    view_.reset();
+    data_.reset();
+  }
+
+  static CauseResult backlash(double probability) {
+    Node entry = entry_of("backlash", "j3", "play", "2.0e-5");
+    return {.effect = "backlash",
+            .where = {"j3"},
+            .probability = probability,
+            .correction = {{entry, {1e-4}, true}}};
+  }
+  static CauseResult coupling(double probability) {
+    Node entry = recovery::entry(
+        {{"effect", "joint_coupling"}, {"at", "j3"}, {"from", "j2"}, {"kappa_j2", "2.0e-5"}});
+    return {.effect = "joint_coupling",
+            .where = {"j3"},
+            .probability = probability,
+            .correction = {{entry, {1e-4}, true}}};
+  }
+  static NextSteps of(Diagnosis diagnosis) { return next_steps(*view_, *data_, diagnosis); }
+
+  static inline std::unique_ptr<DataSet> data_;
+  static inline std::unique_ptr<LinearisedModel> view_;
+};
+
+TEST_F(NextStepsOfAnArm, TellANamedCauseFromItsLookAlike) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = backlash(0.6);
+  diagnosis.verdict.confounded_with = {"joint_coupling@j3"};
+  diagnosis.named = {diagnosis.verdict};
+  diagnosis.candidates = {backlash(0.6), coupling(0.35)};
+  const NextSteps next = of(diagnosis);
+  ASSERT_FALSE(next.steps.empty());
+  EXPECT_THAT(next.steps.front().separates,
+              testing::ElementsAre("backlash@j3", "joint_coupling@j3"));
+  EXPECT_GE(next.steps.front().probability_after, 0.6 / 0.95 - 1e-9);
+  EXPECT_GT(next.steps.front().rows.rows(), 0);
+}
+
+TEST_F(NextStepsOfAnArm, TellACauseThatIsHardlyProbableFromNoise) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = kNone, .probability = 0.7};
+  diagnosis.candidates = {{.effect = kNone, .probability = 0.7}, coupling(0.2)};
+  const NextSteps next = of(diagnosis);
+  ASSERT_FALSE(next.steps.empty());
+  EXPECT_THAT(next.steps.front().separates, testing::ElementsAre("joint_coupling@j3", kNone));
+  EXPECT_GT(next.steps.front().probability_after, 0.2 / 0.9);
+}
+
+TEST_F(NextStepsOfAnArm, LookCloserAtTheUnknown) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = kUnknown, .probability = 0.9};
+  diagnosis.candidates = {{.effect = kUnknown, .probability = 0.9}};
+  const NextSteps next = of(diagnosis);
+  std::string all;
+  for (const NextStep& each : next.steps) {
+    EXPECT_TRUE(std::isnan(each.probability_after));
+    EXPECT_EQ(each.separates.front(), kUnknown);
+    EXPECT_GT(each.rows.rows(), 0);
+    all += each.what + "; ";
+  }
+  EXPECT_THAT(all, HasSubstr("twice at once"));
+  EXPECT_THAT(all, HasSubstr("from the other side"));
+  EXPECT_THAT(all, HasSubstr("payload"));
+}
+
+TEST_F(NextStepsOfAnArm, SayWhyThereAreNone) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = kNone, .probability = 0.99};
+  diagnosis.candidates = {{.effect = kNone, .probability = 0.99}, coupling(0.01)};
+  EXPECT_TRUE(of(diagnosis).steps.empty());
+  EXPECT_THAT(of(diagnosis).why, HasSubstr("no cause is as probable as 5 %"));
+  diagnosis.verdict = backlash(0.99);
+  diagnosis.named = {diagnosis.verdict};
+  EXPECT_TRUE(of(diagnosis).steps.empty());
+  EXPECT_THAT(of(diagnosis).why, HasSubstr("nothing looks like what is named"));
+}
+
+}  // namespace
+}  // namespace selfcal
