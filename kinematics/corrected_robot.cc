@@ -54,6 +54,12 @@ class CorrectedRobot final : public Robot, public RobotText {
   const std::vector<PassiveJoint>& passive_joints() const override {
     return geometry_->passive_joints();
   }
+  std::vector<FrameMotions> frame_motions(const Eigen::VectorXd& xi) const override {
+    std::vector<FrameMotions> list = geometry_->frame_motions(xi.head(geometry_parameters()));
+    for (FrameMotions& each : list)
+      each.moves.conservativeResizeLike(Eigen::MatrixXd::Zero(xi.size(), each.moves.cols()));
+    return list;
+  }
   bool within_passive_limits(const Eigen::VectorXd& q) const override {
     return geometry_->within_passive_limits(q);
   }

@@ -121,6 +121,13 @@ struct Joint {
   }
 };
 
+/// Changes of the parameters that do nothing but choose another frame: three shifts and three turns
+/// of it.
+struct FrameMotions {
+  std::string what;       ///< "the base's frame"
+  Eigen::MatrixXd moves;  ///< parameters x 6
+};
+
 /// One kind of machine. Immutable; a vector xi of parameter values goes beside it.
 class Robot {
  public:
@@ -159,6 +166,10 @@ class Robot {
   /// Index of the parameter that the variable of joint `j` is added to, so that it is the joint's
   /// zero.
   virtual int variable_parameter(int j) const = 0;
+
+  /// The frames that the parameters are given in, at values `xi`; empty where the kind does not
+  /// say.
+  virtual std::vector<FrameMotions> frame_motions(const Eigen::VectorXd&) const { return {}; }
 
   /// Readings that the machine can take, drawn within `span` (joints x lower, upper) by `uniform`
   /// numbers from 0 to 1.

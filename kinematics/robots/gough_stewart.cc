@@ -64,6 +64,16 @@ class GoughStewartRobot final : public platform::Platform, public RobotText {
     return q;
   }
 
+  std::vector<FrameMotions> frame_motions(const Eigen::VectorXd& xi) const override {
+    std::vector<int> base, platform;
+    for (int leg = 0; leg < kLegs; ++leg) {
+      base.push_back(index(leg, kBase));
+      platform.push_back(index(leg, kPlatform));
+    }
+    return {{"the base's frame", platform::point_motions(xi, base)},
+            {"the platform's frame", platform::point_motions(xi, platform)}};
+  }
+
   void joint_jacobian(const ConfigurationBlock&, const Eigen::VectorXd&, Body, const PsiBlock& psi,
                       Eigen::MatrixXd& J) const override {
     J.resize(psi.rows(), kLegs);

@@ -155,12 +155,12 @@ void Platform::differentiate(const ConfigurationBlock& block, const Eigen::Vecto
   for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane) = all.row(c);
 }
 
-/// Poses about home, by the readings that lead there; the farther ones give way where the limits
-/// leave little room.
+/// Poses about home, by the readings that lead there, well away from singular places; the farther
+/// ones give way where the limits leave little room.
 Eigen::VectorXd Platform::draw(const Eigen::MatrixX2d& span,
                                const std::function<double()>& uniform) const {
   constexpr int kTries = 400, kBeforeNearer = 50;
-  constexpr double kMostTurned = 0.5, kSame = 1e-6;
+  constexpr double kMostTurned = 0.5, kSame = 1e-6, kFarFromSingular = 0.3;
   const Eigen::VectorXd xi = nominal_values(*this);
   const double stroke = (span.col(1) - span.col(0)).mean() / 2;
   double share = 1;
@@ -171,7 +171,9 @@ Eigen::VectorXd Platform::draw(const Eigen::MatrixX2d& span,
     if (!q || (q->array() < span.col(0).array()).any() || (q->array() > span.col(1).array()).any())
       continue;
     const ClosedChains at = close(chains(xi, *q, Six::Zero()), mode_.home, &mode_);
-    if (at.open.empty() && (at.X.p - X.p).norm() < kSame && swings(at)) return *q;
+    if (at.open.empty() && (at.X.p - X.p).norm() < kSame && swings(at) &&
+        at.volume / mode_.volume > kFarFromSingular)
+      return *q;
   }
   return span.rowwise().mean();
 }

@@ -52,8 +52,9 @@ double size_of(const Chains& chains);
 /// What closes at X, whether or not the lengths fit.
 ClosedChains at_pose(const Chains& chains, const Location& X);
 /// Newton's steps from `start`, held short and halved where the loops would close worse or the
-/// platform would cross a singular place; `open` says why none led there. Without `mode`, either
-/// side will do.
+/// platform would cross a singular place; where that ends nowhere, along lengths between those at
+/// `start` and the wanted ones. `open` says why none led there. Without `mode`, either side will
+/// do, and steps go straight.
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode);
 
 /// A pose to look for the home from: turned so that the chains are short, above the base (below
@@ -88,6 +89,9 @@ Eigen::Vector3d read_centre(Fields& chain, std::string_view key);
 /// The six of the 18 coordinates (3 i + axis) of the centres that hold a frame best when they are
 /// held: those that a motion of all centres together moves most, one after another.
 std::vector<int> frame_coordinates(const Centres& centres);
+/// Shifts along and turns about the axes of the frame of points that are parameters: point i's x, y
+/// and z at `at[i]` of `xi`.
+Eigen::MatrixXd point_motions(const Eigen::VectorXd& xi, const std::vector<int>& at);
 
 /// What a kind of platform leaves to its own file.
 class Platform : public Robot {

@@ -12,7 +12,7 @@
 namespace selfcal::platform {
 namespace {
 
-constexpr int kSteps = 60, kHalvings = 12;
+constexpr int kSteps = 60, kHalvings = 12, kMostParts = 16;
 constexpr double kLongestTurn = 0.3;   // rad a step; as far in sizes of the platform
 constexpr double kClosed = 1e-13;      // of the longest chain: what rounding leaves of the lengths
 constexpr double kSingular = 1e-7;     // volume of a place where the platform is loose
@@ -84,7 +84,9 @@ ClosedChains at_pose(const Chains& chains, const Location& X) {
   return at;
 }
 
-ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
+namespace {
+
+ClosedChains newton(const Chains& chains, const Location& start, const AssemblyMode* mode) {
   const double size = size_of(chains), fits = kClosed * chains.length.cwiseAbs().maxCoeff();
   ClosedChains at = at_pose(chains, start);
   if ((chains.length.array() <= 0).any()) {
@@ -103,6 +105,24 @@ ClosedChains close(const Chains& chains, const Location& start, const AssemblyMo
     at.open = "the platform is loose there: a singular place";
   } else if (mode && log_rotation(at.X.R * mode->home.R.transpose()).norm() > kFarthestTurn) {
     at.open = "the platform would be turned over: another assembly mode";
+  }
+  return at;
+}
+
+}  // namespace
+
+ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
+  ClosedChains at = newton(chains, start, mode);
+  if (at.open.empty() || !mode || (chains.length.array() <= 0).any()) return at;
+  const Six from = misfit(chains, at_pose(chains, start)) + chains.length;
+  for (int parts = 4; parts <= kMostParts; parts *= 4) {
+    Chains between = chains;
+    ClosedChains next = at_pose(chains, start);
+    for (int i = 1; i <= parts && next.open.empty(); ++i) {
+      between.length = from + (chains.length - from) * i / parts;
+      next = newton(between, next.X, mode);
+    }
+    if (next.open.empty()) return next;
   }
   return at;
 }

@@ -95,4 +95,11 @@ std::vector<int> frame_coordinates(const Centres& centres) {
   return held;
 }
 
+Eigen::MatrixXd point_motions(const Eigen::VectorXd& xi, const std::vector<int>& at) {
+  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(xi.size(), 6);
+  for (const int point : at)
+    moves.middleRows<3>(point) << Eigen::Matrix3d::Identity(), -skew(xi.segment<3>(point));
+  return moves;
+}
+
 }  // namespace selfcal::platform
