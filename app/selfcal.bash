@@ -17,7 +17,7 @@ _selfcal() {
     *:diagnose) words="--sim --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
-    *:identifiable) words="--method --unknown --count --seed --json --help" ;;
+    *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check --help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;

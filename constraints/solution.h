@@ -31,13 +31,20 @@ struct NuisanceResult {
   double value = 0, sigma = 0;
 };
 
+/// Directions of the parameters that rows do not tell, for one reason.
+struct Lost {
+  int count = 0;
+  std::string why;
+  std::vector<std::string> parameters;  ///< that take part; empty where the reason says it
+};
+
 struct SetResult {
   std::string name, method;
   int rows = 0;  ///< `fit` rows that give an equation, or `check` rows when there are no others
   int used = 0;  ///< of them, not put aside
   bool identifies = false;       ///< has `fit` rows
   bool aligned = false;          ///< nuisance parameters fitted to `check` rows, robot held
-  double noise_sigma = 0;        ///< m, one scalar residual
+  double noise_sigma = 0;        ///< m, one scalar residual; 0 when the method has no lengths
   double noise_angle_sigma = 0;  ///< rad; 0 when the method has no angles
   double repeat_sigma = -1;      ///< m, from immediate repeats alone; negative without
   std::vector<NuisanceResult> nuisance;
@@ -57,9 +64,11 @@ struct AngleFigures {
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
 };
 
-/// Figures of row residuals (m; app/selfcal-data.5 says what the residual of a row is).
+/// Figures of row residuals (m; rad of a row that has angles alone; app/selfcal-data.5 says what
+/// the residual of a row is).
 struct Figures {
   int rows = 0;
+  bool angle_alone = false;  ///< of all rows
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
   double rms_without_rejected = 0;
   AngleFigures angle;

@@ -50,6 +50,19 @@ class CorrectedRobot final : public Robot, public RobotText {
   const std::vector<int>& preference() const override { return preference_; }
   const Statics* statics() const override { return geometry_->statics(); }
   bool has_loops() const override { return geometry_->has_loops(); }
+  std::optional<Location> home() const override { return geometry_->home(); }
+  const std::vector<PassiveJoint>& passive_joints() const override {
+    return geometry_->passive_joints();
+  }
+  std::vector<FrameMotions> frame_motions(const Eigen::VectorXd& xi) const override {
+    std::vector<FrameMotions> list = geometry_->frame_motions(xi.head(geometry_parameters()));
+    for (FrameMotions& each : list)
+      each.moves.conservativeResizeLike(Eigen::MatrixXd::Zero(xi.size(), each.moves.cols()));
+    return list;
+  }
+  bool within_passive_limits(const Eigen::VectorXd& q) const override {
+    return geometry_->within_passive_limits(q);
+  }
   Eigen::Vector3d tool_axis() const override { return geometry_->tool_axis(); }
   Eigen::VectorXd draw(const Eigen::MatrixX2d& span,
                        const std::function<double()>& uniform) const override {
@@ -162,7 +175,8 @@ class CorrectedRobot final : public Robot, public RobotText {
       all.by.tip.middleCols(column, own) = part.tip;
       column += own;
     }
-    if (body == Body::first_link) all.by.tip.setZero();  // what bends the tip leaves it alone
+    // What bends the tip leaves the base and the links alone.
+    if (body == Body::first_link || body >= Body::first_passive) all.by.tip.setZero();
     return all;
   }
 

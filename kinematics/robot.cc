@@ -96,7 +96,23 @@ int find_joint(const Robot& robot, std::string_view name) {
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
   for (Eigen::Index j = 0; j < q.size(); ++j)
     if (!robot.joints()[j].allows(q[j], margin)) return false;
-  return true;
+  return robot.within_passive_limits(q);
+}
+
+const std::vector<PassiveJoint>& Robot::passive_joints() const {
+  static const std::vector<PassiveJoint> none;
+  return none;
+}
+
+int passive_index(const Robot& robot, Body body) {
+  const std::vector<PassiveJoint>& joints = robot.passive_joints();
+  for (size_t i = 0; i < joints.size(); ++i)
+    if (body_behind(joints[i].chain, joints[i].kind) == body) return static_cast<int>(i);
+  return -1;
+}
+
+bool has_body(const Robot& robot, Body body) {
+  return body < Body::first_passive || passive_index(robot, body) >= 0;
 }
 
 void Closure::leave_open(int lane, std::string reason) {

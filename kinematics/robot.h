@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,8 +83,29 @@ static_assert(kLanes == 32, "a bit for each lane");
 
 /// The body whose location is asked for: the tool's frame, or the first or last moving link (whose
 /// location the parameters of frames behind it do not change). Of a machine with loops the last
-/// link is the platform, and the first its base: what turns with the machine as a whole.
-enum class Body { endpoint, last_link, first_link };
+/// link is the platform, and the first its base: what turns with the machine as a whole. From
+/// first_passive on, the links behind passive joints (see body_behind).
+enum class Body : int { endpoint, last_link, first_link, first_passive };
+
+/// The universal joint that a chain of a platform has in the base, the spherical one in the
+/// platform.
+enum class PassiveKind : int { universal, spherical };
+
+/// A joint that nothing drives and nothing reads. What it says is the link behind it as seen from
+/// what carries it (the base or the platform), a body: the joint's centre, and the link along z.
+struct PassiveJoint {
+  std::string name;  ///< "leg1.universal"
+  int chain = 0;     ///< from 0
+  PassiveKind kind = PassiveKind::universal;
+  double swing = 0;  ///< most that the link turns there from its direction at home (rad); 0: any
+};
+
+/// The link behind the joint of `kind` of `chain` (from 0): its location is in the frame that
+/// carries the joint, the world or the platform.
+inline Body body_behind(int chain, PassiveKind kind) {
+  return static_cast<Body>(static_cast<int>(Body::first_passive) + 2 * chain +
+                           static_cast<int>(kind));
+}
 
 struct Joint {
   std::string name;  ///< the frame that it moves
@@ -97,6 +119,13 @@ struct Joint {
   bool allows(double reading, double margin = 0) const {
     return !limited() || !(reading < lower + margin || reading > upper - margin);
   }
+};
+
+/// Changes of the parameters that do nothing but choose another frame: three shifts and three turns
+/// of it.
+struct FrameMotions {
+  std::string what;       ///< "the base's frame"
+  Eigen::MatrixXd moves;  ///< parameters x 6
 };
 
 /// One kind of machine. Immutable; a vector xi of parameter values goes beside it.
@@ -121,6 +150,14 @@ class Robot {
                          Locations& X, PsiBlock* psi) const = 0;
   /// Has loops, so that locate may leave lanes open.
   virtual bool has_loops() const { return false; }
+  /// Of a machine that could be put together in several ways: where its last link stands, by the
+  /// maker's figures, in the middle of its readings. Loops are closed from there, or from the lane
+  /// before, and only in the way that this belongs to.
+  virtual std::optional<Location> home() const { return std::nullopt; }
+  /// Joints that a method may speak of; empty where the kind gives none.
+  virtual const std::vector<PassiveJoint>& passive_joints() const;
+  /// Every passive joint is within its limit at readings `q`, by the maker's figures.
+  virtual bool within_passive_limits(const Eigen::VectorXd&) const { return true; }
 
   /// dX of `body` per joint reading, (6 kLanes) x joints, laid out as Psi; `psi` is that of the
   /// block and the body.
@@ -129,6 +166,10 @@ class Robot {
   /// Index of the parameter that the variable of joint `j` is added to, so that it is the joint's
   /// zero.
   virtual int variable_parameter(int j) const = 0;
+
+  /// The frames that the parameters are given in, at values `xi`; empty where the kind does not
+  /// say.
+  virtual std::vector<FrameMotions> frame_motions(const Eigen::VectorXd&) const { return {}; }
 
   /// Readings that the machine can take, drawn within `span` (joints x lower, upper) by `uniform`
   /// numbers from 0 to 1.
@@ -151,7 +192,12 @@ Eigen::VectorXd nominal_values(const Robot& robot);
 
 /// Index of the joint called `name`, or -1.
 int find_joint(const Robot& robot, std::string_view name);
-/// Every reading keeps `margin` (rad or m) from its joint's limits.
+/// Place of the joint that `body` is behind among the passive ones, or -1.
+int passive_index(const Robot& robot, Body body);
+/// The robot can be asked for `body`.
+bool has_body(const Robot& robot, Body body);
+/// Every reading keeps `margin` (rad or m) from its joint's limits, and the passive joints keep
+/// theirs.
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin = 0);
 
 /// Readings `q` alone, in every lane.

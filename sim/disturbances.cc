@@ -61,6 +61,12 @@ class Disturber {
     return {x, y, normal(sigma)};
   }
 
+  /// 1 sigma of an angle; a method without lengths may have it as its noise.
+  double angle_sigma(int row) const {
+    const SetScenario& set = scenario_.sets[made_.data.rows.set[row]];
+    return set.noise_angle > 0 || method(row).has_lengths() ? set.noise_angle : set.noise;
+  }
+
   /// Residual of a touch: noise in each equation.
   Eigen::VectorXd drawn_residual(int row) {
     const SetScenario& set = scenario_.sets[made_.data.rows.set[row]];
@@ -68,7 +74,7 @@ class Disturber {
     const double shared = method(row).paired() ? std::sqrt(0.5) : 1;
     Eigen::VectorXd r(static_cast<Eigen::Index>(equations.size()));
     for (Eigen::Index a = 0; a < r.size(); ++a)
-      r[a] = shared * normal(equations[a] == Quantity::angle ? set.noise_angle : set.noise);
+      r[a] = shared * normal(equations[a] == Quantity::angle ? angle_sigma(row) : set.noise);
     return r;
   }
 
@@ -83,7 +89,7 @@ class Disturber {
     if (r.size() > 1) {
       std::normal_distribution<double> normal;
       for (Eigen::Index a = 0; a < r.size(); ++a)
-        if (equations[a] == Quantity::length) r[a] = normal(errors_);
+        if (equations[a] == Quantity::length || !method(row).has_lengths()) r[a] = normal(errors_);
       return size * r.normalized();
     }
     const auto plane = true_plane(made_.data.sets, set, made_.truth.nuisance);
@@ -111,7 +117,7 @@ class Disturber {
     const SetScenario& set = scenario_.sets[made_.data.rows.set[row]];
     Observations& rows = made_.data.rows;
     rows.position.row(row) += normals(set.noise).transpose();
-    const Eigen::Vector3d turn = normals(set.noise_angle);
+    const Eigen::Vector3d turn = normals(angle_sigma(row));
     if (rows.orientation.row(row).allFinite()) {
       const Eigen::Vector4d v = rows.orientation.row(row).transpose();
       const Eigen::Quaterniond q =
@@ -125,7 +131,7 @@ class Disturber {
     for (std::size_t i = 0; i < nuisance.size(); ++i) {
       if (i > 0) drawn = normal(1);
       double& value = rows.column(nuisance[i].name)[row];
-      value += drawn * (nuisance[i].quantity == Quantity::angle ? set.noise_angle : set.noise);
+      value += drawn * (nuisance[i].quantity == Quantity::angle ? angle_sigma(row) : set.noise);
       if (nuisance[i].never_negative) value = std::abs(value);
       // The first of a group has no previous row to be measured from.
       if (first_of_group && method(row).paired()) value = std::nan("");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "app/commands/subcommand.h"
 #include "app/report/progress_line.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct IdentifiableArguments {
   std::string subject, method;
+  std::vector<std::string> locks;  ///< "leg=1,joint=universal"
   bool unknown = false, json = false;
   int count = 120;
   unsigned long long seed = 1;
@@ -32,6 +34,7 @@ struct Answered {
   int rows = 0, nuisance = 0;
   Identifiability rank;
   std::vector<Note> unexcited;
+  std::vector<Lost> lost;
 };
 
 /// The entry of a set of `method`; planes are known, through the endpoint at a random
@@ -55,14 +58,37 @@ Node set_entry(const Robot& robot, const IdentifiableArguments& arguments) {
   return node;
 }
 
+/// An entry of a set for each lock, of the words KEY=VALUE between commas.
+std::vector<Set> locked_sets(const std::vector<std::string>& locks, Problems& problems) {
+  std::vector<Set> sets;
+  for (const std::string& lock : locks) {
+    Node words = Node::map();
+    std::istringstream text(lock);
+    for (std::string word; std::getline(text, word, ',');) {
+      const size_t equals = word.find('=');
+      words.set(word.substr(0, equals),
+                Node::of(equals == word.npos ? std::string() : word.substr(equals + 1)));
+    }
+    Node node = Node::map();
+    node.set("method", Node::of(std::string("locked-joint"))).set("lock", std::move(words));
+    sets.push_back(make_set(lock, node, problems));
+  }
+  return sets;
+}
+
 Result<Answered> of_robot(const IdentifiableArguments& arguments) {
   auto robot = load_robot(arguments.subject);
   if (!robot) return tl::unexpected(robot.error());
   Problems problems;
-  std::vector<Set> sets;
-  sets.push_back(make_set(arguments.method, set_entry(**robot, arguments), problems));
+  std::vector<Set> sets = locked_sets(arguments.locks, problems);
+  if (sets.empty())
+    sets.push_back(make_set(arguments.method, set_entry(**robot, arguments), problems));
   if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
-  Answered answered{nullptr, arguments.method, arguments.count, 0, {}, {}};
+  if (const std::string why = lacking_body(**robot, sets); !why.empty())
+    return tl::unexpected(Failure{kWrongUsage, why});
+  Answered answered;
+  answered.method = arguments.method;
+  answered.rows = arguments.count * static_cast<int>(sets.size());
   StructuralRank structure =
       structural(**robot, sets, std::vector<char>((*robot)->parameters().size(), 1),
                  arguments.count, arguments.seed);
@@ -70,6 +96,7 @@ Result<Answered> of_robot(const IdentifiableArguments& arguments) {
     return tl::unexpected(Failure{kAnswerIsNo, structure.unreached});
   answered.rank = std::move(structure.rank);
   answered.nuisance = structure.nuisance;
+  answered.lost = std::move(structure.lost);
   answered.robot = std::move(*robot);
   return answered;
 }
@@ -87,7 +114,8 @@ Result<Answered> of_data_set(const IdentifiableArguments& arguments) {
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
   if (solution.sets.empty()) return tl::unexpected(Failure{kAnswerIsNo, solution.stop_reason});
-  Answered answered{nullptr, "", 0, 0, {}, solution.unexcited};
+  Answered answered;
+  answered.unexcited = solution.unexcited;
   std::set<std::string> methods;
   for (const SetResult& set : solution.sets) {
     if (!set.identifies) continue;
@@ -121,6 +149,12 @@ nlohmann::ordered_json answered_json(const Answered& answered) {
                                   {"status", to_string(answered.rank.status[i])},
                                   {"grouped_with", carriers}});
   }
+  if (!answered.lost.empty()) {
+    json["lost"] = nlohmann::ordered_json::array();
+    for (const Lost& lost : answered.lost)
+      json["lost"].push_back(
+          {{"count", lost.count}, {"why", lost.why}, {"parameters", lost.parameters}});
+  }
   if (!answered.unexcited.empty()) {
     json["unexcited"] = nlohmann::ordered_json::array();
     for (const Note& note : answered.unexcited)
@@ -147,6 +181,12 @@ void print_answered(const Answered& answered) {
     std::printf("  %-8s %-24s %s%s\n", p.name.c_str(), (p.frame + "." + p.field).c_str(),
                 text.c_str(), carriers.size() > 4 ? ", …" : "");
   }
+  for (const Lost& lost : answered.lost) {
+    std::string names;
+    for (const std::string& name : lost.parameters) names += (names.empty() ? " (" : " ") + name;
+    std::printf("lost: %d: %s%s%s\n", lost.count, lost.why.c_str(), names.c_str(),
+                names.empty() ? "" : ")");
+  }
   for (const Note& note : answered.unexcited)
     std::printf("not excited: %s: %s\n", note.parameter.c_str(), note.text.c_str());
 }
@@ -166,6 +206,10 @@ int identifiable_command(const IdentifiableArguments& arguments) {
                        " goes with a robot file and --method; a data set has its own rows");
   if (arguments.unknown && !arguments.method.starts_with("plane"))
     return wrong_usage("--unknown goes with plane and plane-normal, not with " + arguments.method);
+  if ((arguments.method == "locked-joint") == arguments.locks.empty())
+    return wrong_usage(arguments.locks.empty()
+                           ? "--method locked-joint needs --lock leg=N,joint=universal or spherical"
+                           : "--lock goes with --method locked-joint");
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)
@@ -191,6 +235,11 @@ void add_identifiable(CLI::App& app, int& status) {
   command->add_option("--method", arguments->method, "Constraint method (with a robot file)")
       ->check(CLI::IsMember(method_list()));
   const std::vector<CLI::Option*> for_robots = {
+      command
+          ->add_option("--lock", arguments->locks,
+                       "leg=N,joint=universal or spherical; again for each that is locked in turn")
+          ->expected(1)
+          ->take_all(),
       command->add_flag("--unknown", arguments->unknown, "The plane is unknown"),
       command->add_option("--count", arguments->count, "Random configurations")
           ->check(CLI::Range(10, 100000))

@@ -49,8 +49,9 @@ std::string first_line(const DataSet& data, const Solution& solution) {
   const Figures& check = solution.residual.check;
   const Figures& fit = solution.residual.fit;
   if (check.rows > 0) {
-    text += phrase("%.3g mm before, %.3g mm after on %d rows kept aside", 1e3 * check.rms_before,
-                   1e3 * check.rms_after, check.rows);
+    text += phrase(check.angle_alone ? "%.3g mrad before, %.3g mrad after on %d rows kept aside"
+                                     : "%.3g mm before, %.3g mm after on %d rows kept aside",
+                   1e3 * check.rms_before, 1e3 * check.rms_after, check.rows);
     // False rows among those kept aside count; say what is left without them.
     if (check.rms_without_rejected < 0.9 * check.rms_after)
       text += phrase(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);

@@ -43,6 +43,8 @@ struct RowResidual {
   double factor = 1;             ///< of its noise over its set's
   std::array<double, kMostEquations>
       scalars{};  ///< lengths + angles entries, in the method's order
+  /// Its length, or its angle where it has no lengths (m; rad).
+  double size() const { return lengths > 0 ? length : angle; }
   /// Distance from zero in sigmas of the set's noise and the row's factor.
   double sigmas(const Scale& scale) const;
 };

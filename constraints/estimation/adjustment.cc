@@ -132,7 +132,8 @@ class Adjustment {
       if (equations_.plan(static_cast<int>(s)).items.empty()) continue;
       const Set& set = equations_.data().sets[s];
       const Scale& used = adjusted_.before.noise.used[s];
-      most = std::max(most, used.length / std::max(set.noise, kLeastNoise));
+      if (set.method->has_lengths())
+        most = std::max(most, used.length / std::max(set.noise, kLeastNoise));
       if (set.method->has_angles())
         most = std::max(most, used.angle / std::max(set.noise_angle, kLeastNoise));
     }

@@ -158,7 +158,8 @@ std::vector<std::string> gross_angles(const Robot& robot, const DataSet& data, c
         with_figures(" are left %.3g mrad off about each axis, where noise and tolerances leave "
                      "less than %.2g: ",
                      1e3 * left, 1e3 * limit) +
-        slip_of(robot, data, s, before.state.xi, limit));
+        (set.method->has_lengths() ? slip_of(robot, data, s, before.state.xi, limit)
+                                   : "check the signs and zeros of the readings"));
   }
   return list;
 }

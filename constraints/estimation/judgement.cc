@@ -48,7 +48,7 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
   double kept = 0, kept_rows = 0;
   for (const Pair& pair : pairs) {
     ++f.rows;
-    const double b = pair.before->length, a = pair.after->length;
+    const double b = pair.before->size(), a = pair.after->size();
     f.rms_before += b * b;
     f.rms_after += a * a;
     f.mean_after += a;
@@ -58,6 +58,8 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
     ++kept_rows;
   }
   f.angle = angle_figures(pairs);
+  f.angle_alone = !pairs.empty() &&
+                  std::ranges::all_of(pairs, [](const Pair& p) { return p.after->lengths == 0; });
   if (f.rows == 0) return f;
   f.rms_before = std::sqrt(f.rms_before / f.rows);
   f.rms_after = std::sqrt(f.rms_after / f.rows);
@@ -112,7 +114,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   for (size_t i = 0; i < after.check.size(); ++i) {
     check.push_back({&before.check[i], &after.check[i]});
     far[after.check[i].row] = is_outlier(after.check[i], after);
-    result.check_rows.push_back({after.check[i].length, far[after.check[i].row] != 0});
+    result.check_rows.push_back({after.check[i].size(), far[after.check[i].row] != 0});
   }
   result.fit = figures(fit, outlier);
   result.check = figures(check, far);
@@ -131,7 +133,7 @@ std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
                                   const std::vector<char>& outlier) {
   std::vector<Outlier> list;
   const auto add = [&](const RowResidual& r, bool check) {
-    list.push_back({r.row + 1, data.sets[r.set].name, r.length, check,
+    list.push_back({r.row + 1, data.sets[r.set].name, r.size(), check,
                     check ? "outlier among the check rows: counted all the same" : "outlier"});
   };
   for (const RowResidual& r : after.fit)
@@ -154,8 +156,10 @@ namespace {
 bool is_false(size_t i, const Judged& before, const Judged& after) {
   const RowResidual &b = before.check[i], &a = after.check[i];
   return is_outlier(b, before) && is_outlier(a, after) &&
-         a.length - b.length <
-             chi_quantile(b.lengths, kFar) * b.factor * before.check_scale[b.set].length;
+         a.size() - b.size() <
+             (b.lengths > 0 ? chi_quantile(b.lengths, kFar) * before.check_scale[b.set].length
+                            : chi_quantile(b.angles, kFar) * before.check_scale[b.set].angle) *
+                 b.factor;
 }
 
 /// The rows' squares fall, of all and of each set that only judges: many small gains must not
@@ -165,7 +169,7 @@ bool lengths_fall(const Judged& before, const Judged& after) {
   std::vector<double> of_set(after.aligned.size(), 0);
   for (size_t i = 0; i < after.check.size(); ++i) {
     if (is_false(i, before, after)) continue;
-    const double gain = std::pow(before.check[i].length, 2) - std::pow(after.check[i].length, 2);
+    const double gain = std::pow(before.check[i].size(), 2) - std::pow(after.check[i].size(), 2);
     all += gain;
     if (after.aligned[after.check[i].set]) of_set[after.check[i].set] += gain;
   }
@@ -206,9 +210,10 @@ std::string certainty(const Grounds& grounds) {
 
 /// What became of the check rows.
 std::string change(const Figures& check, double p_value) {
-  std::string text =
-      with_figures("check residual %.4g to %.4g mm", 1e3 * check.rms_before, 1e3 * check.rms_after);
-  if (check.angle.rows > 0)
+  std::string text = with_figures(
+      check.angle_alone ? "check residual %.4g to %.4g mrad" : "check residual %.4g to %.4g mm",
+      1e3 * check.rms_before, 1e3 * check.rms_after);
+  if (check.angle.rows > 0 && !check.angle_alone)
     text += with_figures(", angles %.3g to %.3g mrad", 1e3 * check.angle.rms_before,
                          1e3 * check.angle.rms_after);
   return text + " (p " + (p_value < 1e-9 ? "< 1e-9" : with_figures("= %.2g", p_value)) + ")";
@@ -225,7 +230,7 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
   }
   std::vector<double> gain;
   for (size_t i = 0; i < after.check.size(); ++i)
-    gain.push_back(before.check[i].length - after.check[i].length);
+    gain.push_back(before.check[i].size() - after.check[i].size());
   v.p_value = signed_rank_p(gain);
   v.why = change(residual.check, v.p_value) + "; " + certainty(grounds);
   const bool worse_turned = angles_rise(before, after);

@@ -98,7 +98,8 @@ Observability identified_observability(const Equations& equations, const Eigen::
     const int count = static_cast<int>(equations.plan(s).items.size());
     if (count == 0) continue;
     rows += count;
-    const double sigma = noise.used[s].length;
+    const bool lengths = equations.data().sets[s].method->has_lengths();
+    const double sigma = lengths ? noise.used[s].length : noise.used[s].angle;
     quietest = quietest == 0 ? sigma : std::min(quietest, sigma);
   }
   // The sets' nuisance parameters are projected out first: what they could mimic is not seen.
@@ -127,7 +128,7 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
     if (!identifies)
       for (const RowResidual& r : after.check) each.rows += r.set == s;
     if (identifies || each.aligned) {
-      each.noise_sigma = noise.length;
+      if (set.method->has_lengths()) each.noise_sigma = noise.length;
       if (set.method->has_angles()) each.noise_angle_sigma = noise.angle;
       each.repeat_sigma =
           repeat_sigma(data, s, identifies ? after.fit : after.check, fit.noise.outlier);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "constraints/identifiability/lost.h"
 #include "constraints/sampling/configurations.h"
 
 namespace selfcal {
@@ -88,8 +89,14 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   const Linearised at = equations.linearise(state, weighting);
   RankRule rule;
   rule.rows = at.equations;
-  return {identifiability(equations, at.R, state, candidate, rule), equations.nuisance_dimensions(),
-          sampled.unreached};
+  StructuralRank result{identifiability(equations, at.R, state, candidate, rule),
+                        equations.nuisance_dimensions(),
+                        {},
+                        sampled.unreached};
+  const auto asked = static_cast<int>(std::count(candidate.begin(), candidate.end(), char{1}));
+  if (!robot.frame_motions(xi).empty())
+    result.lost = lost_directions(equations, at.R, state, candidate, asked - result.rank.total());
+  return result;
 }
 
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,

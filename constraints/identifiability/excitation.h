@@ -14,8 +14,9 @@ namespace selfcal {
 /// What the methods could tell.
 struct StructuralRank {
   Identifiability rank;
-  int nuisance = 0;       ///< freedoms of the sets' and groups' nuisance parameters
-  std::string unreached;  ///< why rows are missing; empty when all were found
+  int nuisance = 0;        ///< freedoms of the sets' and groups' nuisance parameters
+  std::vector<Lost> lost;  ///< of the parameters, where the robot names the frames that it chose
+  std::string unreached;   ///< why rows are missing; empty when all were found
 };
 
 /// The structural answer: status of every parameter on random configurations that satisfy the

@@ -98,7 +98,7 @@ Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd
 }
 
 bool point_is_unknown(const Equations& equations) {
-  return every_set(equations, [](const Method& m) { return m.point_unknown(); });
+  return every_set(equations, [](const Method& m) { return !m.sees_point(); });
 }
 
 }  // namespace selfcal

@@ -31,7 +31,7 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
 /// unknowns being unknown. R is whitened, with the six motion columns before its last.
 Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd& R);
 
-/// True when every set with rows measures an unknown point instead of the tool.
+/// True when no row tells where the tool's point is: every set measures an unknown one, or angles.
 bool point_is_unknown(const Equations& equations);
 
 }  // namespace selfcal

@@ -114,6 +114,10 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
   if (set.method->has_angles()) set.noise_angle = read_noise(fields, "noise_angle");
   if (const Node* tolerance = fields.node("tolerance"))
     set.given = read_given(*tolerance, *set.method, problems);
+  if (!set.method->has_lengths()) {
+    if (!(set.noise_angle > 0)) set.noise_angle = set.noise;
+    set.noise = 0;
+  }
   fields.refuse_unknown();
   return set;
 }
@@ -130,6 +134,14 @@ std::vector<Set> read_sets(const Node& node, Problems& problems) {
   }
   if (!problems.any()) link_sets(sets, node, problems);
   return sets;
+}
+
+std::string lacking_body(const Robot& robot, const std::vector<Set>& sets) {
+  for (const Set& set : sets)
+    if (set.method && !has_body(robot, set.method->body()))
+      return "set " + set.name + ": this " + std::string(robot.kind()) +
+             " robot has no such joint to lock";
+  return {};
 }
 
 int same_set(const std::vector<Set>& sets, const Set& set) {

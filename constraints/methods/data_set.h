@@ -48,6 +48,10 @@ Set make_set(const std::string& name, const Node& node, Problems& problems);
 /// without a method or not tied after a problem.
 std::vector<Set> read_sets(const Node& node, Problems& problems);
 
+/// Why the robot cannot answer one of the sets, which speaks of a joint that it lacks; empty when
+/// it can.
+std::string lacking_body(const Robot& robot, const std::vector<Set>& sets);
+
 /// The set among `sets` of the same name and method as `set`; -1 without.
 int same_set(const std::vector<Set>& sets, const Set& set);
 

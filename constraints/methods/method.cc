@@ -19,6 +19,11 @@ void MethodOutput::clear(int lane) {
     block->row(lane).setZero();
 }
 
+bool Method::has_lengths() const {
+  const std::vector<Quantity> all = equations();
+  return std::find(all.begin(), all.end(), Quantity::length) != all.end();
+}
+
 bool Method::has_angles() const {
   const std::vector<Quantity> all = equations();
   return std::find(all.begin(), all.end(), Quantity::angle) != all.end();

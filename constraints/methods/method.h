@@ -136,11 +136,14 @@ class Method {
   /// True when a row holds only at certain configurations (a touch); false for an instrument's
   /// reading, which any configuration has.
   virtual bool constrains() const { return true; }
-  /// True when one of the equations is of an angle, and so has a noise of its own.
+  /// True when one of the equations is of a length, or of an angle, which has a noise of its own.
+  bool has_lengths() const;
   bool has_angles() const;
   /// True when a row tells how the endpoint is turned, beside where it is.
   virtual bool sees_orientation() const { return has_angles(); }
-  Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
+  /// True when a row tells where the endpoint is.
+  virtual bool sees_point() const { return !point_unknown(); }
+  virtual Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
   virtual Planned planned() const { return Planned::no; }
   /// True when where the touched surface lies, or how it is turned, is given.

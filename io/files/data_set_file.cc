@@ -85,6 +85,8 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   Result<std::unique_ptr<Robot>> robot = load_robot(folder / description.robot);
   if (!robot) return tl::unexpected(robot.error());
   loaded.robot = std::move(*robot);
+  if (const std::string why = lacking_body(*loaded.robot, loaded.data.sets); !why.empty())
+    return bad_input(file.string() + ": " + why);
   const Result<void> read = read_observations(folder / description.observations, *loaded.robot,
                                               loaded.data, loaded.notices);
   if (!read) return tl::unexpected(read.error());

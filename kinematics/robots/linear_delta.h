@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kinematics/robot.h"
+#include "kinematics/robots/figures.h"
 
 namespace selfcal::linear_delta {
 
@@ -25,12 +26,10 @@ enum Other { kEffector = kFields * kTowers, kTool = kEffector + 2, kParameters =
 
 inline int index(int tower, int field) { return kFields * tower + field; }
 
-using Numbers = Eigen::Matrix<double, kParameters, 1>;
+struct Delta : PartFigures {
+  Delta() : PartFigures(kParameters) {}
 
-struct Delta {
   std::string name;
-  Numbers value = Numbers::Zero(), nominal = Numbers::Zero();  ///< m, rad, 1
-  Numbers tolerance = Numbers::Constant(-1);     ///< negative where the file is silent
   std::array<double, kTowers> lower{}, upper{};  ///< of the readings; equal: none
 };
 

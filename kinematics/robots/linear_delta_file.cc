@@ -6,12 +6,6 @@
 namespace selfcal::linear_delta {
 namespace {
 
-/// A number of the file by the place that it has among the figures.
-struct Named {
-  const char* name;
-  int at;
-};
-
 std::vector<Named> tower_names(int t) {
   return {{"radius", index(t, kRadius)}, {"angle", index(t, kAngle)},
           {"rod", index(t, kRod)},       {"endstop", index(t, kEndstop)},
@@ -25,21 +19,6 @@ const std::vector<Named>& effector_names() {
 const std::vector<Named>& tool_names() {
   static const std::vector<Named> names = {{"x", kTool}, {"y", kTool + 1}, {"z", kTool + 2}};
   return names;
-}
-
-/// `tolerance` and `nominal`: mappings from the figures' names to numbers.
-void read_beside(Fields& of, const std::vector<Named>& names, Problems& problems, Delta& model) {
-  for (const Named& each : names) model.nominal[each.at] = model.value[each.at];
-  const auto read = [&](const char* key, Numbers& into) {
-    const Node* node = of.node(key);
-    if (!node) return;
-    Fields fields(*node, of.what() + " " + key, problems);
-    for (const Named& each : names)
-      if (const auto value = fields.optional_number(each.name)) into[each.at] = *value;
-    fields.refuse_unknown();
-  };
-  read("tolerance", model.tolerance);
-  read("nominal", model.nominal);
 }
 
 void read_tower(const Node& node, int t, Problems& problems, Delta& model) {
@@ -94,20 +73,6 @@ void read_tool(Fields& robot, const Node& node, Problems& problems, Delta& model
   for (const Named& each : tool_names()) model.value[each.at] = fields.length(each.name, 0);
   read_beside(fields, tool_names(), problems, model);
   fields.refuse_unknown();
-}
-
-/// Adds `tolerance` and `nominal` to a mapping; false when there is nothing to add.
-bool write_beside(const Delta& model, const std::vector<Named>& names, Node& into) {
-  Node tolerance = Node::map(), nominal = Node::map();
-  for (const Named& each : names) {
-    if (model.tolerance[each.at] > 0) tolerance.set(each.name, Node::of(model.tolerance[each.at]));
-    if (model.nominal[each.at] != model.value[each.at])
-      nominal.set(each.name, Node::of(model.nominal[each.at]));
-  }
-  const bool any = !tolerance.items.empty() || !nominal.items.empty();
-  if (!tolerance.items.empty()) into.set("tolerance", std::move(tolerance));
-  if (!nominal.items.empty()) into.set("nominal", std::move(nominal));
-  return any;
 }
 
 Node write_tower(const Delta& model, int t) {

@@ -13,17 +13,10 @@
 namespace selfcal::linear_delta {
 namespace {
 
-constexpr double kOwnTolerance = 2.0e-3;    // m or rad
 constexpr double kPlacedTolerance = 50e-3;  // of the tool: m or rad
 constexpr double kScaleTolerance = 1.0e-4;
 constexpr const char* kDeltaFields[kFields] = {"radius", "angle",  "rod",  "endstop",
                                                "tilt_x", "tilt_y", "scale"};
-
-void take_figures(const Delta& model, int at, double silent, Parameter& p) {
-  p.value = model.value[at];
-  p.nominal = model.nominal[at];
-  p.tolerance = model.tolerance[at] > 0 ? model.tolerance[at] : silent;
-}
 
 Parameter tower_parameter(const Delta& model, int t, int field) {
   Parameter p;

@@ -17,7 +17,8 @@ namespace selfcal {
 struct MethodCase {
   std::string title;  ///< letters only: names the test
   std::string sets;
-  bool scale_free = false;  ///< its rows hold for a robot of any size
+  bool scale_free = false;   ///< its rows hold for a robot of any size
+  bool of_platform = false;  ///< it speaks of joints that a platform has, and an arm lacks
 };
 
 inline void PrintTo(const MethodCase& each, std::ostream* out) { *out << each.sets; }
@@ -62,6 +63,11 @@ inline std::vector<MethodCase> method_cases() {
       {"SphereUnknown", "s: {method: sphere}", true},
       {"SphereOfKnownCentre", "s: {method: sphere, center: [0.6, 0.1, 0.5]}"},
       {"SphereOfKnownRadius", "s: {method: sphere, radius: 0.1}"},
+      {"Inclinometers", "s: {method: inclinometers}", true},
+      {"LockedUniversalJoint", "s: {method: locked-joint, lock: {leg: 2, joint: universal}}", true,
+       true},
+      {"LockedSphericalJoint", "s: {method: locked-joint, lock: {leg: 5, joint: spherical}}", true,
+       true},
       {"SphereKnown", "s: {method: sphere, center: [0.6, 0.1, 0.5], radius: 0.1}"},
   };
 }

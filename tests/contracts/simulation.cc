@@ -6,6 +6,8 @@
 #include "kinematics/linear_algebra.h"
 #include "tests/contracts/arm.h"
 #include "tests/contracts/method_case.h"
+#include "tests/kinematics/kind_examples.h"
+#include "tests/kinematics/parsed_robot.h"
 
 namespace selfcal {
 namespace {
@@ -15,12 +17,13 @@ constexpr double kSampleHolds = 1e-12;  // Newton's steps end below 1e-13, readi
 
 /// kRows rows for every set.
 struct Simulated {
-  std::unique_ptr<Robot> robot = six_axis_arm();
+  std::unique_ptr<Robot> robot;
   DataSet data;
   Sampled sampled;
 
-  explicit Simulated(const std::string& sets) {
-    data.sets = make_sets(sets);
+  explicit Simulated(const MethodCase& each)
+      : robot(each.of_platform ? robot_of(kind_examples().at("gough-stewart")) : six_axis_arm()) {
+    data.sets = make_sets(each.sets);
     std::vector<SampleRequest> requests;
     for (size_t s = 0; s < data.sets.size(); ++s) {
       data.sets[s].groups.clear();  // drawn rows name their own
@@ -43,7 +46,7 @@ double largest(const std::vector<RowResidual>& residuals) {
 class Simulation : public testing::TestWithParam<MethodCase> {};
 
 TEST_P(Simulation, MakesRowsThatHold) {
-  const Simulated made(GetParam().sets);
+  const Simulated made(GetParam());
   EXPECT_EQ(made.sampled.unreached, "");
   EXPECT_EQ(made.data.rows.rows(), kRows * static_cast<int>(made.data.sets.size()));
   const Equations equations(*made.robot, made.data, Use::fit);
@@ -55,7 +58,7 @@ TEST_P(Simulation, MakesRowsThatHold) {
 }
 
 TEST_P(Simulation, MakesRowsFromWhichOwnAndGroupValuesAreFound) {
-  const Simulated made(GetParam().sets);
+  const Simulated made(GetParam());
   if (!made.sampled.unreached.empty()) return;  // the test above says so
   const Equations equations(*made.robot, made.data, Use::fit);
   State state;

@@ -27,6 +27,17 @@ towers:
   - {radius: 0.106, angle: 1.5708, rod: 0.2149, endstop: 0.4826, limits: [-0.35, 0], tolerance: {rod: 5.0e-4}}
 effector: {rx: 0.01, ry: -0.015}
 tool: [0.004, -0.003, -0.02]
+)"},
+      {"gough-stewart", R"(robot: hexapod
+kind: gough-stewart
+legs:
+  - {base: [0.5921, -0.1055, 0.0064], platform: [0.2291, -0.2577, -0.0013], offset: 0.01, limits: [0.55, 1.15]}
+  - {base: [0.5919, 0.0988, 0.0036], platform: [0.2386, 0.2615, 0.0035], limits: [0.55, 1.15], swing: [0.6, 0.7]}
+  - {base: [-0.1922, 0.5733, -0.007], platform: [0.1287, 0.3298, -0.0074], limits: [0.55, 1.15], tolerance: {bx: 5.0e-4, offset: 1.0e-3}}
+  - {base: [-0.3983, 0.4534, 0.0004], platform: [-0.3539, 0.0562, 0.0022], limits: [0.55, 1.15]}
+  - {base: [-0.4089, -0.4618, -0.0125], platform: [-0.3548, -0.0629, -0.0016], limits: [0.55, 1.15]}
+  - {base: [-0.2125, -0.5693, -0.0032], platform: [0.1251, -0.3267, 0.0036], offset: -0.005, limits: [0.55, 1.15]}
+home: {xyz: [0, 0, 0.7], rpy: [0, 0, 0.05]}
 )"}};
   return examples;
 }

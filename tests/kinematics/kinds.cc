@@ -19,7 +19,14 @@ constexpr double kKindStep = 1e-6;
 // 1 high, 900 / l^2 a rod, 2e4 / m^2, ten times that for the three together: 3e-8. Rounding leaves
 // 1e-16 m / step, times 3: 3e-10.
 constexpr double kKindTolerance = 1e-7;
-constexpr Body kBodies[] = {Body::endpoint, Body::last_link, Body::first_link};
+
+/// Every body that a robot can be asked for.
+std::vector<Body> bodies(const Robot& robot) {
+  std::vector<Body> all = {Body::endpoint, Body::last_link, Body::first_link};
+  for (const PassiveJoint& joint : robot.passive_joints())
+    all.push_back(body_behind(joint.chain, joint.kind));
+  return all;
+}
 
 std::vector<std::string> kinds() {
   const std::vector<std::string_view> all = robot_kinds();
@@ -87,7 +94,7 @@ TEST_P(RobotKind, DrawsConfigurationsWithinItsLimitsAtWhichItsLoopsClose) {
 }
 
 TEST_P(RobotKind, HasForEveryParameterTheColumnThatDifferencesGive) {
-  for (const Body body : kBodies) {
+  for (const Body body : bodies(*robot_)) {
     Locations X;
     PsiBlock psi;
     robot_->locate(block_, xi_, body, X, &psi);
@@ -106,7 +113,7 @@ TEST_P(RobotKind, HasForEveryParameterTheColumnThatDifferencesGive) {
 }
 
 TEST_P(RobotKind, HasForEveryReadingTheColumnThatDifferencesGive) {
-  for (const Body body : kBodies) {
+  for (const Body body : bodies(*robot_)) {
     Locations X;
     PsiBlock psi;
     Eigen::MatrixXd J;
@@ -180,14 +187,15 @@ TEST_P(RobotKind, ComesBackFromItsFileAsTheSameMachineWithOtherValues) {
 
 TEST_P(RobotKind, IsAnotherMachineWithAnotherMakersFigure) {
   const Node node = robot_->text().describe(xi_);
-  for (const char* key : {"frames", "towers"}) {
+  for (const char* key : {"frames", "towers", "legs"}) {
     const Node* list = node.find(key);
     if (!list) continue;
     Node other = node;
     for (size_t k = 0; k < node.keys.size(); ++k)
       if (node.keys[k] == key)
         for (size_t f = 0; f < list->items[1].keys.size(); ++f)
-          if (list->items[1].keys[f] == "r" || list->items[1].keys[f] == "rod")
+          if (const std::string& name = list->items[1].keys[f];
+              name == "r" || name == "rod" || name == "offset")
             other.items[k].items[1].items[f] = Node::of(0.22);
     EXPECT_NE(robot_of(other)->text().identity(), robot_->text().identity());
   }

@@ -1,0 +1,163 @@
+// Where a platform stands that six chains carry. With n_i along chain i,
+//   d|p + R b_i - c_i| = n_i . dp + (R b_i x n_i) . turn,
+// six equations for a step (dp, turn). Where their volume vanishes the platform can go either way:
+// such places part the assembly modes from each other, and no step may cross one.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kinematics/robots/platform.h"
+#include "kinematics/rotation.h"
+
+namespace selfcal::platform {
+namespace {
+
+constexpr int kSteps = 60, kHalvings = 12, kMostParts = 16;
+constexpr double kLongestTurn = 0.3;   // rad a step; as far in sizes of the platform
+constexpr double kClosed = 1e-13;      // of the longest chain: what rounding leaves of the lengths
+constexpr double kSingular = 1e-7;     // volume of a place where the platform is loose
+constexpr double kFarthestTurn = 2.1;  // rad from home: beyond, the chains are wound up
+constexpr double kBetter = 1 - 1e-3;   // of the misfit, what counts as closing
+
+Six misfit(const Chains& chains, const ClosedChains& at) {
+  Six f;
+  for (int i = 0; i < kChains; ++i)
+    f[i] =
+        (at.X.p + at.X.R * chains.joint.col(i) - chains.carrier.col(i)).norm() - chains.length[i];
+  return f;
+}
+
+std::string does_not_close(const Six& f) {
+  Six::Index worst = 0;
+  f.cwiseAbs().maxCoeff(&worst);
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "no location of the platform: the lengths do not fit together, %.2g mm are left at "
+                "chain %d",
+                1e3 * std::abs(f[worst]), static_cast<int>(worst) + 1);
+  return text;
+}
+
+/// One Newton step from `at`, shortened until the lengths fit better; false where none does.
+bool step(const Chains& chains, const AssemblyMode* mode, double size, ClosedChains& at, Six& f,
+          bool& barred) {
+  const Six dX = at.A.partialPivLu().solve(-f);
+  if (!dX.allFinite()) return false;
+  const double reach = std::max(dX.tail<3>().norm(), dX.head<3>().norm() / size);
+  double share = std::min(1.0, kLongestTurn / std::max(reach, 1e-300));
+  for (int i = 0; i < kHalvings; ++i, share /= 2) {
+    const ClosedChains next = at_pose(
+        chains, {exp_rotation(share * dX.tail<3>()) * at.X.R, at.X.p + share * dX.head<3>()});
+    const Six g = misfit(chains, next);
+    if (!(g.norm() < kBetter * f.norm())) continue;
+    if (mode && !(std::copysign(next.volume, next.volume * mode->volume) > kSingular)) {
+      barred = true;
+      continue;
+    }
+    at = next;
+    f = g;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double size_of(const Chains& chains) {
+  const Eigen::Vector3d middle = chains.joint.rowwise().mean();
+  return (chains.joint.colwise() - middle).colwise().norm().mean();
+}
+
+ClosedChains at_pose(const Chains& chains, const Location& X) {
+  ClosedChains at;
+  at.X = X;
+  const Eigen::Vector3d middle = X.R * chains.joint.rowwise().mean();
+  const double size = size_of(chains);
+  Eigen::Matrix<double, 6, 6> scaled;
+  for (int i = 0; i < kChains; ++i) {
+    const Eigen::Vector3d arm = X.R * chains.joint.col(i);
+    at.n.col(i) = (X.p + arm - chains.carrier.col(i)).normalized();
+    at.A.row(i) << at.n.col(i).transpose(), arm.cross(at.n.col(i)).transpose();
+    scaled.row(i) << at.n.col(i).transpose(), (arm - middle).cross(at.n.col(i)).transpose() / size;
+  }
+  at.volume = scaled.determinant();
+  return at;
+}
+
+namespace {
+
+ClosedChains newton(const Chains& chains, const Location& start, const AssemblyMode* mode) {
+  const double size = size_of(chains), fits = kClosed * chains.length.cwiseAbs().maxCoeff();
+  ClosedChains at = at_pose(chains, start);
+  if ((chains.length.array() <= 0).any()) {
+    at.open = "no location of the platform: a chain has no length";
+    return at;
+  }
+  Six f = misfit(chains, at);
+  bool barred = false;
+  for (int i = 0; i < kSteps && step(chains, mode, size, at, f, barred); ++i)
+    if (f.cwiseAbs().maxCoeff() < fits / 100) break;
+  if (!(f.cwiseAbs().maxCoeff() < fits)) {
+    at.open = barred ? "no location of the platform on its side of the singular places: another "
+                       "assembly mode"
+                     : does_not_close(f);
+  } else if (std::abs(at.volume) < kSingular) {
+    at.open = "the platform is loose there: a singular place";
+  } else if (mode && log_rotation(at.X.R * mode->home.R.transpose()).norm() > kFarthestTurn) {
+    at.open = "the platform would be turned over: another assembly mode";
+  }
+  return at;
+}
+
+}  // namespace
+
+ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
+  ClosedChains at = newton(chains, start, mode);
+  if (at.open.empty() || !mode || (chains.length.array() <= 0).any()) return at;
+  const Six from = misfit(chains, at_pose(chains, start)) + chains.length;
+  for (int parts = 4; parts <= kMostParts; parts *= 4) {
+    Chains between = chains;
+    ClosedChains next = at_pose(chains, start);
+    for (int i = 1; i <= parts && next.open.empty(); ++i) {
+      between.length = from + (chains.length - from) * i / parts;
+      next = newton(between, next.X, mode);
+    }
+    if (next.open.empty()) return next;
+  }
+  return at;
+}
+
+Location pose_between(const Chains& chains, double side) {
+  const Eigen::Vector3d below = chains.carrier.rowwise().mean(),
+                        above = chains.joint.rowwise().mean();
+  const Centres c = chains.carrier.colwise() - below, b = chains.joint.colwise() - above;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(c * b.transpose(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d UV = svd.matrixU() * svd.matrixV().transpose();
+  Location X;
+  X.R = svd.matrixU() * Eigen::Vector3d(1, 1, UV.determinant()).asDiagonal() *
+        svd.matrixV().transpose();
+  const double across = (c - X.R * b).colwise().squaredNorm().mean();
+  const double up = std::sqrt(
+      std::max(chains.length.squaredNorm() / kChains - across, 0.01 * std::max(across, 1e-12)));
+  X.p = below + side * up * Eigen::Vector3d::UnitZ() - X.R * above;
+  return X;
+}
+
+Eigen::Matrix3d link_frame(const Eigen::Vector3d& n) {
+  const Eigen::Vector3d e = Eigen::Vector3d::UnitX();
+  Eigen::Matrix3d R;
+  R.col(2) = n;
+  R.col(0) = (e - e.dot(n) * n).normalized();
+  R.col(1) = n.cross(R.col(0));
+  return R;
+}
+
+/// n x dn, and about n what keeps x towards e: y . dx = -(e . n)(y . dn) / |e - (e . n) n|.
+Eigen::MatrixXd link_turns(const Eigen::Matrix3d& frame, const Eigen::MatrixXd& dn) {
+  const Eigen::Vector3d n = frame.col(2), y = frame.col(1);
+  const double along = n.x(), across = std::sqrt(std::max(1 - along * along, 1e-30));
+  return skew(n) * dn - n * ((along / across) * (y.transpose() * dn));
+}
+
+}  // namespace selfcal::platform
