@@ -74,6 +74,7 @@ class Diagnostician {
     }
     for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
       *each = calibrated(*each, result_.practice);
+    result_.verdict = unless_none(std::move(result_.verdict), result_.candidates, options_);
     agree(result_.candidates, result_.verdict);
     result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
   }

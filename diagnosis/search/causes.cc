@@ -244,6 +244,15 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
           .probability = std::max(posterior.none, least_probability_of_none(noise))};
 }
 
+CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
+                        const DiagnosisOptions& options) {
+  const auto none = std::ranges::find(causes, kNone, &CauseResult::effect);
+  if (!names_effect(verdict.effect) || none == causes.end() ||
+      none->probability < options.name_below_none)
+    return verdict;
+  return {.effect = kNone, .probability = none->probability};
+}
+
 std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
                                      const CauseResult& verdict, const ByNoise& p,
                                      const DiagnosisOptions& options) {

@@ -29,6 +29,11 @@ struct ByNoise {
 CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
                     const DiagnosisOptions& options);
 
+/// `verdict`, or none where a cause is named and `none` among the calibrated `causes` is as
+/// probable as no named cause may have it.
+CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
+                        const DiagnosisOptions& options);
+
 /// What is named beside a verdict, which comes first: each known cause that is sure; the largest
 /// first. None where the verdict is `none`.
 std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,

@@ -115,9 +115,17 @@ class TrialMaker {
     }
   }
 
+  TrialCause draw_law(const std::string& name) {
+    const auto law = request_.laws.find(name);
+    if (law == request_.laws.end()) return draw_cause(name, session_.world, random_);
+    TrialCause cause = law->second(session_.world, random_);
+    cause.effect = name;
+    return cause;
+  }
+
   bool draw(const std::string& name, double r, const TrialCalibration& calibration) {
     for (int attempt = 0; attempt < kEffectTries; ++attempt) {
-      TrialCause cause = draw_cause(name, session_.world, random_);
+      TrialCause cause = draw_law(name);
       if (!cause.act) continue;
       const TrialCalibration::Size size = calibration.size(calibration.seen(shifts({cause})));
       if (!(size.visible > kLeastSurvival * size.whole)) continue;

@@ -9,6 +9,7 @@
 
 #include "constraints/methods/data_set.h"
 #include "kinematics/robot.h"
+#include "sim/trials/trial_causes.h"
 
 namespace selfcal {
 
@@ -20,6 +21,9 @@ struct TrialRequest {
   int number = 0;           ///< of the trial; each has its own draws
   std::string effect;       ///< or "none", "unknown"; empty: drawn, alone or in a pair
   std::optional<double> r;  ///< drawn when missing
+  /// Other laws of the same effects, by name, in place of the generator's own; of an effect that it
+  /// lacks the generator's.
+  std::map<std::string, CauseMaker> laws = {};
 };
 
 /// What only the sealed file says.

@@ -60,6 +60,16 @@ TEST(SureCauses, AreNamedTogetherWhicheverIsTheLargest) {
   EXPECT_TRUE(sure_causes(causes, {.effect = kNone}, {0.2, 1}, options).empty());
 }
 
+TEST(UnlessNone, NamesNothingWhereNoneIsTooProbableOnceCalibrated) {
+  const DiagnosisOptions options;
+  std::vector<CauseResult> causes = some_causes();
+  EXPECT_EQ(unless_none(causes[0], causes, options).effect, "backlash");
+  causes[4].probability = 0.12;
+  EXPECT_EQ(unless_none(causes[0], causes, options).effect, kNone);
+  EXPECT_EQ(unless_none(causes[0], causes, options).probability, 0.12);
+  EXPECT_EQ(unless_none(causes[1], causes, options).effect, kUnknown);
+}
+
 TEST(Agree, GivesOneThingOneProbability) {
   std::vector<CauseResult> causes = some_causes();
   CauseResult cause{.effect = "zero_shift", .probability = 0.5};

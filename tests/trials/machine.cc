@@ -106,6 +106,20 @@ TEST(TrialMachine, MakesEveryCauseAsVisibleAsAsked) {
   expect("scale_error", false);
 }
 
+TEST(TrialMachine, TakesAnotherLawOfAnEffectWhereItIsGivenOne) {
+  TrialRequest asked = request("joint_coupling", 1.5, false);
+  const auto law = [](const TrialWorld&, Random&) -> TrialCause {
+    return {.where = {"elsewhere"}, .act = [](const Instant& at, Deviation& out) {
+              out.joints[0] += 1e-4 * at.q[1] * at.q[2];
+            }};
+  };
+  asked.laws = {{"joint_coupling", law}};
+  const MadeTrial made = make_trial(asked);
+  ASSERT_EQ(made.unreached, "");
+  EXPECT_EQ(made.truth.where.at("joint_coupling"), std::vector<std::string>{"elsewhere"});
+  EXPECT_NEAR(made.visible, 1.5, 0.01);
+}
+
 TEST(TrialMachine, LeavesItsNoiseAloneWhereThereIsNoCause) {
   const MadeTrial made = make_trial(request("none", 0, true));
   ASSERT_TRUE(made.unreached.empty()) << made.unreached;

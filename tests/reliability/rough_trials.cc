@@ -1,0 +1,139 @@
+// Trials whose laws share nothing with the search, and sessions without any cause: how often its
+// answers are right, and how often what they state comes true. Few by default; as many as
+// SELFCAL_TRIALS and SELFCAL_NONES say for the figures of the page.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/trials/trials.h"
+#include "sim/trials/trial_machine.h"
+#include "tests/reliability/diagram.h"
+#include "tests/reliability/rough_laws.h"
+
+namespace selfcal {
+namespace {
+
+int count_of(const char* variable, int fewest) {
+  const char* text = std::getenv(variable);
+  return text ? std::atoi(text) : fewest;
+}
+
+TrialAnswer answer_of(const Diagnosis& diagnosis) {
+  const auto named = [](const CauseResult& each) {
+    return TrialCauseNamed{each.effect, each.where, each.probability, each.confounded_with};
+  };
+  TrialAnswer answer{.verdict = named(diagnosis.verdict)};
+  for (const CauseResult& each : diagnosis.candidates) answer.candidates.push_back(named(each));
+  return answer;
+}
+
+TrialTruth truth_of(const TrialLedger& ledger) {
+  return {.effect = ledger.effect, .second = ledger.second, .where = ledger.where, .r = ledger.r};
+}
+
+MadeTrial rough_trial(const std::string& effect, double r, int number) {
+  TrialRequest request;
+  request.least_rows = 120;
+  request.most_rows = 200;
+  request.seed = 20261;
+  request.number = number;
+  request.effect = effect;
+  request.r = r;
+  request.laws = rough_laws();
+  return make_trial(request);
+}
+
+std::string of_size(double r) {
+  char text[32];
+  std::snprintf(text, sizeof text, "r %.2g", r);
+  return text;
+}
+
+struct RoughTally {
+  int asked = 0, right = 0, placed = 0, unknown = 0, recognised = 0, confident_wrong = 0;
+};
+
+TEST(RoughTrials, AreAnsweredAsOftenRightAsIsStated) {
+  const int trials = count_of("SELFCAL_TRIALS", 8);
+  constexpr double kSizes[] = {1.5, 1, 0.75, 2.5};
+  std::vector<std::string> effects;
+  for (const auto& [effect, law] : rough_laws()) effects.push_back(effect);
+  ReliabilityDiagram diagram;
+  RoughTally tally;
+  for (int i = 0; i < trials; ++i) {
+    const std::string& effect = effects[i % effects.size()];
+    const double r = kSizes[(i / effects.size()) % 4];
+    const MadeTrial made = rough_trial(effect, r, i);
+    if (!made.unreached.empty()) continue;
+    const TrialTruth truth = truth_of(made.truth);
+    const TrialAnswer answer = answer_of(diagnose(made.robot, made.data));
+    const bool right = right_cause(truth, answer), placed = right && right_place(truth, answer);
+    for (const std::string& part : {std::string("all"), effect, of_size(r)})
+      diagram.add(part, answer.verdict.probability, right);
+    if (right) diagram.add("place, of those right", answer.verdict.probability, placed);
+    std::printf("%d %s r %.2g: %s %.2f %s\n", i, made.truth.physics.c_str(), r,
+                answer.verdict.effect.c_str(), answer.verdict.probability, right ? "right" : "no");
+    if (effect == kUnknown) {
+      tally.unknown += r >= 1.5;
+      tally.recognised += r >= 1.5 && right;
+      tally.confident_wrong +=
+          names_effect(answer.verdict.effect) && answer.verdict.probability >= kConfident;
+    } else if (r >= 1) {
+      ++tally.asked;
+      tally.right += right;
+      tally.placed += placed;
+    }
+  }
+  std::printf(
+      "%s\nr of 1 and above: %d of %d right, %d of these at the right place; unknown at 1.5 "
+      "and above: %d of %d, %d times confidently called a cause; calibration error %.3f\n",
+      diagram.text().c_str(), tally.right, tally.asked, tally.placed, tally.recognised,
+      tally.unknown, tally.confident_wrong, diagram.calibration_error("all"));
+  // Of few, two sigma below what is reached of many; see README.md.
+  EXPECT_GE(tally.right, 0.8 * tally.asked - 2 * std::sqrt(0.16 * tally.asked));
+  EXPECT_GE(tally.placed, 0.9 * tally.right - 2 * std::sqrt(0.09 * tally.right));
+}
+
+TEST(Nones, AreHardlyEverCalledACause) {
+  const int nones = count_of("SELFCAL_NONES", 3);
+  int called = 0, asked = 0;
+  for (int i = 0; i < nones; ++i) {
+    const MadeTrial made = rough_trial(kNone, 1, 100000 + i);
+    if (!made.unreached.empty()) continue;
+    ++asked;
+    const Diagnosis diagnosis = diagnose(made.robot, made.data);
+    if (diagnosis.verdict.effect == kNone) continue;
+    ++called;
+    std::printf("%d: %s\n", i, diagnosis.why.c_str());
+  }
+  std::printf("%d of %d sessions without a cause called one\n", called, asked);
+  ASSERT_GT(asked, 0);
+  // One in a hundred, and three sigma of that.
+  EXPECT_LE(called, 0.01 * asked + 3 * std::sqrt(0.01 * asked));
+}
+
+TEST(ReliabilityDiagram, IsTheMeanDifferenceOfStatedAndTrue) {
+  ReliabilityDiagram diagram;
+  for (int i = 0; i < 10; ++i) diagram.add("all", 0.95, i < 5);  // off by 0.45
+  for (int i = 0; i < 10; ++i) diagram.add("all", 0.35, i < 3);  // off by 0.05
+  EXPECT_NEAR(diagram.calibration_error("all"), 0.25, 1e-12);
+  EXPECT_EQ(diagram.calibration_error("other"), 0);
+  EXPECT_THAT(diagram.text(), testing::HasSubstr("| all | 0.9 to 1.0 | 10 | 0.95 | 0.50 |"));
+}
+
+TEST(RoughLaws, AreDrawnAsVisibleAsAsked) {
+  for (const auto& [effect, law] : rough_laws()) {
+    const MadeTrial made = rough_trial(effect, 1.5, 7);
+    EXPECT_EQ(made.unreached, "") << effect;
+    EXPECT_EQ(made.truth.effect, effect);
+    EXPECT_NEAR(made.visible, 1.5, 0.2) << effect;  // a step may be crossed as rows settle
+  }
+}
+
+}  // namespace
+}  // namespace selfcal
