@@ -56,7 +56,7 @@ struct ResultMessage {
   double p_value = 0;         ///< of the paired test, or that the active model explains the touches
   double check_before = 0;    ///< m, rms on rows kept aside with the active model
   double check_after = 0;     ///< m, with the candidate
-  double endpoint_sigma = 0;  ///< m, rms
+  double endpoint_sigma = 0;  ///< m, rms over the workspace
   std::uint32_t touches = 0;  ///< that count as rows, those put aside too
   std::uint32_t rejected = 0;    ///< of them put aside when identifying; outliers that judge count
   std::uint32_t identified = 0;  ///< parameters

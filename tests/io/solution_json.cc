@@ -47,7 +47,7 @@ Solution example() {
   solution.sets = {set};
   solution.rejected = {{17, "table", 4.1e-4, false, "outlier"},
                        {18, "table", 3.9e-4, true, "outlier among the check rows"}};
-  solution.residual.fit = {180, 1.2e-3, 2.1e-5, 1.7e-5, 6e-5, 0, {}};
+  solution.residual.fit = {180, false, 1.2e-3, 2.1e-5, 1.7e-5, 6e-5, 0, {}};
   solution.observability.condition = std::numeric_limits<double>::infinity();
   return solution;
 }
