@@ -1,6 +1,8 @@
 #include "constraints/workspace.h"
 
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace selfcal {
 
@@ -11,12 +13,13 @@ Workspace read_workspace(const Node& node, Problems& problems) {
   Eigen::Vector3d corner[2];
   bool given = box != nullptr && box->kind == Node::Kind::list && box->items.size() == 2;
   for (std::size_t i = 0; given && i < 2; ++i) {
-    Node one = Node::map();
-    one.place = box->place;
-    one.set("corner", box->items[i]);
-    const auto numbers = Fields(one, "workspace box", problems).numbers("corner", 3);
-    given = numbers && numbers->cwiseAbs().maxCoeff() <= kFarthestPlace;
-    if (given) corner[i] = *numbers;
+    const std::vector<Node>& numbers = box->items[i].items;
+    given = numbers.size() == 3;
+    for (std::size_t k = 0; given && k < 3; ++k) {
+      const auto number = parse_number(numbers[k].text);
+      given = number && std::abs(*number) <= kFarthestPlace;
+      if (given) corner[i][static_cast<Eigen::Index>(k)] = *number;
+    }
   }
   if (!given || !((corner[1] - corner[0]).minCoeff() > 0))
     fields.fail("box", "two opposite corners [[x, y, z], [x, y, z]] in metres, the smaller first");

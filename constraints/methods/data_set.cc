@@ -50,12 +50,10 @@ void link_sets(std::vector<Set>& sets, const Node& node, Problems& problems) {
   }
 }
 
-/// {place: m, turn: rad, length: m}, of a method that is given a place or a length.
-GivenTolerance read_given(const Node& node, const Method& method, Problems& problems) {
+/// {place: m, turn: rad, length: m}
+GivenTolerance read_given(const Node& node, Problems& problems) {
   Fields fields(node, "tolerance", problems);
   GivenTolerance given;
-  if (!method.place_known() && method.known_lengths().empty())
-    fields.fail("tolerance", "of a set that is given a surface, a centre or a radius");
   for (const auto& [key, value] :
        {std::pair{"place", &given.place}, {"turn", &given.turn}, {"length", &given.length}})
     if (fields.has(key)) *value = fields.number(key, 0, 0, 1);
@@ -112,8 +110,11 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
   }
   set.noise = read_noise(fields, "noise");
   if (set.method->has_angles()) set.noise_angle = read_noise(fields, "noise_angle");
-  if (const Node* tolerance = fields.node("tolerance"))
-    set.given = read_given(*tolerance, *set.method, problems);
+  if (const Node* tolerance = fields.node("tolerance")) {
+    set.given = read_given(*tolerance, problems);
+    if (!set.method->place_known() && set.method->known_lengths().empty())
+      fields.fail("tolerance", "nothing, for the entry gives no surface, centre or radius");
+  }
   if (!set.method->has_lengths()) {
     if (!(set.noise_angle > 0)) set.noise_angle = set.noise;
     set.noise = 0;
