@@ -23,18 +23,17 @@ Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted)
   return C * precision.asDiagonal() * C;
 }
 
-/// What halves of the rows differ by and their `noise` does not explain.
+/// What halves of the rows differ by more than they should.
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
-                              const Eigen::MatrixXd& noise, EndpointQuestion question) {
-  const Eigen::MatrixXd difference = half_sample_differences(equations, adjusted).transpose();
-  const Eigen::Index n = equations.robot_columns();
-  const double splits = static_cast<double>(difference.cols());
-  const Eigen::MatrixXd C = difference * difference.transpose() / splits;
-  question.covariance = C.topLeftCorner(n, n);
-  const double seen = std::pow(endpoint_sigma(question).rms, 2);
-  question.covariance = noise.topLeftCorner(n, n);
-  const double explained = std::pow(endpoint_sigma(question).rms, 2);
-  return std::max(0.0, 1 - kChance * explained / seen) * C;
+                              EndpointQuestion question) {
+  const HalfSamples halves = half_samples(equations, adjusted);
+  const auto squared = [&](const Eigen::MatrixXd& C) {
+    const Eigen::Index n = equations.robot_columns();
+    question.covariance = C.topLeftCorner(n, n);
+    return std::pow(endpoint_sigma(question).rms, 2);
+  };
+  const double seen = squared(halves.seen), expected = squared(halves.expected);
+  return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
 }
 
 }  // namespace
@@ -50,7 +49,7 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
           {"the maker's tolerances", priors},
           {"held scale", exact - fitted},
           {"what was given", posterior(equations, adjusted, R, true) - exact},
-          {"rows that share errors", shared_errors(equations, adjusted, noise, question)}};
+          {"rows that share errors", shared_errors(equations, adjusted, question)}};
 }
 
 Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources) {

@@ -1,11 +1,14 @@
 // Balanced half-samples (McCarthy 1969) of rows in their order. With [R_h | z_h] the rows of half h
 // at the fitted parameters and Lambda, pull the precision of the priors and what they ask for,
-//   s_h = (R_h^T R_h + Lambda)^-1 (R_h^T z_h + pull),   difference (s_1 - s_2) / 2.
+//   s_h = C_h (R_h^T z_h + pull),   C_h = (R_h^T R_h + Lambda)^-1,   difference (s_1 - s_2) / 2,
+// whose square is expected to be, where the rows err apart and the truth is as the priors say,
+//   ((C_2 - C_1) Lambda (C_2 - C_1) + sum_h (C_h - C_h Lambda C_h)) / 4.
 // Rows soon after each other share what the model lacks (a region of the cell, a temperature, a
 // series); in a stretch they do so all together, and the halves show by how much.
 #include "constraints/estimation/half_samples.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "kinematics/linear_algebra.h"
@@ -33,9 +36,13 @@ std::vector<int> stretches(const Equations& equations) {
   return of_row;
 }
 
-/// The step that the rows of `weighting` and the priors ask for; columns() entries.
-Eigen::VectorXd step_of(const Equations& equations, const Adjusted& adjusted,
-                        const Weighting& weighting) {
+/// What one half of the rows and the priors give: columns() entries, and their posterior.
+struct HalfFit {
+  Eigen::VectorXd step;
+  Eigen::MatrixXd C;
+};
+
+HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Weighting& weighting) {
   const Eigen::VectorXd& xi = adjusted.fitted.state.xi;
   const Eigen::MatrixXd R = equations.linearise(adjusted.fitted.state, weighting).R;
   const std::vector<int> columns = free_columns(equations, adjusted.prior);
@@ -49,29 +56,37 @@ Eigen::VectorXd step_of(const Equations& equations, const Adjusted& adjusted,
       A(K + i, n) = A(K + i, i) * (adjusted.prior.centre[c] - xi[c]);
   }
   triangularise(A);
-  const Eigen::VectorXd of_free = inverse_of_triangle(A.topLeftCorner(n, n)) * A.col(n).head(n);
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.columns());
-  for (Eigen::Index i = 0; i < n; ++i) step[columns[static_cast<size_t>(i)]] = of_free[i];
-  return step;
+  const Eigen::MatrixXd inverse = inverse_of_triangle(A.topLeftCorner(n, n));
+  HalfFit fit{Eigen::VectorXd::Zero(equations.columns()),
+              Eigen::MatrixXd::Zero(equations.columns(), equations.columns())};
+  fit.step(columns) = inverse * A.col(n).head(n);
+  fit.C(columns, columns) = inverse * inverse.transpose();
+  return fit;
 }
 
 }  // namespace
 
-Eigen::MatrixXd half_sample_differences(const Equations& equations, const Adjusted& adjusted) {
+HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
   const std::vector<int> stretch = stretches(equations);
   const Noise& noise = adjusted.fitted.noise;
-  Eigen::MatrixXd differences(kSplits.size(), equations.columns());
-  for (size_t k = 0; k < kSplits.size(); ++k) {
+  const Eigen::Index n = equations.columns();
+  Eigen::VectorXd lambda(n);
+  for (int c = 0; c < equations.columns(); ++c)
+    lambda[c] = std::pow(prior_weight(equations, adjusted.prior, c), 2);
+  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  for (const int other : kSplits) {
     Weighting first{noise.used, noise.outlier}, second = first;
-    for (size_t row = 0; row < stretch.size(); ++row) {
-      const bool in_first = stretch[row] == 0 || stretch[row] == kSplits[k];
-      (in_first ? second : first).outlier[row] = 1;
-    }
-    differences.row(static_cast<Eigen::Index>(k)) =
-        (step_of(equations, adjusted, first) - step_of(equations, adjusted, second)).transpose() /
-        2;
+    for (size_t row = 0; row < stretch.size(); ++row)
+      (stretch[row] == 0 || stretch[row] == other ? second : first).outlier[row] = 1;
+    const HalfFit a = fit_of(equations, adjusted, first), b = fit_of(equations, adjusted, second);
+    const Eigen::VectorXd difference = (a.step - b.step) / 2;
+    const Eigen::MatrixXd shrunk = b.C - a.C;
+    result.seen += difference * difference.transpose() / kSplits.size();
+    result.expected += (shrunk * lambda.asDiagonal() * shrunk + a.C -
+                        a.C * lambda.asDiagonal() * a.C + b.C - b.C * lambda.asDiagonal() * b.C) /
+                       (4.0 * kSplits.size());
   }
-  return differences;
+  return result;
 }
 
 }  // namespace selfcal

@@ -8,10 +8,14 @@
 
 namespace selfcal {
 
-/// Half the difference of the parameters that either half of the rows gives alone, a split a row
-/// and columns() wide, linearised at `adjusted.fitted`. Each set's rows are taken as kStretches
-/// stretches in their order, and every way to make two halves of them is one split. Without noise
-/// shared by rows the mean of the squares is the posterior of all rows without the priors' part.
-Eigen::MatrixXd half_sample_differences(const Equations& equations, const Adjusted& adjusted);
+/// Means over the splits of the squares, columns() x columns().
+struct HalfSamples {
+  Eigen::MatrixXd seen;      ///< of half the differences of the fits of either half
+  Eigen::MatrixXd expected;  ///< the same where the rows err apart and the priors hold
+};
+
+/// Linearised at `adjusted.fitted`. Each set's rows are taken as four stretches in their order, and
+/// every way to make two halves of them is one split.
+HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted);
 
 }  // namespace selfcal
