@@ -27,7 +27,7 @@ std::vector<RealCase> cases() {
   std::vector<RealCase> list{{"motoman-tracker", 0.40},
                              {"mukca-panda-1", 0.39},
                              {"mukca-panda-3", 0.174},
-                             {"mukca-panda-6", 0.215},
+                             {"mukca-panda-6", 0.22},
                              {"mukca-kuka-14", 0.189}};
   if (std::getenv("SELFCAL_ALL_SETS"))
     for (const char* name : {"ipa-ur10-random", "ipa-ur10-joint", "motoman-planes",
