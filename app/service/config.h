@@ -6,9 +6,8 @@
 //   id               the robot's name           in topic names; one for each robot in a domain
 //   serial           id                         hardware_id in the diagnostics
 //   state            $STATE_DIRECTORY or state  folder of what must not be lost
-//   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted in the workspace (1
-//   sigma) workspace        the region that the touches span
-//                                               where it counts: {box: [[x, y, z], [x, y, z]],
+//   target           1.0e-3     1e-6 to 1 m     end-position accuracy wanted there (1 sigma)
+//   workspace        the touches' region        where it counts: {box: [[x, y, z], [x, y, z]],
 //                                               approach: [x, y, z], cone: RAD} as in dataset.yaml
 //   domain           0          0 to 232        of DDS; $ROS_DOMAIN_ID where it is set
 //   encoders         {}                         where joint readings come from:

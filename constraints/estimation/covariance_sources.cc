@@ -17,10 +17,7 @@ constexpr double kChance = 1.5;
 
 Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
   const Eigen::MatrixXd& C = adjusted.fitted.covariance;
-  Eigen::VectorXd precision(C.rows());
-  for (int c = 0; c < equations.columns(); ++c)
-    precision[c] = std::pow(prior_weight(equations, adjusted.prior, c), 2);
-  return C * precision.asDiagonal() * C;
+  return C * prior_precision(equations, adjusted.prior).asDiagonal() * C;
 }
 
 /// What halves of the rows differ by more than they should.

@@ -86,21 +86,8 @@ class Iteration {
     return cost;
   }
 
-  /// Triangular [R | z] of the free columns of `R` and of the priors' rows; without `pull` the
-  /// priors' right side is zero.
   Eigen::MatrixXd triangle(const Eigen::MatrixXd& R, bool pull) const {
-    const Eigen::Index n = static_cast<Eigen::Index>(columns_.size()), K = R.rows();
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(K + n, n + 1);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int c = columns_[i];
-      A.col(i).head(K) = R.col(c);
-      A(K + i, i) = prior_weight(equations_, prior_, c);
-      if (pull && c < equations_.robot_columns())
-        A(K + i, n) = A(K + i, i) * (prior_.centre[c] - fit_.state.xi[c]);
-    }
-    A.col(n).head(K) = R.col(K - 1);
-    triangularise(A);
-    return A.topRows(n + 1);
+    return triangle_with_priors(equations_, prior_, columns_, R, fit_.state.xi, pull);
   }
 
   /// Least-squares step of a triangle, damped by lambda; spread to all columns.
@@ -278,6 +265,29 @@ std::vector<int> free_columns(const Equations& equations, const Prior& prior) {
 double prior_weight(const Equations& equations, const Prior& prior, int column) {
   if (column >= equations.robot_columns()) return 1 / kOwnSigma;
   return prior.use ? 1 / prior.sigma[column] : 0;
+}
+
+Eigen::VectorXd prior_precision(const Equations& equations, const Prior& prior) {
+  Eigen::VectorXd precision(equations.columns());
+  for (int c = 0; c < equations.columns(); ++c)
+    precision[c] = std::pow(prior_weight(equations, prior, c), 2);
+  return precision;
+}
+
+Eigen::MatrixXd triangle_with_priors(const Equations& equations, const Prior& prior,
+                                     const std::vector<int>& columns, const Eigen::MatrixXd& R,
+                                     const Eigen::VectorXd& xi, bool pull) {
+  const Eigen::Index n = static_cast<Eigen::Index>(columns.size()), K = R.rows();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(K + n, n + 1);
+  A.topRows(K) << R(Eigen::all, columns), R.rightCols(1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int c = columns[static_cast<size_t>(i)];
+    A(K + i, i) = prior_weight(equations, prior, c);
+    if (pull && c < equations.robot_columns())
+      A(K + i, n) = A(K + i, i) * (prior.centre[c] - xi[c]);
+  }
+  triangularise(A);
+  return A.topRows(n + 1);
 }
 
 Fit fit(const Equations& equations, const State& start, const Prior& prior, const FitRule& rule,

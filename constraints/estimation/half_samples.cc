@@ -8,7 +8,6 @@
 #include "constraints/estimation/half_samples.h"
 
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "kinematics/linear_algebra.h"
@@ -43,19 +42,11 @@ struct HalfFit {
 };
 
 HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Weighting& weighting) {
-  const Eigen::VectorXd& xi = adjusted.fitted.state.xi;
   const Eigen::MatrixXd R = equations.linearise(adjusted.fitted.state, weighting).R;
   const std::vector<int> columns = free_columns(equations, adjusted.prior);
-  const auto n = static_cast<Eigen::Index>(columns.size()), K = R.rows();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(K + n, n + 1);
-  A.topRows(K) << R(Eigen::all, columns), R.rightCols(1);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int c = columns[static_cast<size_t>(i)];
-    A(K + i, i) = prior_weight(equations, adjusted.prior, c);
-    if (c < equations.robot_columns())
-      A(K + i, n) = A(K + i, i) * (adjusted.prior.centre[c] - xi[c]);
-  }
-  triangularise(A);
+  const Eigen::MatrixXd A =
+      triangle_with_priors(equations, adjusted.prior, columns, R, adjusted.fitted.state.xi, true);
+  const auto n = static_cast<Eigen::Index>(columns.size());
   const Eigen::MatrixXd inverse = inverse_of_triangle(A.topLeftCorner(n, n));
   HalfFit fit{Eigen::VectorXd::Zero(equations.columns()),
               Eigen::MatrixXd::Zero(equations.columns(), equations.columns())};
@@ -70,9 +61,7 @@ HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
   const std::vector<int> stretch = stretches(equations);
   const Noise& noise = adjusted.fitted.noise;
   const Eigen::Index n = equations.columns();
-  Eigen::VectorXd lambda(n);
-  for (int c = 0; c < equations.columns(); ++c)
-    lambda[c] = std::pow(prior_weight(equations, adjusted.prior, c), 2);
+  const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
   HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
   for (const int other : kSplits) {
     Weighting first{noise.used, noise.outlier}, second = first;
