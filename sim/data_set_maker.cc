@@ -12,6 +12,8 @@ Simulated make_data_set(const Scenario& scenario, const Robot& robot, Problems& 
   Simulated made;
   made.data.target = scenario.target.value_or(made.data.target);
   made.data.sets = make_sets(scenario, problems);
+  if (const std::string why = lacking_body(robot, made.data.sets); !why.empty())
+    problems.list.push_back(why);
   made.truth.xi = true_parameters(scenario, robot, problems);
   const std::optional<Compliance> compliance =
       true_compliance(scenario, robot, made.truth.xi, problems);

@@ -89,7 +89,9 @@ EndpointQuestion endpoint_question(const Equations& equations, const Adjusted& a
   question.xi = adjusted.fitted.state.xi;
   question.unseen = unseen_motions(equations, R);
   question.point_unknown = point_is_unknown(equations);
-  question.poses = random_poses(equations.robot(), &equations.data().rows, kPoses, seed);
+  question.poses =
+      closing_poses(equations.robot(), question.xi,
+                    random_poses(equations.robot(), &equations.data().rows, kPoses, seed));
   return question;
 }
 

@@ -1,6 +1,7 @@
 #include "constraints/sampling/random_poses.h"
 
 #include <random>
+#include <vector>
 
 namespace selfcal {
 
@@ -21,6 +22,17 @@ Eigen::MatrixXd random_poses(const Robot& robot, const Observations* data, int c
   const auto uniform = [&] { return std::generate_canonical<double, 53>(random); };
   for (int i = 0; i < count; ++i) q.row(i) = robot.draw(span, uniform).transpose();
   return q;
+}
+
+Eigen::MatrixXd closing_poses(const Robot& robot, const Eigen::VectorXd& xi,
+                              const Eigen::MatrixXd& q) {
+  if (!robot.has_loops()) return q;
+  std::vector<Eigen::Index> closing;
+  Locations X;
+  for (Eigen::Index i = 0; i < q.rows(); ++i)
+    if (robot.locate(block_of(q.row(i).transpose()), xi, Body::endpoint, X, nullptr).closes())
+      closing.push_back(i);
+  return q(closing, Eigen::all);
 }
 
 }  // namespace selfcal

@@ -11,4 +11,9 @@ namespace selfcal {
 Eigen::MatrixXd random_poses(const Robot& robot, const Observations* data, int count,
                              unsigned long long seed);
 
+/// Those of the poses (a row each) that a robot with parameters `xi` can take: all of one without
+/// loops.
+Eigen::MatrixXd closing_poses(const Robot& robot, const Eigen::VectorXd& xi,
+                              const Eigen::MatrixXd& q);
+
 }  // namespace selfcal

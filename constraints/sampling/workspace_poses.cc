@@ -99,14 +99,12 @@ std::vector<Eigen::VectorXd> between(const Robot& robot, const Eigen::VectorXd& 
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<Eigen::Index> any(0, rows.rows() - 1);
   Uniform uniform;
-  Locations X;
   for (int drawn = 0; drawn < kMostDraws * count && static_cast<int>(found.size()) < count;
        ++drawn) {
     const Eigen::Index a = any(random), b = any(random);
     const double share = uniform(random);
-    const Eigen::VectorXd q = ((1 - share) * rows.row(a) + share * rows.row(b)).transpose();
-    if (!robot.has_loops() || robot.locate(block_of(q), xi, Body::endpoint, X, nullptr).closes())
-      found.push_back(q);
+    const Eigen::MatrixXd q = (1 - share) * rows.row(a) + share * rows.row(b);
+    if (closing_poses(robot, xi, q).rows() > 0) found.push_back(q.row(0).transpose());
   }
   return found;
 }

@@ -211,6 +211,15 @@ TEST(DataSetMaker, PutsAParallelPlaneBeyondTheOtherOneUnlessItsTruthSaysNearer) 
   }
 }
 
+TEST(DataSetMaker, RefusesALockOnARobotThatLacksTheJoint) {
+  Problems problems;
+  make_data_set(scenario_of("robot: r\nsets: {lock: {method: locked-joint, lock: {leg: 1, joint: "
+                            "universal}, rows: 20}}\n"),
+                rx90(), problems);
+  ASSERT_TRUE(problems.any());
+  EXPECT_THAT(problems.list[0], HasSubstr("set lock: this serial robot has no such joint to lock"));
+}
+
 TEST(DataSetMaker, SaysWhichSetIsOutOfReach) {
   Problems problems;
   const Simulated simulated = make_data_set(
