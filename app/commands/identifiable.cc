@@ -62,14 +62,18 @@ Node set_entry(const Robot& robot, const IdentifiableArguments& arguments) {
 std::vector<Set> locked_sets(const std::vector<std::string>& locks, Problems& problems) {
   std::vector<Set> sets;
   for (const std::string& lock : locks) {
+    const Place option{std::make_shared<const std::string>("--lock " + lock)};
     Node words = Node::map();
+    words.place = option;
     std::istringstream text(lock);
     for (std::string word; std::getline(text, word, ',');) {
       const size_t equals = word.find('=');
-      words.set(word.substr(0, equals),
-                Node::of(equals == word.npos ? std::string() : word.substr(equals + 1)));
+      Node value = Node::of(equals == word.npos ? std::string() : word.substr(equals + 1));
+      value.place = option;
+      words.set(word.substr(0, equals), std::move(value));
     }
     Node node = Node::map();
+    node.place = option;
     node.set("method", Node::of(std::string("locked-joint"))).set("lock", std::move(words));
     sets.push_back(make_set(lock, node, problems));
   }
