@@ -68,7 +68,7 @@ std::vector<Set> locked_sets(const std::vector<std::string>& locks, Problems& pr
     std::istringstream text(lock);
     for (std::string word; std::getline(text, word, ',');) {
       const size_t equals = word.find('=');
-      Node value = Node::of(equals == word.npos ? std::string() : word.substr(equals + 1));
+      Node value = Node::of(equals == std::string::npos ? std::string() : word.substr(equals + 1));
       value.place = option;
       words.set(word.substr(0, equals), std::move(value));
     }

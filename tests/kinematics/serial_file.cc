@@ -157,8 +157,8 @@ TEST(SerialFile, IsRefusedForACouplingThatIsNoRegularSquare) {
         << coupling;
 }
 
-TEST(SerialFile, IsRefusedForATolerance0) {
-  for (const char* tolerance : {"{d: 0}", "{d: -1.0e-3}", "{gear: 0}", "{d: x}", "1.0e-3"})
+TEST(SerialFile, IsRefusedForAToleranceThatIsNone) {
+  for (const char* tolerance : {"{d: 0}", "{d: -1.0e-3}", "{gear: -1.0e-3}", "{d: x}", "1.0e-3"})
     EXPECT_THAT(refusal(with_frames("  - {name: j1, joint: revolute, tolerance: " +
                                     std::string(tolerance) + "}\n")),
                 testing::AllOf(StartsWith("arm.yaml:4: "), HasSubstr("tolerance")))
