@@ -69,6 +69,12 @@ class CorrectedRobot final : public Robot, public RobotText {
     return geometry_->draw(span, uniform);
   }
   int variable_parameter(int j) const override { return geometry_->variable_parameter(j); }
+  Eigen::VectorXd variable_change(const Eigen::VectorXd& xi, int j) const override {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(xi.size());
+    change.head(geometry_parameters()) =
+        geometry_->variable_change(xi.head(geometry_parameters()), j);
+    return change;
+  }
   std::string identity() const override { return geometry_->text().identity(); }
   const RobotText& text() const override { return *this; }
   std::vector<std::string> remarks() const override { return geometry_->text().remarks(); }
@@ -84,7 +90,7 @@ class CorrectedRobot final : public Robot, public RobotText {
       moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();
     PsiBlock inner;
     Closure closure = geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
-    if (psi) fill(deviations, v, inner, *psi);
+    if (psi) fill(deviations, own, v, inner, *psi);
     for (int lane = 0; lane < kLanes; ++lane) {
       const Eigen::Matrix<double, 6, 1> twist = deviations[lane].by.tip * v;
       if (twist.isZero(0)) continue;
@@ -190,17 +196,20 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
   /// `inner` is Psi of the geometry alone.
-  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& v,
-            const PsiBlock& inner, PsiBlock& psi) const {
+  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& xi,
+            const Eigen::VectorXd& v, const PsiBlock& inner, PsiBlock& psi) const {
     const Eigen::Index own = geometry_parameters(), n = static_cast<Eigen::Index>(joints().size());
     psi.resize(6 * kLanes, static_cast<Eigen::Index>(parameters_.size()));
     psi.leftCols(own) = inner;
     Eigen::MatrixXd J(6, n);
+    std::vector<Eigen::VectorXd> by_variable;  // of the whole block
+    for (Eigen::Index j = 0; j < n; ++j)
+      by_variable.emplace_back(inner * geometry_->variable_change(xi, static_cast<int>(j)));
     for (int lane = 0; lane < kLanes; ++lane) {
       const Regressor& by = deviations[lane].by;
       for (Eigen::Index j = 0; j < n; ++j)
         for (int c = 0; c < 6; ++c)
-          J(c, j) = inner(c * kLanes + lane, variable_parameter(static_cast<int>(j)));
+          J(c, j) = by_variable[static_cast<size_t>(j)][c * kLanes + lane];
       Eigen::MatrixXd columns = J * by.joints;
       const Eigen::Vector3d turn = by.tip.bottomRows<3>() * v;
       if (!turn.isZero(0)) {

@@ -99,6 +99,10 @@ bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) 
   return robot.within_passive_limits(q);
 }
 
+Eigen::VectorXd Robot::variable_change(const Eigen::VectorXd& xi, int j) const {
+  return Eigen::VectorXd::Unit(xi.size(), variable_parameter(j));
+}
+
 const std::vector<PassiveJoint>& Robot::passive_joints() const {
   static const std::vector<PassiveJoint> none;
   return none;

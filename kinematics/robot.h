@@ -164,8 +164,10 @@ class Robot {
   virtual void joint_jacobian(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                               const PsiBlock& psi, Eigen::MatrixXd& J) const = 0;
   /// Index of the parameter that the variable of joint `j` is added to, so that it is the joint's
-  /// zero.
+  /// zero; where several share it, the one that has most of it.
   virtual int variable_parameter(int j) const = 0;
+  /// The change of the parameters that does as much as one of the variable of joint `j`.
+  virtual Eigen::VectorXd variable_change(const Eigen::VectorXd& xi, int j) const;
 
   /// The frames that the parameters are given in, at values `xi`; empty where the kind does not
   /// say.

@@ -36,9 +36,8 @@ class Disturber {
       const bool is_false =
           next_false < made_.false_rows.size() && made_.false_rows[next_false] == row;
       if (is_false) ++next_false;
-      if (method(row).constrains())
-        disturb_touch(row, is_false);
-      else
+      if (method(row).constrains()) disturb_touch(row, is_false);
+      if (!method(row).constrains() || !method(row).measures().empty())
         disturb_instrument(row, seen.emplace(rows.set[row], rows.group[row]).second);
     }
   }
@@ -72,9 +71,12 @@ class Disturber {
     const SetScenario& set = scenario_.sets[made_.data.rows.set[row]];
     const std::vector<Quantity> equations = method(row).equations();
     const double shared = method(row).paired() ? std::sqrt(0.5) : 1;
-    Eigen::VectorXd r(static_cast<Eigen::Index>(equations.size()));
-    for (Eigen::Index a = 0; a < r.size(); ++a)
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(equations.size()));
+    for (Eigen::Index a = 0; a < r.size(); ++a) {
+      // The angles of a method that measures under a constraint are read, not met.
+      if (equations[a] == Quantity::angle && !method(row).measures().empty()) continue;
       r[a] = shared * normal(equations[a] == Quantity::angle ? angle_sigma(row) : set.noise);
+    }
     return r;
   }
 
@@ -105,6 +107,9 @@ class Disturber {
       Eigen::VectorXd q = made_.data.rows.q.row(row).transpose();
       if (!move_to_residual(robot_, made_.data, made_.truth, row, wanted, q)) continue;
       made_.data.rows.q.row(row) = q.transpose();
+      if (!method(row).measures().empty())
+        method(row).measure(locate(robot_, made_.truth.xi, q, method(row).body()), {},
+                            made_.truth.nuisance[made_.data.rows.set[row]], made_.data.rows, row);
       return;
     }
     made_.unreached = "set " + scenario_.sets[made_.data.rows.set[row]].name +

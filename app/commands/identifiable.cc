@@ -38,19 +38,20 @@ struct Answered {
 };
 
 /// The entry of a set of `method`; planes are known, through the endpoint at a random
-/// configuration, unless the user says otherwise.
+/// configuration, unless the user says otherwise; a link is as long as such a one asks for.
 Node set_entry(const Robot& robot, const IdentifiableArguments& arguments) {
   Node node = Node::map();
   node.set("method", Node::of(arguments.method));
   if (arguments.unknown) return node;
   Eigen::Vector3d n(0.36, -0.48, 0.8);
   if (arguments.method == "plane-normal") node.set("normal", Node::of(Eigen::VectorXd(n)));
-  if (arguments.method != "plane") return node;
+  if (arguments.method != "plane" && arguments.method != "constraint-link") return node;
   ConfigurationBlock block;
   block.q = random_poses(robot, nullptr, kLanes, arguments.seed).array();
   block.count = kLanes;
   Locations X;
   robot.locate(block, nominal_values(robot), Body::endpoint, X, nullptr);
+  if (arguments.method == "constraint-link") return node.set("length", Node::of(X.p(0).norm()));
   int farthest = 0;  // a plane through the origin has no coefficients a b c
   for (int lane = 1; lane < kLanes; ++lane)
     if (std::abs(n.dot(X.p(lane))) > std::abs(n.dot(X.p(farthest)))) farthest = lane;
@@ -80,13 +81,33 @@ std::vector<Set> locked_sets(const std::vector<std::string>& locks, Problems& pr
   return sets;
 }
 
+/// The joints, read ones, that `--lock joint=NAME` holds while the others move.
+std::vector<int> held_joints(const Robot& robot, const std::vector<std::string>& locks,
+                             Problems& problems) {
+  std::vector<int> held;
+  for (const std::string& lock : locks) {
+    const std::string key = "joint=";
+    const int joint = lock.starts_with(key) ? find_joint(robot, lock.substr(key.size())) : -1;
+    if (joint < 0)
+      problems.list.push_back("--lock " + lock + ": expected joint=NAME of " + robot.name() +
+                              ", such as joint=" + robot.joints().front().name);
+    held.push_back(joint);
+  }
+  return held;
+}
+
 Result<Answered> of_robot(const IdentifiableArguments& arguments) {
   auto robot = load_robot(arguments.subject);
   if (!robot) return tl::unexpected(robot.error());
   Problems problems;
-  std::vector<Set> sets = locked_sets(arguments.locks, problems);
-  if (sets.empty())
+  std::vector<Set> sets;
+  std::vector<int> held;
+  if (arguments.method == "locked-joint") {
+    sets = locked_sets(arguments.locks, problems);
+  } else {
     sets.push_back(make_set(arguments.method, set_entry(**robot, arguments), problems));
+    held = held_joints(**robot, arguments.locks, problems);
+  }
   if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
   if (const std::string why = lacking_body(**robot, sets); !why.empty())
     return tl::unexpected(Failure{kWrongUsage, why});
@@ -95,7 +116,7 @@ Result<Answered> of_robot(const IdentifiableArguments& arguments) {
   answered.rows = arguments.count * static_cast<int>(sets.size());
   StructuralRank structure =
       structural(**robot, sets, std::vector<char>((*robot)->parameters().size(), 1),
-                 arguments.count, arguments.seed);
+                 arguments.count, arguments.seed, {}, held);
   if (!structure.unreached.empty())
     return tl::unexpected(Failure{kAnswerIsNo, structure.unreached});
   answered.rank = std::move(structure.rank);
@@ -210,10 +231,8 @@ int identifiable_command(const IdentifiableArguments& arguments) {
                        " goes with a robot file and --method; a data set has its own rows");
   if (arguments.unknown && !arguments.method.starts_with("plane"))
     return wrong_usage("--unknown goes with plane and plane-normal, not with " + arguments.method);
-  if ((arguments.method == "locked-joint") == arguments.locks.empty())
-    return wrong_usage(arguments.locks.empty()
-                           ? "--method locked-joint needs --lock leg=N,joint=universal or spherical"
-                           : "--lock goes with --method locked-joint");
+  if (arguments.method == "locked-joint" && arguments.locks.empty())
+    return wrong_usage("--method locked-joint needs --lock leg=N,joint=universal or spherical");
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)
@@ -241,7 +260,8 @@ void add_identifiable(CLI::App& app, int& status) {
   const std::vector<CLI::Option*> for_robots = {
       command
           ->add_option("--lock", arguments->locks,
-                       "leg=N,joint=universal or spherical; again for each that is locked in turn")
+                       "Of locked-joint leg=N,joint=universal or spherical, again for each that is "
+                       "locked in turn; of others joint=NAME, held while the others move")
           ->expected(1)
           ->take_all(),
       command->add_flag("--unknown", arguments->unknown, "The plane is unknown"),

@@ -30,7 +30,7 @@ Deviations deviations(const EndpointQuestion& question) {
   const Eigen::MatrixXd L = root(question.covariance);
   const Eigen::Index rows = 3 * q.rows(), motions = question.unseen.cols();
   const Eigen::Index unseen = motions + (question.point_unknown ? 3 : 0);
-  Deviations D{Eigen::MatrixXd(rows, L.cols()), Eigen::MatrixXd(rows, L.cols()),
+  Deviations D{Eigen::MatrixXd::Zero(rows, L.cols()), Eigen::MatrixXd::Zero(rows, L.cols()),
                Eigen::MatrixXd::Zero(rows, unseen), Eigen::MatrixXd::Zero(rows, unseen)};
   ConfigurationBlock block;
   Locations X, link;
@@ -41,9 +41,10 @@ Deviations deviations(const EndpointQuestion& question) {
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) = q.row(std::min(first + lane, q.rows() - 1)).array();
     // A lane that does not close with the values found has no derivative, and adds nothing.
-    robot.locate(block, question.xi, Body::endpoint, X, &psi);
+    const Closure closure = robot.locate(block, question.xi, Body::endpoint, X, &psi);
     robot.locate(block, question.xi, Body::last_link, link, nullptr);
     for (int lane = 0; lane < block.count; ++lane) {
+      if (!closure.closes(lane)) continue;
       Eigen::MatrixXd J(6, psi.cols());
       for (int c = 0; c < 6; ++c) J.row(c) = psi.row(c * kLanes + lane);
       J = (J * L).eval();

@@ -67,7 +67,7 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
 
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
                           const std::vector<char>& candidate, int rows, unsigned long long seed,
-                          const std::vector<char>& used) {
+                          const std::vector<char>& used, const std::vector<int>& held) {
   DataSet data;
   std::vector<SampleRequest> requests;
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -76,6 +76,7 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
     SampleRequest request;
     request.set = static_cast<int>(s);
     request.rows = used.empty() || used[s] ? rows : 0;
+    request.held = held;
     requests.push_back(request);
   }
   Random random(seed);

@@ -14,6 +14,7 @@ constexpr int kNewtonSteps = 40;
 constexpr double kLongestStep = 0.5;  // rad or m
 constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
 constexpr int kEnough = 8;            // lanes that reach it before the others are given up
+constexpr double kSame = 1e-6;        // farther apart, two configurations differ (rad, m)
 constexpr int kTries = 60;            // blocks of starts before a row is given up
 
 class Sampler {
@@ -64,6 +65,7 @@ class Sampler {
     ConfigurationBlock block;
     block.q = random_poses(robot_, nullptr, kLanes, random_()).array();
     block.count = kLanes;
+    for (const auto& [joint, reading] : locked_) block.q.col(joint) = reading;
     return block;
   }
 
@@ -80,6 +82,11 @@ class Sampler {
   void fill(const SampleRequest& request) {
     Set& set = data_.sets[request.set];
     const Method& method = *set.method;
+    locked_.clear();
+    if (!request.held.empty()) {
+      const Eigen::MatrixXd there = random_poses(robot_, nullptr, 1, random_());
+      for (const int joint : request.held) locked_.emplace_back(joint, there(0, joint));
+    }
     Eigen::VectorXd& nuisance = sampled_.truth.nuisance[request.set];
     const Eigen::VectorXd* reference =
         set.reference < 0 ? nullptr : &sampled_.truth.nuisance[set.reference];
@@ -156,12 +163,14 @@ class Sampler {
       ConfigurationBlock block = starts();
       Locations X;
       const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
-      const std::vector<int> found = must ? newton(method, wanted, row, last_of_group, block, X)
-                                          : everywhere(method, block, X);
+      const std::vector<int> found =
+          must ? newton(method, wanted, row, last_of_group, request.held, block, X)
+               : everywhere(method, block, X);
       bool taken = false;
       for (const int lane : found) {
         if (!within_limits(robot_, block.q.row(lane).transpose()) ||
-            !request.patch.contains(X.p(lane)))
+            !request.patch.contains(X.p(lane)) ||
+            (!request.held.empty() && taken_before(block.q.row(lane), row)))
           continue;
         if (taken) {
           spare_.push_back({block.q.row(lane), X.at(lane)});
@@ -175,6 +184,14 @@ class Sampler {
     }
     data_.rows.set.pop_back();
     data_.rows.group.pop_back();
+    return false;
+  }
+
+  /// Whether a row before `row` of its group has the same configuration.
+  bool taken_before(const Eigen::ArrayXd& q, int row) const {
+    const Observations& d = data_.rows;
+    for (int i = row - 1; i >= 0 && d.set[i] == d.set[row] && d.group[i] == d.group[row]; --i)
+      if ((d.q.row(i).transpose().array() - q).abs().maxCoeff() < kSame) return true;
     return false;
   }
 
@@ -192,12 +209,13 @@ class Sampler {
 
   /// Lanes that reached the wanted residual; moves block.q there and leaves their locations in X.
   std::vector<int> newton(const Method& method, const Eigen::VectorXd& wanted, int row,
-                          int previous, ConfigurationBlock& block, Locations& X) const {
+                          int previous, const std::vector<int>& held, ConfigurationBlock& block,
+                          Locations& X) const {
     Locations before;
     if (previous >= 0)
       robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
                     nullptr);
-    NewtonStep newton(robot_, data_, sampled_.truth, row, before);
+    NewtonStep newton(robot_, data_, sampled_.truth, row, before, held);
     Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
     for (int step = 0; step < kNewtonSteps; ++step) {
       newton.evaluate(block);
@@ -228,6 +246,7 @@ class Sampler {
   Random& random_;
   DataSet& data_;
   Sampled sampled_;
+  std::vector<std::pair<int, double>> locked_;  ///< joints and their readings, of the request
   struct Found {
     Eigen::ArrayXd q;
     Location there;

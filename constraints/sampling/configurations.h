@@ -30,6 +30,7 @@ struct SampleRequest {
   int rows_per_group = 4;                   ///< of methods with group unknowns
   std::optional<Eigen::VectorXd> nuisance;  ///< true own values; random when missing
   Patch patch;
+  std::vector<int> held;         ///< joints locked at readings of their own, one for all rows
   std::vector<Location> places;  ///< true locations of the first groups; random when missing
   /// Rows may come from starts that were solved together: faster, and as random. For methods
   /// without groups.

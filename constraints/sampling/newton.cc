@@ -5,11 +5,12 @@
 namespace selfcal {
 
 NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
-                       const Locations& before)
+                       const Locations& before, const std::vector<int>& held)
     : robot_(robot),
       data_(data),
       truth_(truth),
       before_(before),
+      held_(held),
       set_(data.rows.set[row]),
       rows_(kLanes, row) {}
 
@@ -31,6 +32,14 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
   in.reference = reference < 0 ? nullptr : &truth_.nuisance[reference];
   in.groups = &truth_.groups[set_];
   method.evaluate(in, out_);
+  for (const int j : held_) J_.col(j).setZero();
+  if (!method.constrains() || method.measures().empty()) return;
+  const std::vector<Quantity> quantities = method.equations();
+  for (size_t a = 0; a < quantities.size(); ++a) {
+    if (quantities[a] == Quantity::length) continue;
+    out_.r.col(static_cast<Eigen::Index>(a)).setZero();
+    out_.G_now.middleCols(6 * static_cast<Eigen::Index>(a), 6).setZero();
+  }
 }
 
 Eigen::VectorXd NewtonStep::miss(int lane, const Eigen::VectorXd& wanted) const {

@@ -10,12 +10,14 @@
 
 namespace selfcal {
 
+/// A method that measures under a constraint (a link of known length) is brought to its lengths;
+/// its angles are what the instrument then reads.
 class NewtonStep {
  public:
   /// Of `row` of `data`, with parameters, own and group values `truth`; the residual of a paired
   /// method is counted against `before`. All must outlive this.
   NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
-             const Locations& before);
+             const Locations& before, const std::vector<int>& held = {});
 
   /// Takes residuals and derivatives at `block`.
   void evaluate(const ConfigurationBlock& block);
@@ -32,6 +34,7 @@ class NewtonStep {
   const DataSet& data_;
   const State& truth_;
   const Locations& before_;
+  std::vector<int> held_;  ///< joints that do not move
   int set_;
   std::vector<int> rows_;
   Locations X_;

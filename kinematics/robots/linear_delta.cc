@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinematics/expects.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -60,6 +61,7 @@ class LinearDelta final : public Robot, public RobotText {
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
+    expects(has_body(*this, body), "a body of the robot");
     Closure closure;
     std::array<Tower, kTowers> towers;
     for (int t = 0; t < kTowers; ++t) towers[t] = tower(xi, t);

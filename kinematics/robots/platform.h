@@ -39,11 +39,12 @@ struct AssemblyMode {
 
 /// The loops closed.
 struct ClosedChains {
-  Location X;                     ///< of the platform
-  Centres n;                      ///< unit, along each chain from c_i to the platform, base axes
-  Eigen::Matrix<double, 6, 6> A;  ///< row i: (n_i, R b_i x n_i), so that A dX = d l_i + …
-  double volume = 0;              ///< det A with lengths over the platform's size
-  std::string open;               ///< why there is no X; empty where it closes
+  Location X;  ///< of the platform
+  Centres n;   ///< unit, along each chain from c_i to the platform, base axes
+  /// Of A, row i (n_i, R b_i x n_i), so that A dX = d l_i + …
+  Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> A;
+  double volume = 0;  ///< det A with lengths over the platform's size
+  std::string open;   ///< why there is no X; empty where it closes
 };
 
 /// Mean distance of the platform's joints from their centre (m).

@@ -19,11 +19,10 @@ constexpr double kSingular = 1e-7;     // volume of a place where the platform i
 constexpr double kFarthestTurn = 2.1;  // rad from home: beyond, the chains are wound up
 constexpr double kBetter = 1 - 1e-3;   // of the misfit, what counts as closing
 
-Six misfit(const Chains& chains, const ClosedChains& at) {
+Six misfit(const Chains& chains, const Location& X) {
   Six f;
   for (int i = 0; i < kChains; ++i)
-    f[i] =
-        (at.X.p + at.X.R * chains.joint.col(i) - chains.carrier.col(i)).norm() - chains.length[i];
+    f[i] = (X.p + X.R * chains.joint.col(i) - chains.carrier.col(i)).norm() - chains.length[i];
   return f;
 }
 
@@ -41,15 +40,15 @@ std::string does_not_close(const Six& f) {
 /// One Newton step from `at`, shortened until the lengths fit better; false where none does.
 bool step(const Chains& chains, const AssemblyMode* mode, double size, ClosedChains& at, Six& f,
           bool& barred) {
-  const Six dX = at.A.partialPivLu().solve(-f);
+  const Six dX = at.A.solve(-f);
   if (!dX.allFinite()) return false;
   const double reach = std::max(dX.tail<3>().norm(), dX.head<3>().norm() / size);
   double share = std::min(1.0, kLongestTurn / std::max(reach, 1e-300));
   for (int i = 0; i < kHalvings; ++i, share /= 2) {
-    const ClosedChains next = at_pose(
-        chains, {exp_rotation(share * dX.tail<3>()) * at.X.R, at.X.p + share * dX.head<3>()});
-    const Six g = misfit(chains, next);
+    const Location X{exp_rotation(share * dX.tail<3>()) * at.X.R, at.X.p + share * dX.head<3>()};
+    const Six g = misfit(chains, X);
     if (!(g.norm() < kBetter * f.norm())) continue;
+    const ClosedChains next = at_pose(chains, X);
     if (mode && !(std::copysign(next.volume, next.volume * mode->volume) > kSingular)) {
       barred = true;
       continue;
@@ -71,16 +70,14 @@ double size_of(const Chains& chains) {
 ClosedChains at_pose(const Chains& chains, const Location& X) {
   ClosedChains at;
   at.X = X;
-  const Eigen::Vector3d middle = X.R * chains.joint.rowwise().mean();
-  const double size = size_of(chains);
-  Eigen::Matrix<double, 6, 6> scaled;
+  Eigen::Matrix<double, 6, 6> A;
   for (int i = 0; i < kChains; ++i) {
     const Eigen::Vector3d arm = X.R * chains.joint.col(i);
     at.n.col(i) = (X.p + arm - chains.carrier.col(i)).normalized();
-    at.A.row(i) << at.n.col(i).transpose(), arm.cross(at.n.col(i)).transpose();
-    scaled.row(i) << at.n.col(i).transpose(), (arm - middle).cross(at.n.col(i)).transpose() / size;
+    A.row(i) << at.n.col(i).transpose(), arm.cross(at.n.col(i)).transpose();
   }
-  at.volume = scaled.determinant();
+  at.A.compute(A);
+  at.volume = at.A.determinant() / std::pow(size_of(chains), 3);
   return at;
 }
 
@@ -93,7 +90,7 @@ ClosedChains newton(const Chains& chains, const Location& start, const AssemblyM
     at.open = "no location of the platform: a chain has no length";
     return at;
   }
-  Six f = misfit(chains, at);
+  Six f = misfit(chains, at.X);
   bool barred = false;
   for (int i = 0; i < kSteps && step(chains, mode, size, at, f, barred); ++i)
     if (f.cwiseAbs().maxCoeff() < fits / 100) break;
@@ -114,7 +111,7 @@ ClosedChains newton(const Chains& chains, const Location& start, const AssemblyM
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
   ClosedChains at = newton(chains, start, mode);
   if (at.open.empty() || !mode || (chains.length.array() <= 0).any()) return at;
-  const Six from = misfit(chains, at_pose(chains, start)) + chains.length;
+  const Six from = misfit(chains, start) + chains.length;
   for (int parts = 4; parts <= kMostParts; parts *= 4) {
     Chains between = chains;
     ClosedChains next = at_pose(chains, start);

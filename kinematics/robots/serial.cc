@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "kinematics/expects.h"
 #include "kinematics/robots/serial_chain.h"
 
 namespace selfcal {
@@ -53,6 +54,7 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
+    expects(has_body(*this, body), "a body of the robot");
     const int last = last_frame(body);
     std::vector<Axes> axes(psi ? frame_count() : 0);
     LanePose pose = serial::lane_world();

@@ -68,6 +68,7 @@ inline std::vector<MethodCase> method_cases() {
        true},
       {"LockedSphericalJoint", "s: {method: locked-joint, lock: {leg: 5, joint: spherical}}", true,
        true},
+      {"ConstraintLink", "s: {method: constraint-link, length: 0.75}"},
       {"SphereKnown", "s: {method: sphere, center: [0.6, 0.1, 0.5], radius: 0.1}"},
   };
 }

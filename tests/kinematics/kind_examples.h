@@ -38,6 +38,16 @@ legs:
   - {base: [-0.4089, -0.4618, -0.0125], platform: [-0.3548, -0.0629, -0.0016], limits: [0.55, 1.15]}
   - {base: [-0.2125, -0.5693, -0.0032], platform: [0.1251, -0.3267, 0.0036], offset: -0.005, limits: [0.55, 1.15]}
 home: {xyz: [0, 0, 0.7], rpy: [0, 0, 0.05]}
+)"},
+      {"hexaslide", R"(robot: slider
+kind: hexaslide
+chains:
+  - {rail_start: [-0.7359, -0.5522, 0.2614], rail_direction: [0.7502, 0.4332], platform: [-0.0611, -0.1617, -0.0161], length: 0.9947}
+  - {rail_start: [-0.8418, -0.3589, 0.2599], rail_direction: [0.7498, 0.4327], platform: [-0.1708, 0.0288, -0.0162], length: 0.9948, tolerance: {length: 1.0e-3, ax: 5.0e-4}}
+  - {rail_start: [-0.1101, 0.8991, 0.2534], rail_direction: [0.0002, -0.8662], platform: [-0.1102, 0.1371, -0.0161], length: 0.9946}
+  - {rail_start: [0.1102, 0.8972, 0.2518], rail_direction: [-0.0002, -0.8663], platform: [0.1098, 0.1372, -0.0158], length: 0.9947, limits: [0, 0.9], swing: [0.9, 0.9]}
+  - {rail_start: [0.8397, -0.3556, 0.2563], rail_direction: [-0.7497, 0.4329], platform: [0.1738, 0.0288, -0.0161], length: 0.9948}
+  - {rail_start: [0.7297, -0.5463, 0.2539], rail_direction: [-0.7503, 0.4327], platform: [0.0637, -0.1617, -0.0162], length: 0.9947}
 )"}};
   return examples;
 }

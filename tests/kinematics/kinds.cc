@@ -139,7 +139,7 @@ TEST_P(RobotKind, MovesAJointsVariableAsTheParameterThatIsItsZero) {
     added.added.setZero(kLanes, block_.q.cols());
     added.added.col(static_cast<Eigen::Index>(j)) = kMove;
     Eigen::VectorXd xi = xi_;
-    xi[robot_->variable_parameter(static_cast<int>(j))] += kMove;
+    xi += kMove * robot_->variable_change(xi_, static_cast<int>(j));
     const Locations a = located(added, xi_, Body::endpoint),
                     b = located(block_, xi, Body::endpoint);
     EXPECT_LT((a.position - b.position).abs().maxCoeff(), 1e-13);  // rounding
@@ -187,7 +187,7 @@ TEST_P(RobotKind, ComesBackFromItsFileAsTheSameMachineWithOtherValues) {
 
 TEST_P(RobotKind, IsAnotherMachineWithAnotherMakersFigure) {
   const Node node = robot_->text().describe(xi_);
-  for (const char* key : {"frames", "towers", "legs"}) {
+  for (const char* key : {"frames", "towers", "legs", "chains"}) {
     const Node* list = node.find(key);
     if (!list) continue;
     Node other = node;
@@ -195,8 +195,9 @@ TEST_P(RobotKind, IsAnotherMachineWithAnotherMakersFigure) {
       if (node.keys[k] == key)
         for (size_t f = 0; f < list->items[1].keys.size(); ++f)
           if (const std::string& name = list->items[1].keys[f];
-              name == "r" || name == "rod" || name == "offset")
-            other.items[k].items[1].items[f] = Node::of(0.22);
+              name == "r" || name == "rod" || name == "offset" || name == "length")
+            other.items[k].items[1].items[f] =
+                Node::of(*parse_number(list->items[1].items[f].text) + 1e-3);
     EXPECT_NE(robot_of(other)->text().identity(), robot_->text().identity());
   }
 }
