@@ -7,6 +7,7 @@
 //   (b + w x a, Jl(turn) w).
 #include "kinematics/corrected_robot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -74,6 +75,10 @@ class CorrectedRobot final : public Robot, public RobotText {
     change.head(geometry_parameters()) =
         geometry_->variable_change(xi.head(geometry_parameters()), j);
     return change;
+  }
+  int leg_parameter(int j) const override { return geometry_->leg_parameter(j); }
+  Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd& q) const override {
+    return geometry_->leg_lengths(xi.head(geometry_parameters()), q);
   }
   std::string identity() const override { return geometry_->text().identity(); }
   const RobotText& text() const override { return *this; }
@@ -189,10 +194,36 @@ class CorrectedRobot final : public Robot, public RobotText {
   /// By lane; lanes past the block's count share the last one's.
   std::vector<Deviation> deviations_of(const ConfigurationBlock& block, Body body) const {
     std::vector<Deviation> all;
-    for (int lane = 0; lane < kLanes; ++lane)
-      all.push_back(lane < std::max(block.count, 1) ? deviation(circumstances(block, lane), body)
-                                                    : all.back());
+    const bool of_legs = std::any_of(effects_.begin(), effects_.end(),
+                                     [](const auto& effect) { return effect->of_legs(); });
+    PsiBlock psi;
+    if (of_legs) {
+      ConfigurationBlock plain;
+      plain.q = block.q;
+      plain.count = block.count;
+      Locations X;
+      geometry_->locate(plain, values(*geometry_), Body::endpoint, X, &psi);
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (lane >= std::max(block.count, 1)) {
+        all.push_back(all.back());
+        continue;
+      }
+      Circumstances at = circumstances(block, lane);
+      if (of_legs) see_legs(psi, lane, at);
+      all.push_back(deviation(at, body));
+    }
     return all;
+  }
+
+  /// `psi` is that of the block's readings with the file's own values.
+  void see_legs(const PsiBlock& psi, int lane, Circumstances& at) const {
+    const auto n = static_cast<Eigen::Index>(joints().size());
+    at.legs.resize(6, n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (int c = 0; c < 6; ++c)
+        at.legs(c, j) = psi(c * kLanes + lane, geometry_->leg_parameter(static_cast<int>(j)));
+    at.leg_lengths = geometry_->leg_lengths(values(*geometry_), at.q);
   }
 
   /// `inner` is Psi of the geometry alone.

@@ -58,6 +58,12 @@ int EffectPlan::joint() const {
   return 0;
 }
 
+int EffectPlan::leg() const {
+  if (robot.leg_parameter(0) >= 0) return joint();
+  fields.fail("effect", "an effect of another kind: " + std::string(kNoLegs));
+  return -1;
+}
+
 int EffectPlan::set() const {
   const int set = site.find(fields.text("at"));
   if (set < 0 && !site.sets.empty()) fields.fail("at", "a set of the data set");

@@ -35,6 +35,11 @@ struct Circumstances {
   double temperature = 0, time = 0;  ///< C, s
   Eigen::Vector3d normal;            ///< outward, of the touched surface, world, unit
   int set = -1;                      ///< of the data set; -1 outside one
+  /// How the tip moves per length of each leg, 6 x joints (m/m, rad/m; world axes), and the legs'
+  /// lengths (m), with the file's own values. Only where an effect asks (Effect::of_legs); zero
+  /// where the loops do not close.
+  Eigen::MatrixXd legs;
+  Eigen::VectorXd leg_lengths;
 };
 
 /// d(joint variables) and d(location of the tip) to each of the effect's parameters.
@@ -87,6 +92,8 @@ class Effect {
   Node describe(const Eigen::VectorXd& v) const;
   /// True when the robot itself deviates, false when only its measurement does.
   virtual bool of_machine() const { return true; }
+  /// Asks for Circumstances::legs.
+  virtual bool of_legs() const { return false; }
   /// What rows must have so that it can be seen: "temperatures that change".
   virtual std::string needs() const = 0;
   /// `into` is zero and of the right size.
@@ -107,6 +114,8 @@ class Effect {
 
 /// Why an effect of load or of links says nothing of a robot without statics.
 inline constexpr std::string_view kNoStatics = "this kind of robot has no statics model";
+/// Why an effect of legs says nothing of other robots.
+inline constexpr std::string_view kNoLegs = "no legs carry this kind of robot";
 
 /// What an effect is made from.
 struct EffectPlan {
@@ -117,6 +126,8 @@ struct EffectPlan {
 
   /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
   int joint() const;
+  /// The same of a robot with legs; without them it notes a problem and gives -1.
+  int leg() const;
   /// Index of the set called `at`; -1 outside a data set. Notes a problem when the site lacks it.
   int set() const;
   /// Masses and links, for an effect that cannot do without; null of a robot that has none,

@@ -169,6 +169,14 @@ class Robot {
   /// The change of the parameters that does as much as one of the variable of joint `j`.
   virtual Eigen::VectorXd variable_change(const Eigen::VectorXd& xi, int j) const;
 
+  /// Of a machine that legs carry (struts, rods or links, one behind each joint): index of the
+  /// parameter that is the length of joint `j`'s, or is added to it; -1 of one without.
+  virtual int leg_parameter(int) const { return -1; }
+  /// Lengths of the legs at values `xi` and readings `q` (m); empty of a machine without.
+  virtual Eigen::VectorXd leg_lengths(const Eigen::VectorXd&, const Eigen::VectorXd&) const {
+    return {};
+  }
+
   /// The frames that the parameters are given in, at values `xi`; empty where the kind does not
   /// say.
   virtual std::vector<FrameMotions> frame_motions(const Eigen::VectorXd&) const { return {}; }

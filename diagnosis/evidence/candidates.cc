@@ -109,6 +109,7 @@ class Maker {
       add({with(entry("joint_compliance", at), "lumps", std::string("true"))});
       cannot("link_compliance", at, "the robot file gives no masses and the rows no loads");
     }
+    of_leg(at);
     of_waves(at);
     if (site_.velocities)
       add({entry("backlash", at)});
@@ -120,6 +121,20 @@ class Maker {
       if (other.name != at) add({with(entry("joint_coupling", at), "from", other.name)});
     for (const double moment : moments(-1)) add({with(entry("zero_shift", at), "moment", moment)});
     if (moments(-1).empty()) cannot("zero_shift", at, "the rows carry no time");
+  }
+
+  void of_leg(const std::string& at) {
+    if (robot_.leg_parameter(0) < 0) return;
+    // What hangs on the tip is known as the rows' loads, or else by how it bends the legs alone.
+    add({with(entry("leg_compliance", at), "mass", site_.loads ? 0.0 : 1.0)});
+    if (warms())
+      add({entry("leg_thermal_growth", at)});
+    else
+      cannot("leg_thermal_growth", at, "the rows carry no temperatures that change");
+    if (site_.loads)
+      add({entry("joint_clearance", at)});
+    else
+      cannot("joint_clearance", at, "the rows carry no loads: which end of its play is not known");
   }
 
   void of_waves(const std::string& at) {

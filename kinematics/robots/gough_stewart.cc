@@ -31,6 +31,7 @@ class GoughStewartRobot final : public platform::Platform, public RobotText {
   const std::vector<int>& preference() const override { return preference_; }
   const RobotText& text() const override { return *this; }
   int variable_parameter(int joint) const override { return index(joint, kOffset); }
+  int leg_parameter(int joint) const override { return variable_parameter(joint); }
   int chain_parameters() const override { return kFields; }
 
   platform::Chains chains(const Eigen::VectorXd& xi, const Six& q,

@@ -47,6 +47,7 @@ class HexaslideRobot final : public platform::Platform, public RobotText {
     change.segment<3>(index(joint, kStart)) = direction(xi, joint);
     return change;
   }
+  int leg_parameter(int joint) const override { return index(joint, kLink); }
   int chain_parameters() const override { return kFields; }
   /// The tool points down from its platform.
   Eigen::Vector3d tool_axis() const override { return -Eigen::Vector3d::UnitZ(); }

@@ -56,6 +56,10 @@ class LinearDelta final : public Robot, public RobotText {
   std::vector<std::string> remarks() const override { return linear_delta::remarks(model_); }
   bool has_loops() const override { return true; }
   int variable_parameter(int joint) const override { return index(joint, kEndstop); }
+  int leg_parameter(int joint) const override { return index(joint, kRod); }
+  Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd&) const override {
+    return Eigen::Vector3d(xi[index(0, kRod)], xi[index(1, kRod)], xi[index(2, kRod)]);
+  }
   /// The nozzle or probe points down.
   Eigen::Vector3d tool_axis() const override { return -Eigen::Vector3d::UnitZ(); }
 

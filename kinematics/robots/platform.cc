@@ -79,6 +79,10 @@ bool Platform::swings(const ClosedChains& at) const {
   return true;
 }
 
+Eigen::VectorXd Platform::leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd& q) const {
+  return chains(xi, q, Six::Zero()).length;
+}
+
 bool Platform::within_passive_limits(const Eigen::VectorXd& q) const {
   if (std::none_of(passive_.begin(), passive_.end(),
                    [](const PassiveJoint& joint) { return joint.swing > 0; }))

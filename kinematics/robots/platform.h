@@ -110,6 +110,7 @@ class Platform : public Robot {
   const std::vector<PassiveJoint>& passive_joints() const override { return passive_; }
   std::optional<Location> home() const override { return mode_.home; }
   bool within_passive_limits(const Eigen::VectorXd& q) const override;
+  Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd& q) const override;
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override;
   Eigen::VectorXd draw(const Eigen::MatrixX2d& span,

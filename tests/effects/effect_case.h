@@ -7,16 +7,20 @@
 
 #include <algorithm>
 
+#include "constraints/sampling/random_poses.h"
 #include "kinematics/corrected_robot.h"
+#include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/kinematics/random_robot.h"
 
 namespace selfcal {
 
-/// JOINT and OTHER in the entry stand for two joints of the robot.
+/// JOINT and OTHER in the entry stand for two joints of the robot: a serial one, or the example of
+/// its kind that has legs.
 struct EffectCase {
   const char* title;
   const char* entry;
+  const char* kind = "serial";
 };
 
 inline std::vector<EffectCase> effect_cases() {
@@ -44,6 +48,14 @@ inline std::vector<EffectCase> effect_cases() {
       {"ToolCompliance", "effect: tool_compliance, at: probe"},
       {"ScaleError", "effect: scale_error, at: tracker"},
       {"ScaleErrorByTemperature", "effect: scale_error, at: tracker, by: temperature"},
+      {"LegCompliance", "effect: leg_compliance, at: JOINT", "gough-stewart"},
+      {"LegComplianceOfADelta", "effect: leg_compliance, at: JOINT, mass: 0", "linear-delta"},
+      {"LegComplianceOfAHexaSlide", "effect: leg_compliance, at: JOINT, mass: 9", "hexaslide"},
+      {"LegThermalGrowth", "effect: leg_thermal_growth, at: JOINT", "gough-stewart"},
+      {"LegThermalGrowthOfADelta", "effect: leg_thermal_growth, at: JOINT, reference: 21",
+       "linear-delta"},
+      {"JointClearance", "effect: joint_clearance, at: JOINT", "gough-stewart"},
+      {"JointClearanceUnderAWeight", "effect: joint_clearance, at: JOINT, mass: 4", "hexaslide"},
   };
 }
 
@@ -115,13 +127,27 @@ inline std::shared_ptr<const Robot> heavy_robot(std::mt19937_64& random) {
   return robot_of(node);
 }
 
+/// Configurations that the robot can take.
+inline ConfigurationBlock closing_block(const Robot& robot, std::mt19937_64& random) {
+  ConfigurationBlock block;
+  block.q = random_poses(robot, nullptr, kLanes, random()).array();
+  block.count = kLanes;
+  return block;
+}
+
 inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& random) {
-  EffectInstance made{heavy_robot(random), random_site(random), {}, {}, {}};
+  const bool legs = std::string(each.kind) != "serial";
+  EffectInstance made{legs ? robot_of(kind_examples().at(each.kind)) : heavy_robot(random),
+                      random_site(random),
+                      {},
+                      {},
+                      {}};
   const std::vector<Joint>& joints = made.geometry->joints();
   auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
   // Lumps need a joint that turns at or behind the one picked.
   const auto turns = [](const Joint& joint) { return joint.quantity == Quantity::angle; };
-  while (pick > 0 && std::none_of(joints.begin() + static_cast<long>(pick), joints.end(), turns))
+  while (!legs && pick > 0 &&
+         std::none_of(joints.begin() + static_cast<long>(pick), joints.end(), turns))
     --pick;
   const std::string text = entry_text(each, joints[pick].name, joints[pick + 1].name);
   Problems problems;
@@ -130,7 +156,8 @@ inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& r
   made.xi = values(*made.robot);
   for (Eigen::Index i = made.own(); i < made.xi.size(); ++i)
     made.xi[i] = made.robot->parameters()[i].tolerance / 10 * uniform(random, -1, 1);
-  made.block = with_conditions(random_block(*made.geometry, random), random);
+  made.block = with_conditions(
+      legs ? closing_block(*made.geometry, random) : random_block(*made.geometry, random), random);
   return made;
 }
 

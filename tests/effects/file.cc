@@ -110,15 +110,30 @@ const char* const kArm =
     "  - {name: j3, joint: prismatic, alpha: 1.5, mass: 2}\n"
     "effects:\n";  // the first effect stands on line 9
 
+/// Three legs; the first effect stands on line 7.
+const char* const kPrinter =
+    "robot: printer\nkind: linear-delta\ntowers:\n"
+    "  - {radius: 0.105, angle: 0.5, rod: 0.215, endstop: 0.48}\n"
+    "  - {radius: 0.105, angle: 2.6, rod: 0.215, endstop: 0.48}\n"
+    "  - {radius: 0.105, angle: 4.7, rod: 0.215, endstop: 0.48}\neffects:\n";
+
 /// First problem of the arm with these effects, one a line.
-std::string refusal(const std::string& entries) {
+std::string refusal(const std::string& entries, const char* of = kArm) {
   Problems problems;
-  const auto robot = make_robot(parsed(kArm + entries), problems);
+  const auto robot = make_robot(parsed(of + entries), problems);
   EXPECT_EQ(robot, nullptr);
   return problems.any() ? problems.list.front() : "accepted";
 }
 
 TEST_P(EffectFile, IsRefusedForAnUnknownKey) {
+  if (std::string(GetParam().kind) != "serial") {
+    EXPECT_THAT(refusal("  - {" + entry_text(GetParam(), "tower2", "tower1") + ", colour: red}\n",
+                        kPrinter),
+                AllOf(StartsWith("arm.yaml:8: "), HasSubstr("'colour'")));
+    EXPECT_THAT(refusal("  - {" + entry_text(GetParam(), "j2", "j1") + "}\n"),
+                AllOf(StartsWith("arm.yaml:9: "), HasSubstr("no legs carry this kind of robot")));
+    return;
+  }
   std::string entry = entry_text(GetParam(), "j2", "j1");
   if (entry.find("table") != entry.npos) entry += ", normal: [0, 0, 1]";
   EXPECT_THAT(refusal("  - {effect: backlash, at: j1}\n  - {" + entry + ", colour: red}\n"),

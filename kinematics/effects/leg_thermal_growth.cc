@@ -1,0 +1,40 @@
+// Growth of a leg as it warms: delta l = alpha (T - T0) l, l its length at the reading. `reference`
+// is T0 (C, default the mean of the record). alpha: 1/K.
+#include <cmath>
+
+#include "kinematics/effect.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+namespace {
+
+class LegThermalGrowth final : public Effect {
+ public:
+  explicit LegThermalGrowth(const EffectPlan& plan)
+      : leg_(plan.leg()),
+        reference_(plan.fields.number("reference", plan.site.mean_temperature())) {
+    parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
+  }
+
+  bool of_legs() const override { return true; }
+  std::string needs() const override { return "temperatures that change"; }
+
+  void regressor(const Circumstances& at, Regressor& into) const override {
+    if (std::isnan(at.temperature)) return;
+    into.tip.col(0) = (at.temperature - reference_) * at.leg_lengths[leg_] * at.legs.col(leg_);
+  }
+
+ private:
+  void describe_shape(Node& node) const override { node.set("reference", Node::of(reference_)); }
+
+  int leg_;
+  double reference_;  ///< C
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_leg_thermal_growth(const EffectPlan& plan) {
+  return std::make_unique<LegThermalGrowth>(plan);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,94 @@
+// Legs that give way, warm up and have play, by numbers worked by hand on a delta in the middle of
+// its readings: rods of 0.25 m that lean by 0.15 m over 0.2 m, so that their unit vectors are
+// (-0.6 cos, -0.6 sin, -0.8) of 0, 120 and 240 degrees. When rod 1 grows by dl and the others do
+// not,
+//   -0.6 dx - 0.8 dz = dl,   0.6 dx = 1.6 dz,   dy = 0:   dx = -dl / 0.9, dz = -dl / 2.4.
+#include "constraints/sampling/random_poses.h"
+#include "tests/effects/by_hand.h"
+#include "tests/kinematics/kind_examples.h"
+
+namespace selfcal {
+namespace {
+
+const char* const kDelta =
+    "robot: printer\nkind: linear-delta\ntowers:\n"
+    "  - {radius: 0.15, angle: 0, rod: 0.25, endstop: 0.5}\n"
+    "  - {radius: 0.15, angle: 2.0943951023931953, rod: 0.25, endstop: 0.5}\n"
+    "  - {radius: 0.15, angle: 4.1887902047863905, rod: 0.25, endstop: 0.5}\n";
+
+Held level() {
+  Held held;
+  held.q = Eigen::VectorXd::Zero(3);
+  return held;
+}
+
+/// With the wrench on the tip (N).
+Held loaded(double x, double y, double z) {
+  Held held = level();
+  held.wrench = numbers({x, y, z, 0, 0, 0});
+  return held;
+}
+
+TEST(LegComplianceByHand, LetsAKilogramStretchARod) {
+  // 9.81 N hang on three rods: 9.81 / 2.4 = 4.0875 N in each, 40.875 um of 1e-5 m/N.
+  const Moved hung = moved(kDelta, "[{effect: leg_compliance, at: tower1, c: 1.0e-5}]", level());
+  expect_near(hung.p, -45.417e-6, 0, -17.031e-6);
+  EXPECT_LT(hung.turn.norm(), 1e-15);
+}
+
+TEST(LegComplianceByHand, GivesWayToTheWrench) {
+  // A push of 9 N along x: by the same rods, -9 / 0.9 = -10 N, that is compression: 100 um shorter.
+  const Moved pushed =
+      moved(kDelta, "[{effect: leg_compliance, at: tower1, mass: 0, c: 1.0e-5}]", loaded(9, 0, 0));
+  expect_near(pushed.p, 111.111e-6, 0, 41.667e-6, 1e-7);  // and its second order
+}
+
+TEST(LegThermalGrowthByHand, LengthensARodByItsShare) {
+  // 0.25 m x 1e-5 x 8 K = 20 um.
+  Held held = level();
+  held.temperature = 28;
+  const char* const warm = "[{effect: leg_thermal_growth, at: tower1, alpha: 1.0e-5}]";
+  expect_near(moved(kDelta, warm, held).p, -22.222e-6, 0, -8.333e-6);
+  held.temperature = kUnknown;
+  expect_near(moved(kDelta, warm, held).p, 0, 0, 0, 0);
+}
+
+TEST(JointClearanceByHand, GoesToTheSideThatTheLoadPullsTo) {
+  const char* const loose = "[{effect: joint_clearance, at: tower1, play: 4.0e-5}]";
+  expect_near(moved(kDelta, loose, loaded(0, 0, -3)).p, -22.222e-6, 0, -8.333e-6);
+  expect_near(moved(kDelta, loose, loaded(0, 0, 3)).p, 22.222e-6, 0, 8.333e-6);
+  expect_near(moved(kDelta, loose, level()).p, 0, 0, 0, 0);
+  const char* const heavy = "[{effect: joint_clearance, at: tower1, mass: 1, play: 4.0e-5}]";
+  expect_near(moved(kDelta, heavy, loaded(0, 0, 3)).p, -22.222e-6, 0, -8.333e-6);
+  expect_near(moved(kDelta, heavy, loaded(0, 0, 10)).p, 22.222e-6, 0, 8.333e-6);
+}
+
+/// Six legs under a platform share its weight so that their pushes hold it.
+TEST(LegLoadByHand, IsInBalanceOnAPlatform) {
+  const auto robot = robot_of(kind_examples().at("gough-stewart"));
+  const ConfigurationBlock block = block_of(random_poses(*robot, nullptr, 1, 3).row(0).transpose());
+  Locations X;
+  PsiBlock psi;
+  robot->locate(block, values(*robot), Body::endpoint, X, &psi);
+  Eigen::Matrix<double, 6, 6> T, J;
+  for (int c = 0; c < 6; ++c)
+    for (int j = 0; j < 6; ++j) T(c, j) = psi(c * kLanes, robot->leg_parameter(j));
+  // Pushes f along the legs' unit vectors n_j at the spherical joints, and the weight: none is
+  // left.
+  const Eigen::Matrix<double, 6, 1> weight = numbers({0, 0, -98.1, 0, 0, 0});
+  const Eigen::VectorXd push = -T.transpose() * weight;
+  Eigen::Matrix<double, 6, 1> sum = weight;
+  for (int j = 0; j < 6; ++j) {
+    const Location leg = locate(*robot, values(*robot), block.q.row(0).transpose(),
+                                body_behind(j, PassiveKind::universal));
+    const Eigen::Vector3d n = leg.R.col(2);
+    const Eigen::Vector3d joint =
+        leg.p + robot->leg_lengths(values(*robot), block.q.row(0).transpose())[j] * n;
+    sum.head<3>() += push[j] * n;
+    sum.tail<3>() += (joint - X.p(0)).cross(push[j] * n);
+  }
+  EXPECT_LT(sum.norm(), 1e-10);
+}
+
+}  // namespace
+}  // namespace selfcal
