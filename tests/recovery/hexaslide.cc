@@ -181,8 +181,9 @@ TEST(Hexaslide, IsFoundToRoundingFromAllThreeNominalSetsByThirtyExactPostures) {
   }
 }
 
-TEST(Hexaslide, IsKnownAsWellAsPublishedUnderNoise) {
+TEST(Hexaslide, IsKnownAsWellAsPublishedUnderNoiseAndAsWellAsItSays) {
   constexpr int kSeeds = 8;
+  double within = 0, all = 0;
   struct Published {
     double noise, position, degrees;
   };
@@ -198,6 +199,11 @@ TEST(Hexaslide, IsKnownAsWellAsPublishedUnderNoise) {
       add_noise(row.noise, random, data.rows);
       const Solution solution = identify(*nominal, data);
       EXPECT_TRUE(solution.converged) << seed << " " << solution.stop_reason;
+      for (Eigen::Index i = 0; i < solution.values.size(); ++i) {
+        const double sigma = solution.parameters[static_cast<size_t>(i)].sigma;
+        within += std::abs(solution.values[i] - values(*exact)[i]) < sigma;
+        ++all;
+      }
       const PostureError error = posture_error(*exact, solution.values);
       positions.push_back(error.position);
       turns.push_back(180 / std::numbers::pi * error.turn);
@@ -207,6 +213,8 @@ TEST(Hexaslide, IsKnownAsWellAsPublishedUnderNoise) {
     EXPECT_LE(middle(positions), row.position) << row.noise;
     EXPECT_LE(middle(turns), row.degrees) << row.noise;
   }
+  std::printf("within one sigma: %.1f %% of %.0f\n", 100 * within / all, all);
+  EXPECT_NEAR(within / all, 0.683, 0.08);  // 24 calibrations, whose parameters hang together
 }
 
 }  // namespace

@@ -118,6 +118,27 @@ TEST(WholeSession, CalibratesADeltaPrinterFromItsBed) {
   }
 }
 
+// A plate and three that lean against it, touched from below by the probe on the platform.
+TEST(WholeSession, CalibratesAGoughStewartPlatformFromPlanes) {
+  CellOptions options;
+  options.robot = "stewart";
+  for (int seed = 1; seed <= 2; ++seed) {
+    options.seed = seed;
+    Cell cell(options);
+    const ResultMessage result = calibrate(cell);
+    ASSERT_EQ(result.answer, "improved") << "seed " << seed << ": " << result.why;
+    const Outcome outcome = outcome_of(cell, result);
+    const json check = json::parse(result.json)["residual"]["check"];
+    std::printf("  seed %d: check touches %.3f to %.4f mm, %d of %d within 95 %%\n", seed,
+                1e3 * check["rms_before"].get<double>(), 1e3 * check["rms_after"].get<double>(),
+                outcome.within, outcome.identified);
+    EXPECT_GT(check["rms_before"], 0.1e-3);
+    // 20 touches of 20 um, and what 80 others leave unknown: four sigma of such a mean square.
+    EXPECT_LT(check["rms_after"], 40e-6);
+    EXPECT_GE(outcome.within, outcome.identified - 3);
+  }
+}
+
 /// Labels of good touches (session/step.attempt set) that the result has put aside.
 std::vector<std::string> outlier_labels(const Cell& cell, const ResultMessage& result) {
   const auto store = cell.store();
