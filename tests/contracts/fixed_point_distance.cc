@@ -45,8 +45,8 @@ const std::vector<Eigen::Vector3d> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
 
 TEST(FixedPointDistance, IsTheWayToThePointAndTheOffsetLessTheReading) {
   const auto sets = make_sets("s: {method: fixed-point-distance, offset: unknown}");
-  Eigen::VectorXd nuisance(7);
-  nuisance << 1, 0, 0, 0.5, 0, 0, 0;
+  Eigen::VectorXd nuisance(8);
+  nuisance << 1, 0, 0, 0.5, 0, 0, 0, 0;
   // From (1, 0, 0) to (2, 2, 2): length 3 along (1, 2, 2) / 3.
   const Location X{Eigen::Matrix3d::Identity(), {2, 2, 2}};
   const MethodOutput out = row_of(*sets[0].method, X, 3.25, nuisance);
@@ -58,10 +58,23 @@ TEST(FixedPointDistance, IsTheWayToThePointAndTheOffsetLessTheReading) {
   EXPECT_LT((first_row(out.D_own) - by_own).norm(), kByHand);
 }
 
+TEST(FixedPointDistance, TakesADrumsShareIntoEveryReading) {
+  const auto sets = make_sets("s: {method: fixed-point-distance, scale: unknown}");
+  Eigen::VectorXd nuisance(8);
+  nuisance << 1, 0, 0, 0, 0.02, 0, 0, 0;
+  // 3 m, of which the drum shows 2.95: 3 - 1.02 x 2.95 = -0.009.
+  const MethodOutput out =
+      row_of(*sets[0].method, {Eigen::Matrix3d::Identity(), {2, 2, 2}}, 2.95, nuisance);
+  EXPECT_NEAR(out.r(0, 0), -0.009, kByHand);
+  Eigen::VectorXd by_own(4);
+  by_own << -1. / 3, -2. / 3, -2. / 3, -2.95;
+  EXPECT_LT((first_row(out.D_own) - by_own).norm(), kByHand);
+}
+
 TEST(FixedPointDistance, IsTakenFromATargetOnTheLastLinkThatTurnsWithIt) {
   const auto sets = make_sets("s: {method: fixed-point-distance, point: unknown}");
-  Eigen::VectorXd nuisance(7);
-  nuisance << 0, 0, 0, 0, 2, 0, 2;
+  Eigen::VectorXd nuisance(8);
+  nuisance << 0, 0, 0, 0, 0, 2, 0, 2;
   Location X;  // a quarter turn about z: the target is at (1, 0, 0) + (0, 2, 2)
   X.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   X.p << 1, 0, 0;

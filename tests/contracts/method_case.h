@@ -36,6 +36,8 @@ inline std::vector<MethodCase> method_cases() {
       {"Distance", "s: {method: distance}"},
       {"FixedPointDistance", "s: {method: fixed-point-distance}"},
       {"FixedPointDistanceOfAnUnknownOffset", "s: {method: fixed-point-distance, offset: unknown}"},
+      {"FixedPointDistanceOfAnUnknownScale", "s: {method: fixed-point-distance, scale: unknown}",
+       true},
       {"FixedPointDistanceOfAKnownCentre",
        "s: {method: fixed-point-distance, center: [0.6, 0.1, -0.5]}"},
       {"FixedPointDistanceOfAnUnknownPoint", "s: {method: fixed-point-distance, point: unknown}"},
@@ -43,7 +45,7 @@ inline std::vector<MethodCase> method_cases() {
        "s: {method: fixed-point-distance, center: [0.6, 0.1, -0.5], offset: unknown,"
        " point: unknown}"},
       {"FixedPointDistanceOfAllUnknown",
-       "s: {method: fixed-point-distance, offset: unknown, point: unknown}"},
+       "s: {method: fixed-point-distance, offset: unknown, scale: unknown, point: unknown}", true},
       {"PositionConstraint", "s: {method: position-constraint}", true},
       {"PositionConstraintWithGroupsApart",
        "s: {method: position-constraint, apart: [{groups: [a, b], distance: 0.3, noise: 1.0e-4}]}"},

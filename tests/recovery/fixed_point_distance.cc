@@ -10,12 +10,14 @@
 namespace selfcal::recovery {
 namespace {
 
-/// Encoders of `rows` readings each; with `point` they pull at a target on the last link.
+/// Encoders of `rows` readings each, the second of unknown scale; with `point` they pull at a
+/// target on the last link.
 std::vector<SetPart> cables(int count, int rows, bool point) {
   std::vector<SetPart> parts;
   const char* const names[] = {"a", "b", "c"};
   for (int i = 0; i < count; ++i) {
     Node node = entry({{"method", "fixed-point-distance"}, {"offset", "unknown"}});
+    if (i == 1) node.set("scale", Node::of(std::string("unknown")));
     if (point) node.set("point", Node::of(std::string("unknown")));
     parts.push_back({names[i], node, rows});
   }
