@@ -1,51 +1,62 @@
-// The page of a diagnosis: what it says beside the verdict.
-#include "app/report/diagnosis_report.h"
+// The page of a diagnosis: what its object holds beside diagnosis.json.
+#include "app/report/page/diagnosis_page.h"
 
 #include <gmock/gmock.h>
+
+#include "io/files/robot_file.h"
 
 namespace selfcal {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 NamedValue value(const char* name, double value) { return {name, "rad", value, 1e-5, 0, 1e-3}; }
 
-TEST(DiagnosisReport, TellsWhatChangedSinceTheOtherDataSet) {
-  Findings findings;
-  findings.since = {
-      "spring<1>",
-      {0.01, 0, {{"zero_shift", "j3", 0.97, {value("j3.theta", -1.25e-3)}}}, "changed: j3 & so"}};
-
-  const std::string page = html_report(findings);
-
-  EXPECT_THAT(page, HasSubstr("<h2>What changed since spring&lt;1&gt;</h2>"));
-  EXPECT_THAT(page, HasSubstr("changed: j3 &amp; so"));
-  EXPECT_THAT(page, HasSubstr("<td>zero shift<td>j3<td class=num>0.97"));
-  EXPECT_THAT(page, HasSubstr("-0.00125 &plusmn; 1e-05 rad"));
-  EXPECT_THAT(page, Not(HasSubstr("Against the simulation")));
+/// The object of findings about the delta of the examples, without rows.
+nlohmann::ordered_json data_of(const Findings& findings) {
+  const auto robot = load_robot(SELFCAL_SOURCE_DIR "/app/examples/delta.robot.yaml");
+  const DataSet data;
+  return diagnosis_data({**robot, data, "summer", 0}, findings);
 }
 
-TEST(DiagnosisReport, TellsInWhatTheSimulationDiffers) {
+TEST(DiagnosisPage, TellsWhatChangedSinceTheOtherDataSet) {
+  Findings findings;
+  findings.since = {"spring",
+                    {0.01, 0, {{"zero_shift", "j3", 0.97, {value("j3.theta", -1.25e-3)}}}, "j3"}};
+
+  const nlohmann::ordered_json data = data_of(findings);
+
+  EXPECT_EQ(data["since_name"], "spring");
+  EXPECT_EQ(data["result"]["since"]["changes"][0]["values"][0]["value"], -1.25e-3);
+  EXPECT_FALSE(data.contains("sim_name"));
+  EXPECT_FALSE(data["result"].contains("sim"));
+}
+
+TEST(DiagnosisPage, TellsInWhatTheSimulationDiffers) {
   Differences of;
   of.robot_only = {{"backlash", "j2", 0.9, {value("j2.gap", 2e-4)}, {}}};
-  of.both = {{"joint_compliance",
-              "j4",
-              {{value("j4.compliance", 1e-5), value("j4.compliance", 3e-5), 4.5}}}};
-  of.geometry.changes = {{"geometry_differs", "d4", 0.8, {}}};
   of.sentences = {"the robot has, and its simulation lacks: backlash at j2"};
   Findings findings;
   findings.sim = {"mujoco", of};
 
-  const std::string page = html_report(findings);
+  const nlohmann::ordered_json data = data_of(findings);
 
-  EXPECT_THAT(page, HasSubstr("<h2>Against the simulation mujoco</h2>"));
-  EXPECT_THAT(page, HasSubstr("<li>the robot has, and its simulation lacks: backlash at j2"));
-  EXPECT_THAT(page, HasSubstr("In the robot alone"));
-  EXPECT_THAT(page, Not(HasSubstr("In the simulation alone")));
-  EXPECT_THAT(page, HasSubstr("4.5 sigma"));
-  EXPECT_THAT(page, HasSubstr("<td>geometry differs<td>d4"));
-  EXPECT_THAT(page, Not(HasSubstr("What changed since")));
+  EXPECT_EQ(data["sim_name"], "mujoco");
+  EXPECT_EQ(data["result"]["sim"]["why"][0], of.sentences[0]);
+  EXPECT_EQ(data["result"]["sim"]["robot_only"][0]["parameters"][0]["value"], 2e-4);
+  EXPECT_FALSE(data.contains("since_name"));
+}
+
+TEST(DiagnosisPage, HasTheRowsBehindTheGapWithoutFalseReadings) {
+  Findings findings;
+  findings.diagnosis.judged = {{9e-6, 4e-6, 1e-6, 1e-6, 1e-6, 0, false},
+                               {1, 1, 1, 1, 1e-6, 1, true}};
+
+  const nlohmann::ordered_json judged = data_of(findings)["judged"];
+
+  EXPECT_EQ(judged["of"], 2);
+  ASSERT_EQ(judged["nominal"].size(), 1);
+  EXPECT_NEAR(judged["nominal"][0].get<double>(), 3e-3, 1e-15);  // square roots, rounded
+  EXPECT_NEAR(judged["before"][0].get<double>(), 2e-3, 1e-15);
+  EXPECT_FALSE(data_of({}).contains("judged"));
 }
 
 }  // namespace
