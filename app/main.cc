@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   add_monitor(app, status);
   add_command(app, status);
   add_history(app, status);
+  add_report(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

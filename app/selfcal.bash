@@ -12,7 +12,7 @@ _selfcal() {
     return
   fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable diagnose trial simulate robot serve monitor command history --help --version" ;;
+    1:*) words="identify identifiable diagnose trial simulate robot serve monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
     *:diagnose) words="--sim --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
@@ -24,7 +24,8 @@ _selfcal() {
     *:monitor) words="--robot --domain --once --wait --json --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;
     *:command) words="--robot --domain --wait --json --help" ;;
-    *:history) words="--newest --events --export --json --help" ;;
+    *:history) words="--newest --events --export --report --json --help" ;;
+    *:report) words="--out --help" ;;
     *) words="--help" ;;
   esac
   if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|command|trial) ]]; then

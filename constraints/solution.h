@@ -86,8 +86,21 @@ struct CheckRow {
   bool rejected = false;  ///< beyond the noise
 };
 
+/// A row before (the maker's robot, placed) and after, for a person to look at.
+struct RowFigure {
+  int row = 0, set = 0;                          ///< from 0; of the data set
+  bool check = false, rejected = false;          ///< judges; beyond the noise
+  double before = 0, after = 0;                  ///< m; rad of a row that has angles alone
+  double angle_before = 0, angle_after = 0;      ///< rad, of a row that has lengths and angles
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< of the method's body, world (m), after
+  /// Shortest way from the body to where the row's lengths would be met, world (m); zero of a row
+  /// without lengths.
+  Eigen::Vector3d way_before = Eigen::Vector3d::Zero(), way_after = Eigen::Vector3d::Zero();
+};
+
 struct Residuals {
   Figures fit, check;
+  std::vector<RowFigure> rows;       ///< all that gave an equation, in the order of the data set
   std::vector<CheckRow> check_rows;  ///< in the order of the data set's
   std::vector<SetFigures> check_by_set;
 };

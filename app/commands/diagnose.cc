@@ -7,8 +7,9 @@
 
 #include "app/commands/subcommand.h"
 #include "app/report/diagnosis_json.h"
-#include "app/report/diagnosis_report.h"
 #include "app/report/diagnosis_summary.h"
+#include "app/report/format.h"
+#include "app/report/page/diagnosis_page.h"
 #include "app/report/progress_line.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/data_set_file.h"
@@ -75,12 +76,7 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
   return found;
 }
 
-std::string json_of(const Findings& findings) {
-  nlohmann::ordered_json whole = to_json(findings.diagnosis);
-  if (findings.since) whole["since"] = to_json(findings.since->comparison);
-  if (findings.sim) whole["sim"] = to_json(findings.sim->differences);
-  return whole.dump(1);
-}
+std::string json_of(const Findings& findings) { return to_json(findings).dump(1); }
 
 std::string words_of(const Findings& findings) {
   std::string text = summary(findings.diagnosis);
@@ -92,12 +88,15 @@ std::string words_of(const Findings& findings) {
   return text;
 }
 
-Result<void> write_folder(const std::filesystem::path& out, const Findings& findings) {
+Result<void> write_folder(const std::filesystem::path& out, const Inputs& inputs,
+                          const Findings& findings) {
   if (auto made = make_folder(out); !made) return made;
   const Diagnosis& diagnosis = findings.diagnosis;
+  const PageSubject subject{*inputs.robot, inputs.measured.data, inputs.measured.name,
+                            unix_now_ms()};
   const std::pair<const char*, std::string> files[] = {
       {"diagnosis.json", json_of(findings) + "\n"},
-      {"report.html", html_report(findings)},
+      {"report.html", page_of(diagnosis_data(subject, findings))},
       {"corrected.robot.yaml", robot_text(*diagnosis.model, diagnosis.values)}};
   for (const auto& [name, text] : files)
     if (auto done = write_file_atomically(out / name, text); !done) return done;
@@ -108,7 +107,7 @@ Result<void> write_folder(const std::filesystem::path& out, const Findings& find
 Result<void> write_findings(const DiagnoseArguments& arguments, const Inputs& inputs,
                             const Findings& findings) {
   if (!arguments.out.empty())
-    if (auto done = write_folder(arguments.out, findings); !done) return done;
+    if (auto done = write_folder(arguments.out, inputs, findings); !done) return done;
   if (arguments.next.empty()) return {};
   return write_file_atomically(arguments.next,
                                next_json(findings.diagnosis, inputs.measured.data).dump(1) + "\n");

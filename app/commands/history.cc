@@ -1,18 +1,21 @@
 // selfcal history: past sessions and results, how the parameters drifted, which slots are filled.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <set>
 
+#include "app/commands/find_store.h"
 #include "app/commands/session_export.h"
 #include "app/commands/subcommand.h"
 #include "app/report/drift.h"
 #include "app/report/format.h"
 #include "app/report/message_json.h"
+#include "app/report/page/history_page.h"
+#include "app/report/past.h"
 #include "app/service/config.h"
+#include "app/service/session.h"
+#include "io/files/file.h"
 #include "io/files/json_parts.h"
-#include "io/files/robot_file.h"
 
 namespace selfcal {
 namespace {
@@ -25,85 +28,10 @@ constexpr int kAll = 1'000'000;       // more than any store has
 struct HistoryArguments {
   std::string where;
   std::vector<std::string> exported;  // session, folder
+  std::string report;                 // the page's file
   int newest = 20;
   bool json = false, events = false;
 };
-
-/// Where the store is, and the robot's file when a configuration names it.
-struct Source {
-  std::filesystem::path state;
-  std::string robot_text;
-};
-
-/// A session with its result, if it has one.
-struct Past {
-  SessionRecord session;
-  std::optional<ResultRecord> result;
-};
-
-/// Of a damaged session nothing is known but its number (Store::sessions).
-bool is_damaged(const Past& past) { return past.session.kind.empty(); }
-
-Result<Source> find_source(const std::string& where) {
-  std::error_code error;
-  if (where.empty()) {
-    const char* folder = std::getenv("STATE_DIRECTORY");
-    return Source{folder ? folder : "/var/lib/selfcal", ""};
-  }
-  if (std::filesystem::is_directory(where, error)) return Source{where, ""};
-  auto config = load_config(where);
-  if (!config) return tl::unexpected(config.error());
-  return Source{config->state, std::move(config->robot_text)};
-}
-
-Result<std::vector<Past>> read_past(Store& store, int newest) {
-  auto sessions = store.sessions(newest);
-  if (!sessions) return tl::unexpected(sessions.error());
-  const auto results = store.results(newest);
-  if (!results) return tl::unexpected(results.error());
-  std::vector<Past> past;
-  for (SessionRecord& session : *sessions) {
-    const auto found = std::ranges::find(*results, session.id, &ResultRecord::session);
-    past.push_back({std::move(session), std::nullopt});
-    if (found != results->end() && !is_damaged(past.back())) past.back().result = *found;
-  }
-  return past;
-}
-
-/// Accepted parameters, oldest first; those of another machine than the newest's are left out.
-Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
-  const auto results = store.results(kAll);
-  if (!results) return tl::unexpected(results.error());
-  std::vector<AcceptedParameters> newest_first;
-  for (const ResultRecord& each : *results) {
-    if (each.decision != ResultDecision::applied) continue;
-    const auto result = store.result(each.session);
-    if (!result) return tl::unexpected(result.error());
-    if (!*result || (*result)->robot_text.empty()) continue;
-    auto robot = robot_of((*result)->robot_text, "session " + std::to_string(each.session));
-    if (!robot) continue;  // of a robot that this program does not know
-    if (!newest_first.empty() &&
-        newest_first.front().robot->text().identity() != (*robot)->text().identity())
-      continue;
-    newest_first.push_back({each.session, each.unix_ms, std::move(*robot)});
-  }
-  std::ranges::reverse(newest_first);
-  return newest_first;
-}
-
-std::string state_of(const Past& past) {
-  if (is_damaged(past)) return "damaged";
-  switch (past.session.state) {
-    case SessionState::collecting:
-    case SessionState::collected:
-      return "unfinished";
-    case SessionState::aborted:
-      return "aborted";
-    case SessionState::finished:
-      return past.result ? "finished" : "damaged result";
-  }
-  return "";
-}
 
 void print_sessions(const std::vector<Past>& past) {
   std::printf("%7s  %-16s  %-5s  %-14s  %-9s  %8s %8s %8s  %7s %5s %4s\n", "session", "when",
@@ -178,32 +106,6 @@ Result<void> print_events(Store& store, const HistoryArguments& arguments) {
   return {};
 }
 
-Json record_of(const Past& past) {
-  const auto ended = past.session.ended_ms > 0 ? Json(past.session.ended_ms) : Json(nullptr);
-  Json json = {{"session", past.session.id},
-               {"kind", past.session.kind},
-               {"state", state_of(past)},
-               {"reason", past.session.reason},
-               {"started_ms", past.session.started_ms},
-               {"ended_ms", ended},
-               {"model_hash", past.session.model_hash},
-               {"result", nullptr}};
-  if (!past.result) return json;
-  const ResultRecord& r = *past.result;
-  json["result"] = {{"unix_ms", r.unix_ms},
-                    {"answer", to_string(r.answer)},
-                    {"decision", to_string(r.decision)},
-                    {"why", r.why},
-                    {"p_value", finite(r.p_value)},
-                    {"check_before", finite(r.check_before)},
-                    {"check_after", finite(r.check_after)},
-                    {"endpoint_sigma", finite(r.endpoint_sigma)},
-                    {"touches", r.touches},
-                    {"rejected", r.rejected},
-                    {"identified", r.identified}};
-  return json;
-}
-
 Result<void> print_history(Store& store, const HistoryArguments& arguments) {
   const auto past = read_past(store, arguments.newest);
   if (!past) return tl::unexpected(past.error());
@@ -228,7 +130,31 @@ Result<void> print_history(Store& store, const HistoryArguments& arguments) {
   return print_damage(store, stdout);
 }
 
-Result<void> print_export(Store& store, const HistoryArguments& arguments, const Source& source) {
+/// The accuracy that the newest readable session wants of the end position (m); 0 without one.
+double wanted(const std::vector<Past>& past) {
+  for (const Past& each : past)
+    if (const auto meaning = read_meaning(each.session.config)) return meaning->target;
+  return 0;
+}
+
+Result<void> write_report(Store& store, const HistoryArguments& arguments,
+                          const StoreSource& source) {
+  auto past = read_past(store, arguments.newest);
+  if (!past) return tl::unexpected(past.error());
+  auto calibrations = read_calibrations(store);
+  if (!calibrations) return tl::unexpected(calibrations.error());
+  auto events = store.events(arguments.newest);
+  if (!events) return tl::unexpected(events.error());
+  HistoryFindings findings{
+      source.state.string(), std::move(*past), std::move(*calibrations), std::move(*events), 0,
+      unix_now_ms()};
+  if (!findings.calibrations.empty()) findings.robot = findings.calibrations.back().robot->name();
+  findings.target = wanted(findings.sessions);
+  return write_file_atomically(arguments.report, page_of(history_data(findings)));
+}
+
+Result<void> print_export(Store& store, const HistoryArguments& arguments,
+                          const StoreSource& source) {
   const auto session = std::atoll(arguments.exported[0].c_str());
   const std::string& folder = arguments.exported[1];
   const auto rows = export_session(store, session, source.robot_text, folder);
@@ -251,11 +177,12 @@ int history_command(const HistoryArguments& arguments) {
     if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != std::string::npos)
       return wrong_usage("--export SESSION FOLDER: expected a session's number, got '" + id + "'");
   }
-  const auto source = find_source(arguments.where);
+  const auto source = find_store(arguments.where);
   if (!source) return tell(source.error());
   const auto store = Store::open_to_read(source->state);
   if (!store) return tell(store.error());
   const auto done = !arguments.exported.empty() ? print_export(**store, arguments, *source)
+                    : !arguments.report.empty() ? write_report(**store, arguments, *source)
                     : arguments.events          ? print_events(**store, arguments)
                                                 : print_history(**store, arguments);
   return done ? kDone : tell(done.error());
@@ -267,23 +194,29 @@ void add_history(CLI::App& app, int& status) {
   auto arguments = std::make_shared<HistoryArguments>();
   CLI::App* command = app.add_subcommand(
       "history", "Show past sessions, drift and slots; a service may be running");
-  command->add_option("WHERE", arguments->where,
-                      "CONFIG.yaml or the state's folder (default: $STATE_DIRECTORY, or "
-                      "/var/lib/selfcal)");
+  command->add_option("WHERE", arguments->where, kStoreIsWhere);
   CLI::Option* newest =
       command->add_option("--newest", arguments->newest, "So many sessions or events")
           ->check(CLI::Range(1, kAll))
           ->capture_default_str();
   CLI::Option* events =
       command->add_flag("--events", arguments->events, "The log of the service instead");
+  CLI::Option* exported =
+      command
+          ->add_option("--export", arguments->exported,
+                       "SESSION FOLDER: its rows as a data set, to be solved again")
+          ->type_name("SESSION FOLDER")
+          ->expected(2)
+          ->excludes(newest)
+          ->excludes(events);
+  CLI::Option* json = command->add_flag("--json", arguments->json, "JSON for programs, SI units");
   command
-      ->add_option("--export", arguments->exported,
-                   "SESSION FOLDER: its rows as a data set, to be solved again")
-      ->type_name("SESSION FOLDER")
-      ->expected(2)
-      ->excludes(newest)
-      ->excludes(events);
-  command->add_flag("--json", arguments->json, "JSON for programs, SI units");
+      ->add_option("--report", arguments->report,
+                   "FILE: drift, checks and events as a page to open in a browser")
+      ->type_name("FILE")
+      ->excludes(events)
+      ->excludes(exported)
+      ->excludes(json);
   command->callback([arguments, &status] { status = history_command(*arguments); });
 }
 

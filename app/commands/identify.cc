@@ -1,10 +1,13 @@
-// selfcal identify DATASET: identifies, tells, and writes result.json and calibrated.robot.yaml.
+// selfcal identify DATASET: identifies, tells, and writes report.html, result.json and
+// calibrated.robot.yaml.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/report/format.h"
+#include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
 #include "app/report/summary.h"
 #include "constraints/estimation/identification.h"
@@ -36,8 +39,14 @@ std::string unknown_name(const Robot& robot, const Options& options) {
 }
 
 Result<void> write_solution(const IdentifyArguments& arguments, const Robot& robot,
-                            const Solution& solution, const std::string& json) {
+                            const LoadedDataSet& loaded, const Solution& solution,
+                            const std::string& json) {
   const std::filesystem::path out(arguments.out);
+  const PageSubject subject{robot, loaded.data, loaded.name, unix_now_ms()};
+  if (auto done = write_file_atomically(out / "report.html",
+                                        page_of(identification_data(subject, solution)));
+      !done)
+    return done;
   if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
   return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
 }
@@ -97,7 +106,7 @@ int identify_command(const IdentifyArguments& arguments) {
   else
     std::fputs(summary(loaded->data, solution).c_str(), stdout);
   if (!arguments.out.empty())
-    if (const auto written = write_solution(arguments, robot, solution, json); !written)
+    if (const auto written = write_solution(arguments, robot, *loaded, solution, json); !written)
       return tell(written.error());
   return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
 }
@@ -114,7 +123,8 @@ void add_identify(CLI::App& app, int& status) {
   command->add_option("--free", arguments->options.free, "Parameters freed (K3, K*)");
   command->add_option("--effects", arguments->effects,
                       "Effects identified with it: EFFECT or EFFECT@PLACE (joint_compliance@j2)");
-  command->add_option("--out", arguments->out, "Folder for result.json and calibrated.robot.yaml");
+  command->add_option("--out", arguments->out,
+                      "Folder for report.html, result.json and calibrated.robot.yaml");
   command->add_flag("--json", arguments->json, "Print result.json alone on standard output");
   command->callback([arguments, &status] { status = identify_command(*arguments); });
 }

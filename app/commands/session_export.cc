@@ -70,30 +70,37 @@ Result<Session> stored_session(Store& store, const SessionRecord& record) {
 
 }  // namespace
 
-Result<int> export_session(Store& store, std::int64_t session, const std::string& robot_text,
-                           const fs::path& folder) {
+Result<SessionRows> session_rows(Store& store, std::int64_t session,
+                                 const std::string& robot_text) {
   const auto record = store.session(session);
   if (!record) return tl::unexpected(record.error());
   const auto kept = stored_session(store, *record);
   if (!kept) return tl::unexpected(kept.error());
   const auto meaning = read_meaning(record->config);
   if (!meaning) return tl::unexpected(meaning.error());
-  const auto robot_file = nominal_text(store, *record, robot_text);
+  auto robot_file = nominal_text(store, *record, robot_text);
   if (!robot_file) return tl::unexpected(robot_file.error());
-  const auto robot = robot_of(*robot_file, session_name(session));
+  auto robot = robot_of(*robot_file, session_name(session));
   if (!robot) return tl::unexpected(robot.error());
-  const DataSet data = rows_of(**robot, *kept, *meaning);
-  const auto description = description_text(*record);
+  DataSet data = rows_of(**robot, *kept, *meaning);
+  return SessionRows{*record, *std::move(robot_file), *std::move(robot), std::move(data)};
+}
+
+Result<int> export_session(Store& store, std::int64_t session, const std::string& robot_text,
+                           const fs::path& folder) {
+  const auto rows = session_rows(store, session, robot_text);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto description = description_text(rows->record);
   if (!description) return tl::unexpected(description.error());
   if (auto made = make_empty_folder(folder); !made) return tl::unexpected(made.error());
   const std::pair<const char*, std::string> files[] = {
-      {"robot.yaml", *robot_file},
-      {"observations.csv", observations_text(data)},
+      {"robot.yaml", rows->robot_text},
+      {"observations.csv", observations_text(rows->data)},
       {"dataset.yaml", *description}};
   for (const auto& [name, text] : files)
     if (auto written = write_file_atomically(folder / name, text); !written)
       return tl::unexpected(written.error());
-  return data.rows.rows();
+  return rows->data.rows.rows();
 }
 
 }  // namespace selfcal

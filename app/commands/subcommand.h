@@ -31,6 +31,7 @@ void add_serve(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
 void add_command(CLI::App& app, int& status);
 void add_history(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
 
 /// Says `failure` on standard error and returns its exit status.
 int tell(const Failure& failure);

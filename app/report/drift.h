@@ -14,6 +14,7 @@ namespace selfcal {
 struct AcceptedParameters {
   std::int64_t session = 0, unix_ms = 0;
   std::shared_ptr<const Robot> robot;
+  std::string json = {};  ///< result.json; empty where it is no longer kept
 };
 
 /// One parameter over all calibrations (SI).

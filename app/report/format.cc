@@ -1,6 +1,7 @@
 #include "app/report/format.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -35,6 +36,11 @@ std::string printed(const char* format, ...) {
   va_end(again);
   va_end(arguments);
   return text;
+}
+
+std::int64_t unix_now_ms() {
+  using namespace std::chrono;
+  return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
 }
 
 std::string clock_time(std::int64_t unix_ms) {

@@ -10,6 +10,8 @@ namespace selfcal {
 /// printf into a string, of any length.
 [[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
 
+/// ms since 1970 (UTC), by the computer's clock.
+std::int64_t unix_now_ms();
 /// "14:02:31", local time; `unix_ms` is ms since 1970 (UTC).
 std::string clock_time(std::int64_t unix_ms);
 /// "2026-11-20 14:02", local time; "-" for 0.

@@ -148,6 +148,8 @@ std::string scale_line(const ScaleLength& each, bool alone) {
                     1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
 }
 
+}  // namespace
+
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
   std::vector<std::string> steps;
   if (!solution.converged)
@@ -182,8 +184,6 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "calibrated.robot.yaml.");
   return steps;
 }
-
-}  // namespace
 
 std::string summary(const DataSet& data, const Solution& solution) {
   const bool without_rows = solution.sets.empty();

@@ -167,6 +167,21 @@ RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& q
   return r;
 }
 
+Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity>& quantities,
+                             int lane) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostEquations, 3> G(quantities.size(), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostEquations, 1> r(quantities.size());
+  Eigen::Index count = 0;
+  for (size_t a = 0; a < quantities.size(); ++a) {
+    if (quantities[a] == Quantity::angle) continue;
+    const auto column = static_cast<Eigen::Index>(a);
+    G.row(count) = out.G_now.row(lane).segment<3>(6 * column).matrix();
+    r[count++] = out.r(lane, column);
+  }
+  if (count == 0) return Eigen::Vector3d::Zero();
+  return -Eigen::MatrixXd(G.topRows(count)).completeOrthogonalDecomposition().solve(r.head(count));
+}
+
 std::vector<RowResidual> Equations::residuals(const State& state) const {
   std::vector<RowResidual> list;
   Block block;
@@ -175,9 +190,13 @@ std::vector<RowResidual> Equations::residuals(const State& state) const {
     for (int first = 0; first < items; first += kLanes) {
       const int count = std::min(kLanes, items - first);
       evaluate(s, first, count, state, block, false);
-      for (int lane = 0; lane < count; ++lane)
+      for (int lane = 0; lane < count; ++lane) {
         list.push_back(row_residual(block.out, block.quantities, block.closure, lane,
                                     block.rows[lane], s, data_.rows.factor(block.rows[lane])));
+        if (!block.closure.closes(lane)) continue;
+        list.back().at = block.X_now.p(lane);
+        list.back().way = shortest_way(block.out, block.quantities, lane);
+      }
     }
   }
   return list;

@@ -43,6 +43,9 @@ struct RowResidual {
   double factor = 1;             ///< of its noise over its set's
   std::array<double, kMostEquations>
       scalars{};  ///< lengths + angles entries, in the method's order
+  /// World (m), of Equations::residuals alone: where the method's body is, and its shortest way to
+  /// where the row's lengths would be met, to first order; zero of rows without lengths.
+  Eigen::Vector3d at = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
   /// Its length, or its angle where it has no lengths (m; rad).
   double size() const { return lengths > 0 ? length : angle; }
   /// Distance from zero in sigmas of the set's noise and the row's factor.

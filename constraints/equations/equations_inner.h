@@ -29,4 +29,9 @@ struct Equations::GeodesicStep {
 RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities,
                          const Closure& closure, int lane, int row, int set, double factor);
 
+/// The smallest shift of the method's body, in the world (m), that to first order makes the lengths
+/// among the residuals of a lane zero (minimum norm).
+Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity>& quantities,
+                             int lane);
+
 }  // namespace selfcal

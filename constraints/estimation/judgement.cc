@@ -68,6 +68,36 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
   return f;
 }
 
+RowFigure row_figure(const RowResidual& before, const RowResidual& after, bool check,
+                     bool rejected) {
+  const bool both = after.lengths > 0 && after.angles > 0;
+  return {after.row,
+          after.set,
+          check,
+          rejected,
+          before.size(),
+          after.size(),
+          both ? before.angle : 0,
+          both ? after.angle : 0,
+          after.at,
+          before.way,
+          after.way};
+}
+
+/// `put_aside` and `far` by row of the data set, of those that identify and of those that judge.
+std::vector<RowFigure> row_figures(const Judged& before, const Judged& after,
+                                   const std::vector<char>& put_aside,
+                                   const std::vector<char>& far) {
+  std::vector<RowFigure> rows;
+  for (size_t i = 0; i < after.fit.size(); ++i)
+    rows.push_back(
+        row_figure(before.fit[i], after.fit[i], false, put_aside[after.fit[i].row] != 0));
+  for (size_t i = 0; i < after.check.size(); ++i)
+    rows.push_back(row_figure(before.check[i], after.check[i], true, far[after.check[i].row] != 0));
+  std::ranges::stable_sort(rows, {}, &RowFigure::row);
+  return rows;
+}
+
 bool is_outlier(const RowResidual& r, const Judged& judged) {
   return r.sigmas(judged.check_scale[r.set]) > chi_quantile(r.lengths + r.angles, kFar);
 }
@@ -116,6 +146,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
     far[after.check[i].row] = is_outlier(after.check[i], after);
     result.check_rows.push_back({after.check[i].size(), far[after.check[i].row] != 0});
   }
+  result.rows = row_figures(before, after, outlier, far);
   result.fit = figures(fit, outlier);
   result.check = figures(check, far);
   for (size_t s = 0; s < data.sets.size(); ++s) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "app/report/drift.h"
+#include "app/report/page/history_page.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "io/store/store.h"
@@ -50,6 +51,39 @@ TEST(Drifts, OfOneCalibrationAreThoseFromTheFactory) {
   ASSERT_EQ(found.size(), 1);
   EXPECT_NEAR(found[0].since_factory[0], 2e-3, 1e-15);  // rounding of a value of 1
   EXPECT_TRUE(drifts({}, 10).empty());
+}
+
+TEST(HistoryPage, TellsWhenAParameterLeavesItsLimitAtThisRate) {
+  HistoryFindings findings;
+  for (int session = 1; session <= 3; ++session)
+    findings.calibrations.push_back(calibration(session, 3, 0.5e-3 + 0.5e-3 * session));
+  findings.unix_ms = kFirst + 4 * kDay;
+  const double limit = 3 * findings.calibrations[0].robot->parameters()[3].tolerance;
+
+  const nlohmann::ordered_json data = history_data(findings);
+
+  const nlohmann::ordered_json& drift = data["drifts"][0];
+  EXPECT_EQ(data["drifts"].size(), 1);
+  EXPECT_EQ(drift["limit"], limit);
+  EXPECT_TRUE(drift["sigma"][0].is_null());            // no result.json is kept
+  EXPECT_NEAR(drift["trend"]["rate"], 0.5e-3, 1e-12);  // m a day; rounding of values of 1
+  EXPECT_NEAR(drift["trend"]["leaves_in_days"], (limit - 2.5e-3) / 0.5e-3, 1e-4);
+  EXPECT_THAT(data["verdict"]["sentence"].get<std::string>(), HasSubstr("leaves its limit in 295"));
+}
+
+TEST(HistoryPage, GivesAQuickCheckItsIntervalByItsTouches) {
+  HistoryFindings findings;
+  findings.sessions.resize(1);
+  findings.sessions[0].session.kind = "check";
+  findings.sessions[0].result = ResultRecord{};
+  findings.sessions[0].result->touches = 12;
+  findings.sessions[0].result->check_after = 1e-4;
+
+  const nlohmann::ordered_json point = history_data(findings)["residual"]["points"][0];
+
+  // chi2 of 12 freedoms: 23.337 at 97.5 %, 4.404 at 2.5 % (tables, four digits).
+  EXPECT_NEAR(point["least"], 1e-4 * std::sqrt(12 / 23.337), 1e-9);
+  EXPECT_NEAR(point["most"], 1e-4 * std::sqrt(12 / 4.404), 1e-8);
 }
 
 class History : public ::testing::Test {
@@ -129,6 +163,19 @@ TEST_F(History, PrintsRecordsAndEventsInJson) {
   EXPECT_EQ(nlohmann::json::parse(history("--json --newest 1").out).size(), 1);
   EXPECT_EQ(nlohmann::json::parse(history("--events --json").out)[0]["text"], "trigger stuck");
   EXPECT_THAT(history("--events").out, HasSubstr("warning  trigger stuck"));
+}
+
+TEST_F(History, WritesAPage) {
+  accepted(2e-3);
+  const std::string page = (folder_ / "history.html").string();
+
+  EXPECT_EQ(history("--report " + page).status, 0);
+  EXPECT_EQ(history("--json --report " + page).status, 2);
+
+  EXPECT_THAT(read_file(page, 2'000'000).value(), HasSubstr("1 accepted calibration so far"));
+  const Ran unknown = run_selfcal("report 9 " + folder_.string());
+  EXPECT_NE(unknown.status, 0);
+  EXPECT_THAT(unknown.out, HasSubstr("9"));
 }
 
 TEST_F(History, SaysThatThereIsNoSession) {

@@ -1,10 +1,10 @@
-// A diagnosis as a page that a person understands in a minute: one file, no script, nothing
-// fetched.
+// The page of a diagnosis: diagnosis.json, its sentences, and the rows that it was judged on.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "app/report/page/page.h"
 #include "diagnosis/comparison/comparison.h"
 #include "diagnosis/comparison/simulation.h"
 #include "diagnosis/findings.h"
@@ -29,6 +29,11 @@ struct Findings {
   std::optional<AgainstSimulation> sim;
 };
 
-std::string html_report(const Findings& findings);
+/// diagnosis.json: the diagnosis, `since` and `sim`.
+nlohmann::ordered_json to_json(const Findings& findings);
+
+/// The page's object. `judged` are the residuals (m) of the rows behind the figures of the gap, a
+/// column for each model.
+nlohmann::ordered_json diagnosis_data(const PageSubject& subject, const Findings& findings);
 
 }  // namespace selfcal

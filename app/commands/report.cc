@@ -1,0 +1,74 @@
+// selfcal report SESSION: a stored session as a page, from its rows solved once more.
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/find_store.h"
+#include "app/commands/session_export.h"
+#include "app/commands/subcommand.h"
+#include "app/report/format.h"
+#include "app/report/page/identification_page.h"
+#include "app/report/progress_line.h"
+#include "constraints/estimation/identification.h"
+#include "io/files/file.h"
+
+namespace selfcal {
+namespace {
+
+struct ReportArguments {
+  std::int64_t session = 0;
+  std::string where, out = "report.html";
+};
+
+/// What the store has of the session beside its rows.
+Result<nlohmann::ordered_json> session_json(Store& store, const SessionRecord& record) {
+  nlohmann::ordered_json json = {{"number", record.id},
+                                 {"kind", record.kind},
+                                 {"when", date_time(record.started_ms)},
+                                 {"reason", record.reason}};
+  const auto result = store.result(record.id);
+  if (!result) return tl::unexpected(result.error());
+  if (*result) json["decision"] = to_string((*result)->decision);
+  return json;
+}
+
+Result<void> write_page(const ReportArguments& arguments) {
+  const auto source = find_store(arguments.where);
+  if (!source) return tl::unexpected(source.error());
+  const auto store = Store::open_to_read(source->state);
+  if (!store) return tl::unexpected(store.error());
+  const auto rows = session_rows(**store, arguments.session, source->robot_text);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto session = session_json(**store, rows->record);
+  if (!session) return tl::unexpected(session.error());
+  Solution solution;
+  {
+    ProgressLine line;
+    solution = identify(*rows->robot, rows->data, {},
+                        [&](std::string_view stage, double share) { line.show(stage, share); });
+  }
+  const PageSubject subject{*rows->robot, rows->data,
+                            "session " + std::to_string(arguments.session), unix_now_ms()};
+  nlohmann::ordered_json data = identification_data(subject, solution);
+  data["session"] = *session;
+  return write_file_atomically(arguments.out, page_of(data));
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      app.add_subcommand("report", "Write a stored session's report, a page to open in a browser");
+  command->add_option("SESSION", arguments->session, "Its number, as history shows it")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  command->add_option("WHERE", arguments->where, kStoreIsWhere);
+  command->add_option("--out", arguments->out, "The page's file")->capture_default_str();
+  command->callback([arguments, &status] {
+    const auto written = write_page(*arguments);
+    if (written) std::printf("%s\n", arguments->out.c_str());
+    status = written ? kDone : tell(written.error());
+  });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,22 @@
+# Puts the page's template, style, scripts and the libraries that draw into one file, template.html:
+#   cmake -DOUT=FILE -DCHART=FILE -DTHREE=FILE -DORBIT=FILE -P assemble.cmake
+# Their words stand between the page's own brackets, {{style}}; {{data}} stays for the program.
+set(here ${CMAKE_CURRENT_LIST_DIR})
+file(READ ${here}/page.html page)
+file(READ ${here}/page.css style)
+set(script "")
+foreach(part units tables charts view3d identification diagnosis history page)
+  file(READ ${here}/${part}.js text)
+  string(APPEND script "${text}")
+endforeach()
+file(READ ${CHART} chart)
+file(READ ${THREE} three)
+file(READ ${ORBIT} orbit)
+foreach(part style script chart three orbit)
+  string(FIND "${${part}}" "</script" end)
+  if(NOT end EQUAL -1)
+    message(FATAL_ERROR "${part}: </script would end the page's script")
+  endif()
+  string(REPLACE "{{${part}}}" "${${part}}" page "${page}")
+endforeach()
+file(WRITE ${OUT} "${page}")

@@ -1,0 +1,67 @@
+#include "app/report/page/diagnosis_page.h"
+
+#include <cmath>
+
+#include "app/report/diagnosis_json.h"
+#include "app/report/gap_words.h"
+#include "app/report/page/robot_picture.h"
+#include "io/files/json_parts.h"
+
+namespace selfcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostJudged = 5000;  // of a page below 2 MB
+constexpr int kMostDiagnosisPoses = 12;
+
+Json judged_json(const std::vector<JudgedRow>& rows) {
+  Json json = {{"of", rows.size()}};
+  const std::size_t step = std::max<std::size_t>(1, (rows.size() + kMostJudged - 1) / kMostJudged);
+  const auto column = [&](const char* name, double JudgedRow::*squared) {
+    json[name] = Json::array();
+    for (std::size_t i = 0; i < rows.size(); i += step)
+      if (!rows[i].false_reading) json[name].push_back(finite(std::sqrt(rows[i].*squared)));
+  };
+  column("nominal", &JudgedRow::nominal);
+  column("before", &JudgedRow::before);
+  column("after", &JudgedRow::after);
+  column("all", &JudgedRow::all);
+  return json;
+}
+
+std::vector<std::string> next_sentences(const Diagnosis& diagnosis) {
+  std::vector<std::string> list;
+  for (const NextStep& step : diagnosis.next) list.push_back(step.what + next_in_words(step));
+  if (list.empty() && !diagnosis.next_why.empty()) list.push_back("nothing; " + diagnosis.next_why);
+  return list;
+}
+
+}  // namespace
+
+Json to_json(const Findings& findings) {
+  Json json = to_json(findings.diagnosis);
+  if (findings.since) json["since"] = to_json(findings.since->comparison);
+  if (findings.sim) json["sim"] = to_json(findings.sim->differences);
+  return json;
+}
+
+Json diagnosis_data(const PageSubject& subject, const Findings& findings) {
+  const Diagnosis& diagnosis = findings.diagnosis;
+  Json json = page_begin("diagnosis", subject);
+  json["verdict"] = {{"sentence", diagnosis.why},
+                     {"effect", diagnosis.verdict.effect},
+                     {"next", next_sentences(diagnosis)}};
+  json["result"] = to_json(findings);
+  json["words"] = {{"named", named_in_words(diagnosis)},
+                   {"found", found_in_words(diagnosis)},
+                   {"closed", closed_in_words(diagnosis)},
+                   {"false_rows", false_rows_in_words(diagnosis)}};
+  if (findings.since) json["since_name"] = findings.since->name;
+  if (findings.sim) json["sim_name"] = findings.sim->name;
+  if (!diagnosis.judged.empty()) json["judged"] = judged_json(diagnosis.judged);
+  json["picture"] = robot_picture(subject.robot, subject.data.rows.q, kMostDiagnosisPoses);
+  return json;
+}
+
+}  // namespace selfcal

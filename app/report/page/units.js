@@ -1,0 +1,29 @@
+"use strict";
+// Numbers for people: lengths in mm, angles in mrad, ratios in ppm.
+
+const SHOWN = {m: [1e3, "mm"], rad: [1e3, "mrad"], "1": [1e6, "ppm"]};
+
+function shown(unit) { return SHOWN[unit] || [1, unit]; }
+
+function known(number) { return typeof number === "number" && isFinite(number); }
+
+function figure(number, digits = 3) {
+  if (!known(number)) return "–";
+  if (number !== 0 && Math.abs(number) < 1e-4) return number.toExponential(1).replace("-", "−");
+  const text = new Intl.NumberFormat("en", {maximumSignificantDigits: digits, useGrouping: false}).format(number);
+  return text.replace("-", "−");
+}
+
+function mm(metres, digits = 3) { return figure(known(metres) ? 1e3 * metres : null, digits); }
+
+// A number with as many decimals as its uncertainty is worth: two digits of that.
+function decimals(sigma) {
+  return known(sigma) && sigma > 0 ? Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(sigma)))) : 4;
+}
+function fixed(number, places) { return known(number) ? number.toFixed(places).replace("-", "−") : "–"; }
+
+function percent(share) { return figure(100 * share, share < 0.995 ? 2 : 3) + " %"; }
+
+function probability(p) { return p < 1e-9 ? "below 1e-9" : figure(p, 2); }
+
+function plural(count, one, many) { return count + " " + (count === 1 ? one : many || one + "s"); }
