@@ -13,11 +13,12 @@ function before_after_table(result, angle_alone) {
   const {check, fit} = result.residual;
   const lines = [line("rows kept aside", check), angles("rows kept aside", check), line("rows that identified", fit),
                  angles("rows that identified", fit)];
-  if (check.by_set.length > 1)
-    for (const set of check.by_set) lines.push(line("kept aside, of " + set.name, set));
-  return table([{title: "residual, " + unit}, {title: "rows", number: true}, {title: "before, rms", number: true},
-                {title: "after, rms", number: true}, {title: "after, mean", number: true},
-                {title: "after, largest", number: true}], lines.filter(Boolean));
+  const columns = [{title: "residual, " + unit}, {title: "rows", number: true}, {title: "before, rms", number: true},
+                   {title: "after, rms", number: true}, {title: "after, mean", number: true},
+                   {title: "after, largest", number: true}];
+  const by_set = check.by_set.map(set => line(set.name, set)).filter(Boolean);
+  return [table(columns, lines.filter(Boolean)),
+          by_set.length > 1 ? folded("rows kept aside, set by set", table(columns, by_set)) : null];
 }
 
 function shown_rows_text(rows) {
@@ -251,7 +252,8 @@ function show_identification(data) {
   const lengths = i => angle_alone || !rows.angle_alone[i];
   if (result.warnings.length) section("Warnings", bullets(result.warnings));
   if (!rows) return;
-  section("Before and after", before_after_table(result, angle_alone), histogram_of(rows, unit, lengths));
+  section("Before and after", histogram_of(rows, unit, lengths),
+          before_after_table(result, angle_alone));
   section("In the workspace", workspace_view(data));
   section("What moved", parameters_of(data));
   section("How sure", uncertainty_of(data));
