@@ -19,7 +19,8 @@ _selfcal() {
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
-    2:robot) words="check --help" ;;
+    2:robot) words="check convert --help" ;;
+    *:robot) words="--base --tip --out --help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;
