@@ -20,7 +20,7 @@ _selfcal() {
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check convert --help" ;;
-    *:robot) words="--base --tip --out --help" ;;
+    *:robot) words="--base --tip --to --like --out --help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;

@@ -117,33 +117,17 @@ std::string free_name(std::string name, const JointChain& chain) {
   return name;
 }
 
-/// The row of joint `j` in the coupling, and what is added to its variable.
-std::pair<Eigen::RowVectorXd, double> driven_by(const JointChain& chain, size_t j) {
-  const int n = static_cast<int>(chain.joints.size());
-  Eigen::RowVectorXd own = Eigen::RowVectorXd::Unit(n, static_cast<int>(j));
-  double offset = 0, factor = 1;
-  for (int steps = 0; chain.joints[j].mimicry; ++steps) {
-    expects(steps < n, "a mimicry leads to itself");
-    const Mimicry& mimicry = *chain.joints[j].mimicry;
-    offset += factor * mimicry.offset;
-    factor *= mimicry.multiplier;
-    j = static_cast<size_t>(mimicry.leader);
-    if (!chain.joints[j].mimicry) own[mimicry.leader] += factor;
-  }
-  return {own, offset};
-}
+bool mimics(const ChainJoint& joint) { return joint.mimicry.has_value(); }
 
 void add_mimicry(const JointChain& chain, serial::Model& model) {
-  if (std::ranges::none_of(chain.joints, [](const ChainJoint& j) { return j.mimicry.has_value(); }))
-    return;
-  const auto n = static_cast<Eigen::Index>(chain.joints.size());
-  model.coupling.resize(n, n);
+  if (std::ranges::none_of(chain.joints, &mimics)) return;
+  const Coupling coupling = coupling_of(chain);
+  model.coupling = coupling.matrix;
   for (size_t j = 0; j < chain.joints.size(); ++j) {
-    const auto [row, offset] = driven_by(chain, j);
-    model.coupling.row(static_cast<Eigen::Index>(j)) = row;
     Frame& frame = model.frames[j + 1];  // after the base
-    frame.value[frame.motion == serial::Motion::revolute ? serial::kTheta : serial::kR] += offset;
-    if (!chain.joints[j].mimicry) continue;
+    frame.value[frame.motion == serial::Motion::revolute ? serial::kTheta : serial::kR] +=
+        coupling.offset[static_cast<Eigen::Index>(j)];
+    if (!mimics(chain.joints[j])) continue;
     frame.lower = -kStill;
     frame.upper = kStill;
   }
@@ -158,6 +142,24 @@ Isometry3d axis_frame(const ChainJoint& joint) {
   else
     X.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()));
   return X;
+}
+
+Coupling coupling_of(const JointChain& chain) {
+  const auto n = static_cast<Eigen::Index>(chain.joints.size());
+  Coupling coupling{Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Zero(n)};
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double factor = 1;
+    const ChainJoint* joint = &chain.joints[static_cast<size_t>(j)];
+    for (Eigen::Index steps = 0; mimics(*joint); ++steps) {
+      expects(steps < n, "a mimicry leads to itself");
+      const Mimicry& mimicry = *joint->mimicry;
+      coupling.offset[j] += factor * mimicry.offset;
+      factor *= mimicry.multiplier;
+      joint = &chain.joints[static_cast<size_t>(mimicry.leader)];
+      if (!mimics(*joint)) coupling.matrix(j, mimicry.leader) += factor;
+    }
+  }
+  return coupling;
 }
 
 serial::Model frames_of(const JointChain& chain) {

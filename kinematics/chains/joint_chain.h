@@ -47,6 +47,14 @@ Eigen::Isometry3d axis_frame(const ChainJoint& joint);
 /// are these. The chain has a joint, and no mimicry leads to itself.
 serial::Model frames_of(const JointChain& chain);
 
+/// What mimicry adds to the joint variables: coupling · readings + offset. The identity and zeros
+/// where no joint mimics.
+struct Coupling {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd offset;
+};
+Coupling coupling_of(const JointChain& chain);
+
 inline constexpr double kParallel = 0.1;  ///< sine of the angle below which axes count as parallel
 inline constexpr double kStill =
     1e-6;  ///< rad or m: the readings of a joint that has none of its own
