@@ -1,5 +1,6 @@
 #include "kinematics/chains/corrected_chain.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

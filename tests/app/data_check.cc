@@ -10,6 +10,7 @@
 
 #include "kinematics/description.h"
 #include "tests/app/cell.h"
+#include "tests/shared_data.h"
 #include "tests/support/text.h"
 
 namespace selfcal {
@@ -186,6 +187,16 @@ TEST_F(DataCheck, SaysThatTheRowsAreOfAnotherRobot) {
   change_robot("-0.6127", "-0.425");
   change_robot("-0.57155", "-0.39225");
   expect_likely_wrong("none of the usual slips explains the rows");
+}
+
+TEST(DataCheckOfRealRobots, AccusesNoSoundSet) {
+  SELFCAL_NEED_SHARED();
+  for (const char* name :
+       {"delta-bed", "ipa-ur10-joint", "motoman-planes", "motoman-selfcontact", "motoman-tracker",
+        "mukca-kuka-14", "mukca-panda-3", "talos-contact", "ur10-mocap"}) {
+    const Ran ran = run_selfcal("data check " + (shared_dir() / "data" / name).string());
+    EXPECT_EQ(ran.status, 0) << name << ": " << ran.out;
+  }
 }
 
 }  // namespace
