@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kGross = 2;
 constexpr double kSlipCollapse = 0.2;
+constexpr double kWithin = 0.1;       // of what tolerances leave: less is not looked into
 constexpr double kLeastGross = 2e-3;  // m or rad: less is no slip
 constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
 constexpr int kFitSteps = 60;
@@ -139,7 +140,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& d
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, false).left;
   if (!given.angles.empty()) look.found = given.angles.front();
-  const double least = std::max(kLeastGross, kSlipCollapse * look.expected);
+  const double least = std::max(kLeastGross, kWithin * look.expected);
   const double gross = kGross * look.expected;
   if (look.left < least && look.tool_held < gross) return look;
   look.tried = tried(*robot, data, others);
