@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   add_trial(app, status);
   add_identifiable(app, status);
   add_robot(app, status);
+  add_data(app, status);
   add_serve(app, status);
   add_monitor(app, status);
   add_command(app, status);

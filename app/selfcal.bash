@@ -12,14 +12,17 @@ _selfcal() {
     return
   fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable diagnose trial simulate robot serve monitor command history report --help --version" ;;
+    1:*) words="identify identifiable diagnose trial simulate robot data serve monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
     *:diagnose) words="--sim --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
-    2:robot) words="check --help" ;;
+    2:robot) words="check convert --help" ;;
+    *:robot) words="--base --tip --to --like --out --help" ;;
+    2:data) words="check --help" ;;
+    *:data) words="--help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;
@@ -28,7 +31,7 @@ _selfcal() {
     *:report) words="--out --help" ;;
     *) words="--help" ;;
   esac
-  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|command|trial) ]]; then
+  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|data|command|trial) ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$cur")

@@ -36,6 +36,7 @@ void add_robot(CLI::App& app, int& status) {
   CLI::App* command = robot->add_subcommand("check", "Validate a robot file");
   command->add_option("FILE", *file, "NAME.robot.yaml (see man selfcal-data)")->required();
   command->callback([file, &status] { status = check(*file); });
+  add_robot_convert(*robot, status);
 }
 
 }  // namespace selfcal

@@ -27,6 +27,9 @@ void add_identifiable(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_trial(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);
+/// Part of `robot`, which it is given.
+void add_robot_convert(CLI::App& robot, int& status);
+void add_data(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
 void add_command(CLI::App& app, int& status);

@@ -14,12 +14,22 @@ Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path) {
 }
 
 Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string& name) {
+  if (looks_like_xml(text))
+    return bad_input(name + ": is XML and no robot file; `selfcal robot convert " + name +
+                     "` makes one of a URDF");
   const Result<Node> node = parse_yaml(text, name);
   if (!node) return tl::unexpected(node.error());
   Problems problems;
   std::unique_ptr<Robot> robot = make_robot(*node, problems);
   if (problems.any()) return bad_input(problems);
   return robot;
+}
+
+bool looks_like_xml(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '<';
 }
 
 std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi) {

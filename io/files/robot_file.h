@@ -18,6 +18,9 @@ Result<std::unique_ptr<Robot>> load_robot(const std::filesystem::path& path);
 /// The same of a file's `text`; `name` stands for the file in messages.
 Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string& name);
 
+/// The text begins as XML does: a model of another program, and no robot file.
+bool looks_like_xml(std::string_view text);
+
 /// The robot's file with parameter values `xi` (one for each of robot.parameters(), SI).
 std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi);
 

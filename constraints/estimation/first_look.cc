@@ -1,0 +1,162 @@
+// Gross means beyond kGross times what the maker's tolerances leave at the end of the arm,
+//   expected² = sum of (tolerance of a length)² + sum of (tolerance of an angle · reach)²
+// with the sum of the links' lengths for the reach. A slip is believed that leaves a kCollapse-th
+// part: sound rows do not fit so much better when a joint turns the other way. Medians, so that
+// false rows do not decide.
+#include "constraints/estimation/first_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "constraints/estimation/adjustment.h"
+#include "constraints/estimation/angles.h"
+#include "constraints/estimation/fit.h"
+#include "constraints/estimation/judgement.h"
+#include "constraints/identifiability/gauge.h"
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kGross = 2;
+constexpr double kSlipCollapse = 0.2;
+constexpr double kWithin = 0.1;       // of what tolerances leave: less is not looked into
+constexpr double kLeastGross = 2e-3;  // m or rad: less is no slip
+constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
+constexpr int kFitSteps = 60;
+
+struct Misfit {
+  double left = 0, tool_moved = 0;
+  bool lengths = true, any = false;
+  std::vector<std::string> angles = {};  ///< what is told of sets whose angles do not fit
+};
+
+/// How far base and tool alone bring the robot to the rows.
+Misfit misfit(const Robot& robot, const DataSet& data, bool tool_moves) {
+  Misfit result;
+  const Equations equations(robot, data, Use::fit);
+  Prior prior;
+  prior.centre = nominal_values(robot);
+  prior.sigma.resize(prior.centre.size());
+  const auto& parameters = robot.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const bool moves = is_placed(parameters[i]) && (tool_moves || parameters[i].part != Part::tool);
+    prior.free.push_back(moves && parameters[i].free && parameters[i].tolerance > 0);
+    prior.sigma[static_cast<Eigen::Index>(i)] = kWide * parameters[i].tolerance;
+  }
+  for (const auto& notes : {held_base(robot, equations), held_orientation(robot, equations)})
+    for (const Note& note : notes) prior.free[find_parameter(robot, note.parameter)] = 0;
+  State start{values(robot), {}, {}};
+  equations.start(start);
+  FitRule rule;
+  rule.most_iterations = kFitSteps;
+  const Fit placed = fit(equations, start, prior, rule);
+  const Judged judged = judge(robot, data, equations, placed);
+  std::vector<double> lengths, angles;
+  for (const RowResidual& row : judged.fit)
+    (row.lengths > 0 ? lengths : angles).push_back(row.size());
+  result.any = !lengths.empty() || !angles.empty();
+  result.lengths = !lengths.empty();
+  if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
+  if (tool_moves) result.angles = gross_angles(robot, data, judged, judged);
+  double squares = 0;
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].part == Part::tool && parameters[i].quantity == Quantity::length)
+      squares += std::pow(placed.state.xi[static_cast<Eigen::Index>(i)] - parameters[i].nominal, 2);
+  result.tool_moved = std::sqrt(squares);
+  return result;
+}
+
+/// What the maker's tolerances leave at the end (m, or rad where `lengths` is false).
+double expected_misfit(const Robot& robot, bool lengths) {
+  double reach = 0, squares = 0;
+  for (const Parameter& p : robot.parameters())
+    if (p.quantity == Quantity::length && p.part == Part::link) reach += std::abs(p.nominal);
+  for (const Parameter& p : robot.parameters()) {
+    if (p.part != Part::link) continue;
+    if (p.quantity == Quantity::angle) squares += std::pow(p.tolerance * (lengths ? reach : 1), 2);
+    if (p.quantity == Quantity::length && lengths) squares += std::pow(p.tolerance, 2);
+  }
+  return std::sqrt(squares);
+}
+
+/// The slips of the rows: signs and exchanges of joints, degrees, millimetres, exchanged columns.
+std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
+  std::vector<Slip> list;
+  const auto add = [&](std::string what, auto&& change) {
+    Observations changed = rows;
+    change(changed);
+    list.push_back({std::move(what), nullptr, std::move(changed)});
+  };
+  const std::vector<Joint>& joints = robot.joints();
+  const auto n = static_cast<Eigen::Index>(joints.size());
+  for (Eigen::Index j = 0; j < n; ++j)
+    add(joints[j].name + " is read with the other sign (or its gear turns the other way)",
+        [j](Observations& o) { o.q.col(j) *= -1; });
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index k = 0; k < j; ++k)
+      if (joints[j].quantity == joints[k].quantity)
+        add("the columns of " + joints[k].name + " and " + joints[j].name + " are exchanged",
+            [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
+  add("the joint readings are degrees", [&](Observations& o) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (joints[j].quantity == Quantity::angle) o.q.col(j) *= std::numbers::pi / 180;
+  });
+  if (rows.position.rows() == 0) return list;
+  add("the measured positions are millimetres", [](Observations& o) { o.position *= 1e-3; });
+  // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
+  add("two of the columns x, y and z are exchanged, or one has the other sign",
+      [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
+  return list;
+}
+
+/// What each slip leaves, best first.
+std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
+                             const std::vector<Slip>& others) {
+  std::vector<Slip> slips = others;
+  std::ranges::move(slips_of_rows(robot, data.rows), std::back_inserter(slips));
+  std::vector<TriedSlip> list;
+  for (const Slip& slip : slips) {
+    DataSet changed = data;
+    if (slip.rows) changed.rows = *slip.rows;
+    const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, true);
+    if (left.any) list.push_back({slip.what, left.left});
+  }
+  std::ranges::stable_sort(list, {}, &TriedSlip::left);
+  return list;
+}
+
+}  // namespace
+
+FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                     const std::vector<Slip>& others) {
+  FirstLook look;
+  const Misfit given = misfit(*robot, data, true);
+  if (!given.any) return look;
+  look.lengths = given.lengths;
+  look.left = given.left;
+  look.tool_moved = given.tool_moved;
+  look.expected = expected_misfit(*robot, given.lengths);
+  look.tool_held = misfit(*robot, data, false).left;
+  if (!given.angles.empty()) look.found = given.angles.front();
+  const double least = std::max(kLeastGross, kWithin * look.expected);
+  const double gross = kGross * look.expected;
+  if (look.left < least && look.tool_held < gross) return look;
+  look.tried = tried(*robot, data, others);
+  const double best = look.tried.empty() ? look.left : look.tried.front().left;
+  look.explained = look.left > least && best < kSlipCollapse * look.left;
+  look.tool =
+      !look.explained && look.left < kSlipCollapse * look.tool_held && look.tool_held > gross;
+  if (look.explained)
+    look.found = look.tried.front().what;
+  else if (look.tool)
+    look.found = "the tool's frame is missing or another one";
+  else if (look.left > gross && look.found.empty())
+    look.found =
+        "none of the usual slips explains the rows: they are of another robot, or a file "
+        "is wrong elsewhere";
+  return look;
+}
+
+}  // namespace selfcal

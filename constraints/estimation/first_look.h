@@ -1,0 +1,45 @@
+// A first look at a data set: whether the robot as its maker says fits the rows where only base,
+// tool and nuisance parameters may move, and which one slip would explain it where it does not.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+/// A way in which the files may be wrong: what the robot or the rows would then be.
+struct Slip {
+  std::string what;                    ///< "j3 is read with the other sign"
+  std::shared_ptr<const Robot> robot;  ///< null: as given
+  std::optional<Observations> rows;    ///< nothing: as given
+};
+
+/// What a slip leaves.
+struct TriedSlip {
+  std::string what;
+  double left = 0;  ///< median of the rows' residuals (m; rad where no row measures a length)
+};
+
+struct FirstLook {
+  bool lengths = true;           ///< residuals are lengths, not angles
+  double left = 0;               ///< median of the rows' residuals, as given
+  double expected = 0;           ///< what the maker's tolerances leave, 1 sigma
+  double tool_held = 0;          ///< what is left with the tool as its file says
+  double tool_moved = 0;         ///< m, how far the rows put the tool from where its file has it
+  std::vector<TriedSlip> tried;  ///< best first
+  bool explained = false;        ///< the best of them is believed
+  bool tool = false;             ///< the tool's frame is
+  std::string found;             ///< what is likely wrong; empty where nothing is
+};
+
+/// Tries every slip of the rows and `others`, which the caller knows of the files. No row, or none
+/// that gives an equation: nothing is found.
+FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                     const std::vector<Slip>& others);
+
+}  // namespace selfcal

@@ -1,0 +1,22 @@
+// A linear delta as the firmwares of printers are told of it: RepRapFirmware's M665 and M666, and
+// Klipper's printer.cfg. What the numbers mean there is in kinematics/robots/README.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/result.h"
+#include "kinematics/robots/linear_delta.h"
+
+namespace selfcal {
+
+struct FirmwareText {
+  std::string text;
+  std::vector<std::string> left_out;  ///< what a firmware does not hold, with its size
+};
+
+/// Refuses towers that do not stand near 210, 330 and 90 degrees in this order, as firmwares have
+/// them; `file` stands for the robot's. Lengths are mm, angles degrees there.
+Result<FirmwareText> delta_firmware(const linear_delta::Delta& delta, const std::string& file);
+
+}  // namespace selfcal

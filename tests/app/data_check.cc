@@ -1,0 +1,203 @@
+// A first look at data sets: a sound one, and the same with one slip in it.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "kinematics/description.h"
+#include "tests/app/cell.h"
+#include "tests/shared_data.h"
+#include "tests/support/text.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kTable = R"(robot: arm
+kind: serial
+convention: standard
+frames:
+  - {name: base, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}
+  - {name: j1, joint: revolute, r: 0.1807, alpha: pi/2, limits: [-0.3, 0.4]}
+  - {name: j2, joint: revolute, d: -0.6127, limits: [-1.0, 1.0]}
+  - {name: j3, joint: revolute, d: -0.57155, limits: [-1.0, 1.0]}
+  - {name: j4, joint: revolute, r: 0.17415, alpha: pi/2, limits: [-1.0, 1.0]}
+  - {name: j5, joint: revolute, r: 0.11985, alpha: -pi/2, limits: [-1.0, 1.0]}
+  - {name: j6, joint: revolute, r: 0.11655, limits: [-1.0, 1.0]}
+  - {name: tool, joint: fixed, xyz: [0.03, 0.02, 0.15], rpy: [0, 0, 0]}
+)";
+
+constexpr const char* kScenario = R"(robot: arm.robot.yaml
+seed: 1
+errors: {length: 1.0e-3, angle: 1.0e-3, base_length: 5.0e-3, base_angle: 5.0e-3, tool_length: 2.0e-3, tool_angle: 2.0e-3}
+sets:
+  tracker: {method: location, noise: 2.0e-5, noise_angle: 2.0e-5, noise_true: 2.5e-5, rows: 60}
+)";
+
+using Cells = std::vector<std::string>;
+
+class DataCheck : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "s.yaml") << kScenario;
+    simulate(kTable);
+  }
+
+  void simulate(const std::string& robot) {
+    std::ofstream(folder_ / "arm.robot.yaml") << robot;
+    std::filesystem::remove_all(folder_ / "data");
+    const Ran ran = run_selfcal("simulate " + (folder_ / "s.yaml").string() + " --out " +
+                                (folder_ / "data").string());
+    ASSERT_EQ(ran.status, 0) << ran.out;
+  }
+
+  /// Of a robot whose table has `b` for each `a`, and `d` for each `c`.
+  void simulate_again(const std::string& a, const std::string& b, const std::string& c,
+                      const std::string& d) {
+    std::string text = kTable;
+    for (const auto& [from, to] : {std::pair{a, b}, std::pair{c, d}})
+      for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + 1))
+        text.replace(at, from.size(), to);
+    simulate(text);
+  }
+
+  /// Replaces `from`, which must be there, in the robot's file.
+  void change_robot(const std::string& from, const std::string& to) {
+    std::string text = text_of(folder_ / "data/arm.robot.yaml");
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    std::ofstream(folder_ / "data/arm.robot.yaml") << text;
+  }
+
+  void free_of_limits() {
+    std::istringstream lines(text_of(folder_ / "data/arm.robot.yaml"));
+    std::ostringstream out;
+    for (std::string line; std::getline(lines, line);) {
+      if (const size_t at = line.find(", limits"); at != std::string::npos)
+        line = line.substr(0, at) + "}";
+      out << line << "\n";
+    }
+    std::ofstream(folder_ / "data/arm.robot.yaml") << out.str();
+  }
+
+  /// Changes the named cells of every row.
+  void change_rows(const Cells& columns, const std::function<void(std::vector<double>&)>& change) {
+    std::istringstream lines(text_of(folder_ / "data/observations.csv"));
+    std::ostringstream out;
+    Cells header;
+    for (std::string line; std::getline(lines, line);) {
+      Cells cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      if (header.empty()) {
+        header = cells;
+      } else {
+        const auto cell = [&](const std::string& name) -> std::string& {
+          return cells.at(static_cast<size_t>(std::ranges::find(header, name) - header.begin()));
+        };
+        std::vector<double> numbers;
+        for (const std::string& name : columns) numbers.push_back(std::stod(cell(name)));
+        change(numbers);
+        for (size_t i = 0; i < columns.size(); ++i) cell(columns[i]) = format_number(numbers[i]);
+      }
+      for (size_t i = 0; i < cells.size(); ++i) out << (i > 0 ? "," : "") << cells[i];
+      out << "\n";
+    }
+    std::ofstream(folder_ / "data/observations.csv") << out.str();
+  }
+
+  void expect_likely_wrong(const std::string& what) {
+    const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+    EXPECT_EQ(ran.status, 1) << ran.out;
+    EXPECT_THAT(ran.out, HasSubstr("likely wrong: " + what));
+  }
+
+  std::filesystem::path folder_;
+};
+
+const Cells kReadings = {"q1", "q2", "q3", "q4", "q5", "q6"};
+
+TEST_F(DataCheck, FindsNothingInASoundSet) {
+  const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("nothing is likely wrong"));
+}
+
+TEST_F(DataCheck, SaysThatATableIsStandard) {
+  change_robot("convention: standard\n", "");
+  expect_likely_wrong("the table is standard DH");
+}
+
+TEST_F(DataCheck, SaysWhichJointHasTheOtherSign) {
+  change_rows({"q3"}, [](auto& q) { q[0] *= -1; });
+  expect_likely_wrong("j3 is read with the other sign");
+}
+
+TEST_F(DataCheck, SaysWhichJointsAreExchanged) {
+  change_rows({"q2", "q3"}, [](auto& q) { std::swap(q[0], q[1]); });
+  expect_likely_wrong("the columns of j2 and j3 are exchanged");
+}
+
+TEST_F(DataCheck, SaysThatReadingsAreDegreesBelowTheFourTurnsThatNoFilePasses) {
+  // Joints that move through little: 1 rad here, 17 degrees for 0.3 rad there.
+  ASSERT_NO_FATAL_FAILURE(simulate_again("1.0]", "0.3]", "-1.0,", "-0.3,"));
+  free_of_limits();
+  change_rows(kReadings, [](auto& q) {
+    for (double& each : q) each *= 180 / std::numbers::pi;
+  });
+  expect_likely_wrong("the joint readings are degrees");
+}
+
+TEST_F(DataCheck, SaysThatPositionsAreMillimetresBelowTheKilometreThatNoFilePasses) {
+  ASSERT_NO_FATAL_FAILURE(simulate_again("-0.6127", "-0.3", "-0.57155", "-0.2"));
+  change_rows({"x", "y", "z"}, [](auto& p) {
+    for (double& each : p) each *= 1000;
+  });
+  expect_likely_wrong("the measured positions are millimetres");
+}
+
+TEST_F(DataCheck, SaysThatColumnsOfThePositionAreExchanged) {
+  change_rows({"x", "y"}, [](auto& p) { std::swap(p[0], p[1]); });
+  expect_likely_wrong("two of the columns x, y and z are exchanged");
+}
+
+TEST_F(DataCheck, SaysThatTheToolIsMissing) {
+  change_robot("xyz: [0.03, 0.02, 0.15]", "xyz: [0, 0, 0]");
+  expect_likely_wrong("the tool's frame is missing");
+}
+
+TEST_F(DataCheck, SaysThatTheQuaternionsAreInAnotherOrder) {
+  change_rows({"qw", "qx", "qy", "qz"}, [](auto& q) { std::ranges::rotate(q, q.begin() + 1); });
+  const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+  EXPECT_EQ(ran.status, 1) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("the quaternions are read in another order"));
+}
+
+TEST_F(DataCheck, SaysThatTheRowsAreOfAnotherRobot) {
+  change_robot("-0.6127", "-0.425");
+  change_robot("-0.57155", "-0.39225");
+  expect_likely_wrong("none of the usual slips explains the rows");
+}
+
+TEST(DataCheckOfRealRobots, AccusesNoSoundSet) {
+  SELFCAL_NEED_SHARED();
+  for (const char* name :
+       {"delta-bed", "ipa-ur10-joint", "motoman-planes", "motoman-selfcontact", "motoman-tracker",
+        "mukca-kuka-14", "mukca-panda-3", "talos-contact", "ur10-mocap"}) {
+    const Ran ran = run_selfcal("data check " + (shared_dir() / "data" / name).string());
+    EXPECT_EQ(ran.status, 0) << name << ": " << ran.out;
+  }
+}
+
+}  // namespace
+}  // namespace selfcal
