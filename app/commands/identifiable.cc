@@ -6,13 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
+#include "app/commands/method_sets.h"
 #include "app/commands/subcommand.h"
 #include "app/report/progress_line.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/identifiability/excitation.h"
-#include "constraints/sampling/random_poses.h"
 #include "io/files/data_set_file.h"
 #include "io/files/robot_file.h"
 
@@ -21,8 +20,8 @@ namespace {
 
 struct IdentifiableArguments {
   std::string subject, method;
-  std::vector<std::string> locks;  ///< "leg=1,joint=universal"
-  bool unknown = false, json = false;
+  MethodOptions options;
+  bool json = false;
   int count = 120;
   unsigned long long seed = 1;
   std::string for_robots;  ///< an option given that says how configurations are drawn
@@ -37,86 +36,19 @@ struct Answered {
   std::vector<Lost> lost;
 };
 
-/// The entry of a set of `method`; planes are known, through the endpoint at a random
-/// configuration, unless the user says otherwise; a link is as long as such a one asks for.
-Node set_entry(const Robot& robot, const IdentifiableArguments& arguments) {
-  Node node = Node::map();
-  node.set("method", Node::of(arguments.method));
-  if (arguments.unknown) return node;
-  Eigen::Vector3d n(0.36, -0.48, 0.8);
-  if (arguments.method == "plane-normal") node.set("normal", Node::of(Eigen::VectorXd(n)));
-  if (arguments.method != "plane" && arguments.method != "constraint-link") return node;
-  ConfigurationBlock block;
-  block.q = random_poses(robot, nullptr, kLanes, arguments.seed).array();
-  block.count = kLanes;
-  Locations X;
-  robot.locate(block, nominal_values(robot), Body::endpoint, X, nullptr);
-  if (arguments.method == "constraint-link") return node.set("length", Node::of(X.p(0).norm()));
-  int farthest = 0;  // a plane through the origin has no coefficients a b c
-  for (int lane = 1; lane < kLanes; ++lane)
-    if (std::abs(n.dot(X.p(lane))) > std::abs(n.dot(X.p(farthest)))) farthest = lane;
-  node.set("plane", Node::of(Eigen::VectorXd(-n / (0.6 * n.dot(X.p(farthest))))));
-  return node;
-}
-
-/// An entry of a set for each lock, of the words KEY=VALUE between commas.
-std::vector<Set> locked_sets(const std::vector<std::string>& locks, Problems& problems) {
-  std::vector<Set> sets;
-  for (const std::string& lock : locks) {
-    const Place option{std::make_shared<const std::string>("--lock " + lock)};
-    Node words = Node::map();
-    words.place = option;
-    std::istringstream text(lock);
-    for (std::string word; std::getline(text, word, ',');) {
-      const size_t equals = word.find('=');
-      Node value = Node::of(equals == std::string::npos ? std::string() : word.substr(equals + 1));
-      value.place = option;
-      words.set(word.substr(0, equals), std::move(value));
-    }
-    Node node = Node::map();
-    node.place = option;
-    node.set("method", Node::of(std::string("locked-joint"))).set("lock", std::move(words));
-    sets.push_back(make_set(lock, node, problems));
-  }
-  return sets;
-}
-
-/// The joints, read ones, that `--lock joint=NAME` holds while the others move.
-std::vector<int> held_joints(const Robot& robot, const std::vector<std::string>& locks,
-                             Problems& problems) {
-  std::vector<int> held;
-  for (const std::string& lock : locks) {
-    const std::string key = "joint=";
-    const int joint = lock.starts_with(key) ? find_joint(robot, lock.substr(key.size())) : -1;
-    if (joint < 0)
-      problems.list.push_back("--lock " + lock + ": expected joint=NAME of " + robot.name() +
-                              ", such as joint=" + robot.joints().front().name);
-    held.push_back(joint);
-  }
-  return held;
-}
-
 Result<Answered> of_robot(const IdentifiableArguments& arguments) {
   auto robot = load_robot(arguments.subject);
   if (!robot) return tl::unexpected(robot.error());
-  Problems problems;
-  std::vector<Set> sets;
-  std::vector<int> held;
-  if (arguments.method == "locked-joint") {
-    sets = locked_sets(arguments.locks, problems);
-  } else {
-    sets.push_back(make_set(arguments.method, set_entry(**robot, arguments), problems));
-    held = held_joints(**robot, arguments.locks, problems);
-  }
-  if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
-  if (const std::string why = lacking_body(**robot, sets); !why.empty())
-    return tl::unexpected(Failure{kWrongUsage, why});
+  const Result<std::vector<Set>> sets = method_sets(**robot, arguments.options, arguments.seed);
+  if (!sets) return tl::unexpected(sets.error());
+  const Result<std::vector<int>> held = held_joints(**robot, arguments.options);
+  if (!held) return tl::unexpected(held.error());
   Answered answered;
   answered.method = arguments.method;
-  answered.rows = arguments.count * static_cast<int>(sets.size());
+  answered.rows = arguments.count * static_cast<int>(sets->size());
   StructuralRank structure =
-      structural(**robot, sets, std::vector<char>((*robot)->parameters().size(), 1),
-                 arguments.count, arguments.seed, {}, held);
+      structural(**robot, *sets, std::vector<char>((*robot)->parameters().size(), 1),
+                 arguments.count, arguments.seed, {}, *held);
   if (!structure.unreached.empty())
     return tl::unexpected(Failure{kAnswerIsNo, structure.unreached});
   answered.rank = std::move(structure.rank);
@@ -229,10 +161,8 @@ int identifiable_command(const IdentifiableArguments& arguments) {
   if (is_folder && !arguments.for_robots.empty())
     return wrong_usage(arguments.for_robots +
                        " goes with a robot file and --method; a data set has its own rows");
-  if (arguments.unknown && !arguments.method.starts_with("plane"))
-    return wrong_usage("--unknown goes with plane and plane-normal, not with " + arguments.method);
-  if (arguments.method == "locked-joint" && arguments.locks.empty())
-    return wrong_usage("--method locked-joint needs --lock leg=N,joint=universal or spherical");
+  if (const std::string what = is_robot ? mistake(arguments.options) : ""; !what.empty())
+    return wrong_usage(what);
   const auto answered = is_robot ? of_robot(arguments) : of_data_set(arguments);
   if (!answered) return tell(answered.error());
   if (arguments.json)
@@ -240,11 +170,6 @@ int identifiable_command(const IdentifiableArguments& arguments) {
   else
     print_answered(*answered);
   return kDone;
-}
-
-std::vector<std::string> method_list() {
-  const std::vector<std::string_view> names = method_names();
-  return {names.begin(), names.end()};
 }
 
 }  // namespace
@@ -256,24 +181,18 @@ void add_identifiable(CLI::App& app, int& status) {
   command->add_option("ROBOT|DATASET", arguments->subject, "Robot file, or folder of a data set")
       ->required();
   command->add_option("--method", arguments->method, "Constraint method (with a robot file)")
-      ->check(CLI::IsMember(method_list()));
-  const std::vector<CLI::Option*> for_robots = {
-      command
-          ->add_option("--lock", arguments->locks,
-                       "Of locked-joint leg=N,joint=universal or spherical, again for each that is "
-                       "locked in turn; of others joint=NAME, held while the others move")
-          ->expected(1)
-          ->take_all(),
-      command->add_flag("--unknown", arguments->unknown, "The plane is unknown"),
-      command->add_option("--count", arguments->count, "Random configurations")
-          ->check(CLI::Range(10, 100000))
-          ->capture_default_str(),
-      command->add_option("--seed", arguments->seed, "Seed of the configurations")
-          ->capture_default_str()};
+      ->check(is_method());
+  std::vector<CLI::Option*> for_robots = add_lock_and_unknown(*command, arguments->options);
+  for_robots.push_back(command->add_option("--count", arguments->count, "Random configurations")
+                           ->check(CLI::Range(10, 100000))
+                           ->capture_default_str());
+  for_robots.push_back(command->add_option("--seed", arguments->seed, "Seed of the configurations")
+                           ->capture_default_str());
   command->add_flag("--json", arguments->json, "Print JSON alone on standard output");
   command->callback([arguments, for_robots, &status] {
     for (const CLI::Option* option : for_robots)
       if (option->count() > 0) arguments->for_robots = option->get_name();
+    if (!arguments->method.empty()) arguments->options.methods = {arguments->method};
     status = identifiable_command(*arguments);
   });
 }

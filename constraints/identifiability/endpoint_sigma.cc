@@ -24,10 +24,10 @@ struct Deviations {
   Eigen::MatrixXd unseen_shift, unseen_turn;  ///< by unseen motion, then by direction of the target
 };
 
-Deviations deviations(const EndpointQuestion& question) {
+/// `L`: the root of the covariance.
+Deviations deviations(const EndpointQuestion& question, const Eigen::MatrixXd& L) {
   const Robot& robot = *question.robot;
   const Eigen::MatrixXd& q = question.poses;
-  const Eigen::MatrixXd L = root(question.covariance);
   const Eigen::Index rows = 3 * q.rows(), motions = question.unseen.cols();
   const Eigen::Index unseen = motions + (question.point_unknown ? 3 : 0);
   Deviations D{Eigen::MatrixXd::Zero(rows, L.cols()), Eigen::MatrixXd::Zero(rows, L.cols()),
@@ -76,7 +76,7 @@ EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
   EndpointSigma result;
   const Eigen::Index poses = question.poses.rows();
   if (poses == 0) return result;
-  Deviations D = deviations(question);
+  Deviations D = deviations(question, root(question.covariance));
   result.aligned = D.unseen_shift.cols() > 0;
   if (result.aligned) align(D);
   std::vector<double> variance(static_cast<size_t>(poses));
@@ -91,6 +91,13 @@ EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
   result.max = std::sqrt(variance.back());
   result.angle = std::sqrt(D.turn.squaredNorm() / count);
   return result;
+}
+
+Eigen::MatrixXd endpoint_weight(const EndpointQuestion& question) {
+  const auto parameters = static_cast<Eigen::Index>(question.robot->parameters().size());
+  Deviations D = deviations(question, Eigen::MatrixXd::Identity(parameters, parameters));
+  if (D.unseen_shift.cols() > 0) align(D);
+  return D.shift.transpose() * D.shift / static_cast<double>(question.poses.rows());
 }
 
 }  // namespace selfcal

@@ -20,4 +20,8 @@ struct EndpointQuestion {
 /// of how the endpoint is turned, of which the same motions of the world are removed.
 EndpointSigma endpoint_sigma(const EndpointQuestion& question);
 
+/// A, parameters x parameters, with which the rms of any covariance C is sqrt(trace(A C)); that of
+/// the question is not looked at. There must be poses.
+Eigen::MatrixXd endpoint_weight(const EndpointQuestion& question);
+
 }  // namespace selfcal

@@ -8,8 +8,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kNoise = 2e-5;       // m, where a set does not say its own
-constexpr double kPlaceVariance = 1;  // m^2, rad^2: where a surface or socket lies is not known
+constexpr double kNoise = 2e-5;  // m, where a set does not say its own
 
 /// What is unknown of a surface or a socket.
 struct PlaceUnknowns {

@@ -20,6 +20,9 @@ struct PossibleTouch {
   Eigen::Vector3d outward;  ///< of a surface (world, unit)
 };
 
+/// 1 sigma² of where a surface or socket lies, or how it is turned, that is not known (m², rad²).
+inline constexpr double kPlaceVariance = 1;
+
 /// 1 sigma of a touch of the set as its data sheet says (m), 20 um where it says none.
 double touch_noise(const Set& set);
 

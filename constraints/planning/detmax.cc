@@ -1,7 +1,3 @@
-// With C = (WᵀW)^-1 of the chosen, a candidate w (k x m) changes the determinant by the factor
-//   det(I + w C wᵀ) when added,   det(I - w C wᵀ) when removed,
-// and C by  -+ G S^-1 Gᵀ,  G = C wᵀ,  S = I +- w G. Of every candidate only its w C wᵀ is kept, and
-// updated by the same rule: an exchange costs m k² for each candidate.
 #include "constraints/planning/detmax.h"
 
 #include <algorithm>
@@ -9,107 +5,108 @@
 #include <numeric>
 
 #include "constraints/identifiability/observability.h"
-#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
-// Of the columns' mean square: lets a start that does not see everything be exchanged away.
-constexpr double kRidge = 1e-10;
-constexpr double kGain = 1e-9;  // a smaller gain of the determinant is rounding
-constexpr int kAfresh = 50;     // exchanges after which C is made anew
+constexpr double kGain = 1e-9;        // a smaller relative gain is rounding
+constexpr int kExchangesAfresh = 25;  // exchanges after which the design is made anew
+
+/// A merit that is so much better counts. Merits are logarithms or, negative, variances.
+bool gains(double merit, double over) {
+  return merit > over + kGain * std::max(1e-3, std::abs(over));
+}
 
 class Search {
  public:
-  Search(const std::vector<Eigen::MatrixXd>& candidates, int count, std::mt19937_64& random)
-      : rows_(candidates), in_(candidates.size(), 0) {
-    scale_columns();
-    std::vector<int> order(candidates.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), random);
-    for (int i = 0; i < count; ++i) in_[order[i]] = 1;
-  }
+  Search(Design& design, const Progress& progress) : design_(design), progress_(progress) {}
 
-  int run() {
-    for (int exchanges = 0;; ++exchanges) {
-      if (exchanges % kAfresh == 0) start_afresh();
-      const auto [added, gain] = best(+1);
-      if (added < 0) return exchanges;
-      change(added, +1);
-      const auto [removed, loss] = best(-1);
-      const bool better = gain * loss > 1 + kGain;
-      change(better ? removed : added, -1);
-      if (!better) return exchanges;
-    }
+  int add_and_drop() {
+    while (add_one_drop_one()) count();
+    design_.refresh();
+    return exchanges_;
   }
-
-  std::vector<int> chosen() const {
-    std::vector<int> list;
-    for (size_t i = 0; i < in_.size(); ++i)
-      if (in_[i]) list.push_back(static_cast<int>(i));
-    return list;
+  int exchange_pairs() {
+    while (exchange_best_pair()) count();
+    design_.refresh();
+    return exchanges_;
   }
 
  private:
-  /// Units of the columns do not change the order of determinants, but the rounding.
-  void scale_columns() {
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(rows_.front().cols());
-    for (const Eigen::MatrixXd& w : rows_) squares += w.colwise().squaredNorm().transpose();
-    for (Eigen::MatrixXd& w : rows_)
-      for (Eigen::Index c = 0; c < squares.size(); ++c)
-        if (squares[c] > 0) w.col(c) /= std::sqrt(squares[c] / static_cast<double>(rows_.size()));
+  void count() {
+    if (++exchanges_ % kExchangesAfresh == 0) design_.refresh();
+    if (progress_)
+      progress_("exchanging configurations",
+                exchanges_ / (exchanges_ + static_cast<double>(design_.chosen().size())));
   }
 
-  void start_afresh() {
-    const Eigen::Index m = rows_.front().cols();
-    Eigen::MatrixXd information = kRidge * Eigen::MatrixXd::Identity(m, m);
-    for (const int i : chosen()) information += rows_[i].transpose() * rows_[i];
-    C_ = inverse_of_positive(information);
-    seen_.clear();
-    for (const Eigen::MatrixXd& w : rows_) seen_.push_back(w * C_ * w.transpose());
+  bool add_one_drop_one() {
+    const double before = design_.merit();
+    const int added = design_.best(+1).first;
+    if (added < 0) return false;
+    design_.change(added, +1);
+    const auto [removed, merit] = design_.best(-1);
+    const bool better = removed >= 0 && gains(merit, before);
+    design_.change(better ? removed : added, -1);
+    return better;
   }
 
-  /// The candidate outside whose addition (+1), or inside whose removal (-1), leaves the largest
-  /// determinant, and the factor by which it changes; -1 without one.
-  std::pair<int, double> best(double sign) const {
-    std::pair<int, double> best{-1, 0};
-    for (size_t i = 0; i < rows_.size(); ++i) {
-      if (in_[i] == (sign > 0)) continue;
-      const double factor = changed(i, sign).determinant();
-      if (best.first < 0 || factor > best.second) best = {static_cast<int>(i), factor};
+  bool exchange_best_pair() {
+    const double before = design_.merit();
+    double most = before;
+    int out = -1, in = -1;
+    for (const int each : design_.chosen()) {
+      const auto [instead, merit] = design_.best_instead_of(each);
+      if (instead < 0 || !gains(merit, most)) continue;
+      most = merit;
+      out = each;
+      in = instead;
     }
-    return best;
+    if (out < 0) return false;
+    design_.change(in, +1);
+    design_.change(out, -1);
+    if (gains(design_.merit(), before)) return true;
+    design_.change(out, +1);
+    design_.change(in, -1);
+    return false;
   }
 
-  Eigen::MatrixXd changed(size_t i, double sign) const {
-    return Eigen::MatrixXd::Identity(seen_[i].rows(), seen_[i].cols()) + sign * seen_[i];
-  }
-
-  void change(int which, double sign) {
-    const Eigen::MatrixXd G = C_ * rows_[which].transpose();
-    const Eigen::MatrixXd root = solve_lower(cholesky_root(changed(which, sign)), G.transpose());
-    C_ -= sign * root.transpose() * root;
-    for (size_t i = 0; i < rows_.size(); ++i) {
-      const Eigen::MatrixXd by = root * rows_[i].transpose();
-      seen_[i] -= sign * by.transpose() * by;
-    }
-    in_[which] = sign > 0;
-  }
-
-  std::vector<Eigen::MatrixXd> rows_;  ///< columns of mean square 1
-  std::vector<char> in_;
-  Eigen::MatrixXd C_;
-  std::vector<Eigen::MatrixXd> seen_;  ///< w C wᵀ
+  Design& design_;
+  const Progress& progress_;
+  int exchanges_ = 0;
 };
 
 }  // namespace
 
+std::vector<int> random_choice(int candidates, int count, std::mt19937_64& random) {
+  std::vector<int> order(static_cast<std::size_t>(candidates));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), random);
+  order.resize(static_cast<std::size_t>(count));
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+int add_and_drop(Design& design, const Progress& progress) {
+  return Search(design, progress).add_and_drop();
+}
+
+int exchange_pairs(Design& design, const Progress& progress) {
+  return Search(design, progress).exchange_pairs();
+}
+
+int exchange(Design& design, const Progress& progress) {
+  const int exchanges = add_and_drop(design, progress);
+  return exchanges + exchange_pairs(design, progress);
+}
+
 Exchange detmax(const std::vector<Eigen::MatrixXd>& candidates, int count,
                 std::mt19937_64& random) {
-  Search search(candidates, count, random);
+  Design design(candidates, {});
+  design.choose(random_choice(static_cast<int>(candidates.size()), count, random));
   Exchange result;
-  result.exchanges = search.run();
-  result.chosen = search.chosen();
+  result.exchanges = exchange(design);
+  result.chosen = design.chosen();
   Eigen::Index at = 0;
   for (const int i : result.chosen) at += candidates[i].rows();
   Eigen::MatrixXd W(at, candidates.front().cols());

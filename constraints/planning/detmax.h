@@ -1,8 +1,9 @@
-// DETMAX: of many possible measurements, the few that see the parameters best together.
+// DETMAX: of many possible measurements, the few that together are the best.
 //
 // Exchange algorithm of Mitchell (Technometrics 16, 1974) as Kamali et al. use it: from a random
 // choice, the best of those left is added and then the worst of all removed, until the one removed
-// is the one just added. Best is what the observability index asks for,
+// is the one just added. Then the best exchange of any pair (Fedorov 1972) as long as one gains.
+// Best is what the objective says; by default the observability index
 //   O1 = (s_1 ... s_m)^(1/m) / sqrt(n),   s_i the singular values of the n chosen rows of W,
 // which det(WᵀW) = (s_1 ... s_m)² orders for choices of one size.
 #pragma once
@@ -10,6 +11,9 @@
 #include <Eigen/Dense>
 #include <random>
 #include <vector>
+
+#include "constraints/planning/design.h"
+#include "constraints/progress.h"
 
 namespace selfcal {
 
@@ -19,9 +23,18 @@ struct Exchange {
   int exchanges = 0;
 };
 
-/// `count` of the candidates, at least 1 and at most all of them. A candidate is what one
-/// measurement adds to W: k x m (k may differ), whitened, of parameters that all
-/// candidates together determine.
+/// `count` of `candidates` at random, ascending.
+std::vector<int> random_choice(int candidates, int count, std::mt19937_64& random);
+
+/// Mitchell's and Fedorov's exchanges of the chosen of `design` for better ones, as many; return
+/// how often.
+int add_and_drop(Design& design, const Progress& progress = {});
+int exchange_pairs(Design& design, const Progress& progress = {});
+/// The one, then the other.
+int exchange(Design& design, const Progress& progress = {});
+
+/// `count` of the candidates, at least 1 and at most all of them, by O1 from a random choice.
+/// Columns are parameters that all candidates together determine.
 Exchange detmax(const std::vector<Eigen::MatrixXd>& candidates, int count, std::mt19937_64& random);
 
 }  // namespace selfcal

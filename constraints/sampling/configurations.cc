@@ -1,6 +1,7 @@
 // Newton steps of least length on a method's residual from kLanes random starts at once.
 #include "constraints/sampling/configurations.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/methods/unit_normal.h"
@@ -10,12 +11,9 @@
 namespace selfcal {
 namespace {
 
-constexpr int kNewtonSteps = 40;
-constexpr double kLongestStep = 0.5;  // rad or m
-constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
-constexpr int kEnough = 8;            // lanes that reach it before the others are given up
-constexpr double kSame = 1e-6;        // farther apart, two configurations differ (rad, m)
-constexpr int kTries = 60;            // blocks of starts before a row is given up
+constexpr int kEnough = 8;      // lanes that reach the residual before the others are given up
+constexpr double kSame = 1e-6;  // farther apart, two configurations differ (rad, m)
+constexpr int kTries = 60;      // blocks of starts before a row is given up
 
 class Sampler {
  public:
@@ -216,28 +214,8 @@ class Sampler {
       robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
                     nullptr);
     NewtonStep newton(robot_, data_, sampled_.truth, row, before, held);
-    Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
-    for (int step = 0; step < kNewtonSteps; ++step) {
-      newton.evaluate(block);
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const Eigen::VectorXd miss = newton.miss(lane, wanted);
-        left[lane] = newton.closes(lane) ? miss.norm() : HUGE_VAL;
-        if (!newton.closes(lane)) continue;  // lost
-        if (left[lane] < kExact / 10) continue;
-        Eigen::VectorXd dq = newton.step(lane, miss);
-        if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
-        block.q.row(lane) += dq.transpose().array();
-      }
-      if ((left < kExact / 10).count() >= kEnough) break;
-    }
-    std::vector<int> reached;
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (left[lane] < kExact) reached.push_back(lane);
-    // Once more: down to rounding, by which a structural rank is judged.
-    newton.evaluate(block);
-    for (const int lane : reached)
-      block.q.row(lane) += newton.step(lane, newton.miss(lane, wanted)).transpose().array();
-    robot_.locate(block, xi_, method.body(), X, nullptr);
+    std::vector<int> reached = newton.reach(wanted, kEnough, block);
+    X = newton.X();
     return reached;
   }
 
@@ -259,6 +237,28 @@ class Sampler {
 Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
                     const std::vector<SampleRequest>& requests, Random& random, DataSet& data) {
   return Sampler(robot, xi, random, data).run(requests);
+}
+
+void measure_rows(const Robot& robot, const State& truth, const std::vector<int>& rows,
+                  DataSet& data) {
+  Locations X;
+  Location before;
+  for (std::size_t first = 0; first < rows.size();) {
+    const int set = data.rows.set[rows[first]];
+    const Method& method = *data.sets[set].method;
+    ConfigurationBlock block{Eigen::ArrayXXd(kLanes, data.rows.q.cols()), 0};
+    while (block.count < kLanes && first + block.count < rows.size() &&
+           data.rows.set[rows[first + block.count]] == set)
+      ++block.count;
+    for (int lane = 0; lane < kLanes; ++lane)
+      block.q.row(lane) = data.rows.q.row(rows[first + std::min(lane, block.count - 1)]).array();
+    robot.locate(block, truth.xi, method.body(), X, nullptr);
+    for (int lane = 0; lane < block.count; ++lane) {
+      method.measure(X.at(lane), before, truth.nuisance[set], data.rows, rows[first + lane]);
+      before = X.at(lane);
+    }
+    first += block.count;
+  }
 }
 
 }  // namespace selfcal

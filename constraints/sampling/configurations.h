@@ -50,4 +50,9 @@ struct Sampled {
 Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
                     const std::vector<SampleRequest>& requests, Random& random, DataSet& data);
 
+/// Writes into `rows` of `data`, which a robot can take, what perfect instruments read there; rows
+/// that a paired method compares come after one another.
+void measure_rows(const Robot& robot, const State& truth, const std::vector<int>& rows,
+                  DataSet& data);
+
 }  // namespace selfcal

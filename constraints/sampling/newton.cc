@@ -1,8 +1,17 @@
 #include "constraints/sampling/newton.h"
 
+#include <cmath>
+
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
+namespace {
+
+constexpr int kNewtonSteps = 40;
+constexpr double kLongestStep = 0.5;  // rad or m
+constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
+
+}  // namespace
 
 NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
                        const Locations& before, const std::vector<int>& held)
@@ -52,6 +61,33 @@ Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
     for (Eigen::Index c = 0; c < 6; ++c)
       GJ.row(a) += out_.G_now(lane, 6 * a + c) * J_.row(c * kLanes + lane);
   return least_squares(GJ, miss);
+}
+
+std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
+                                   ConfigurationBlock& block) {
+  Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
+  for (int at = 0; at < kNewtonSteps; ++at) {
+    evaluate(block);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Eigen::VectorXd off = miss(lane, wanted);
+      left[lane] = closes(lane) ? off.norm() : HUGE_VAL;
+      if (!closes(lane)) continue;  // lost
+      if (left[lane] < kExact / 10) continue;
+      Eigen::VectorXd dq = step(lane, off);
+      if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
+      block.q.row(lane) += dq.transpose().array();
+    }
+    if ((left < kExact / 10).count() >= enough) break;
+  }
+  std::vector<int> reached;
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (left[lane] < kExact) reached.push_back(lane);
+  // Once more: down to rounding, by which a structural rank is judged.
+  evaluate(block);
+  for (const int lane : reached)
+    block.q.row(lane) += step(lane, miss(lane, wanted)).transpose().array();
+  robot_.locate(block, truth_.xi, data_.sets[set_].method->body(), X_, nullptr);
+  return reached;
 }
 
 }  // namespace selfcal

@@ -29,6 +29,10 @@ class NewtonStep {
   /// dq of a lane (rad or m).
   Eigen::VectorXd step(int lane, const Eigen::VectorXd& miss) const;
 
+  /// Moves the lanes of `block` to where the residual is `wanted`, down to rounding, until `enough`
+  /// of them are there; returns those, ascending, with X() where they then are.
+  std::vector<int> reach(const Eigen::VectorXd& wanted, int enough, ConfigurationBlock& block);
+
  private:
   const Robot& robot_;
   const DataSet& data_;

@@ -39,23 +39,27 @@ Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
 
 class RowReader {
  public:
-  RowReader(const Robot& robot, DataSet& data)
+  /// `configurations`: rows need no measurement.
+  RowReader(const Robot& robot, DataSet& data, bool configurations)
       : data_(data),
+        configurations_(configurations),
         joints_(static_cast<int>(robot.joints().size())),
         labels_(data.sets),
         numbers_(robot) {}
 
   std::optional<RowFault> take_header(Cells names) {
-    auto layout = read_header(names, joints_, measured_columns(data_.sets));
+    auto layout =
+        read_header(names, joints_,
+                    configurations_ ? std::vector<MeasuredColumn>() : measured_columns(data_.sets));
     if (!layout) return layout.error();
     layout_ = std::move(*layout);
     labels_.begin(layout_);
     numbers_.begin(layout_);
     for (const Set& set : data_.sets) {
       std::vector<Need>& needs = needs_.emplace_back();
-      for (const std::string& column : set.method->columns()) {
-        needs.push_back({column, layout_.find(column)});
-      }
+      for (const std::string& column : set.method->columns())
+        if (!configurations_ || column == "group") needs.push_back({column, layout_.find(column)});
+      if (configurations_) continue;
       for (const MeasuredColumn& column : set.method->measures())
         needs.push_back({column.name, layout_.find(column.name), set.method->paired()});
     }
@@ -159,6 +163,7 @@ class RowReader {
   }
 
   DataSet& data_;
+  const bool configurations_;
   const int joints_;
   Layout layout_;
   LabelReader labels_;
@@ -171,19 +176,32 @@ class RowReader {
   std::vector<char> check_;
 };
 
-}  // namespace
-
-Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
-                               std::vector<std::string>& notices) {
-  RowReader reader(robot, data);
+Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
   Result<void> read = read_csv(
       path, [&](Cells names) { return reader.take_header(names); },
       [&](Cells cells, int row) { return reader.take_row(cells, row); });
   if (!read) return read;
   if (const auto fault = reader.fault()) return bad_input(path.string() + ": " + *fault);
+  return {};
+}
+
+}  // namespace
+
+Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
+                               std::vector<std::string>& notices) {
+  RowReader reader(robot, data, false);
+  if (Result<void> done = read_rows(path, reader); !done) return done;
   for (const std::string& notice : reader.notices()) {
     notices.push_back(path.string() + ": " + notice);
   }
+  reader.hand_over();
+  return {};
+}
+
+Result<void> read_configurations(const std::filesystem::path& path, const Robot& robot,
+                                 DataSet& data) {
+  RowReader reader(robot, data, true);
+  if (Result<void> done = read_rows(path, reader); !done) return done;
   reader.hand_over();
   return {};
 }

@@ -18,4 +18,9 @@ namespace selfcal {
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
                                std::vector<std::string>& notices);
 
+/// The same of rows at which nothing need have been measured: set, group and readings are asked
+/// for, columns that methods bring along are passed over.
+Result<void> read_configurations(const std::filesystem::path& path, const Robot& robot,
+                                 DataSet& data);
+
 }  // namespace selfcal

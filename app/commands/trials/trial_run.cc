@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "app/commands/subcommand.h"
-#include "app/commands/trial.h"
+#include "app/commands/trials/trial.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/trials/baselines.h"
 #include "io/files/data_set_file.h"

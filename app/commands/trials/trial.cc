@@ -1,5 +1,5 @@
 // Arguments of selfcal trial seal, run and score.
-#include "app/commands/trial.h"
+#include "app/commands/trials/trial.h"
 
 #include <memory>
 

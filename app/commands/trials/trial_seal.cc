@@ -6,7 +6,7 @@
 #include <set>
 
 #include "app/commands/subcommand.h"
-#include "app/commands/trial.h"
+#include "app/commands/trials/trial.h"
 #include "app/report/progress_line.h"
 #include "io/files/data_set_file.h"
 #include "io/files/data_set_writer.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/trial.h"
+#include "app/commands/trials/trial.h"
 #include "io/files/file.h"
 
 namespace selfcal {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/commands/subcommand.h"
-#include "app/commands/trial.h"
+#include "app/commands/trials/trial.h"
 #include "io/files/file.h"
 
 namespace selfcal {

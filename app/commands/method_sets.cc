@@ -1,0 +1,143 @@
+#include "app/commands/method_sets.h"
+
+#include <algorithm>
+#include <memory>
+#include <sstream>
+
+#include "constraints/methods/unit_normal.h"
+#include "constraints/sampling/random_poses.h"
+
+namespace selfcal {
+namespace {
+
+const char* const kLocked = "locked-joint";
+
+bool locks_legs(const MethodOptions& options) {
+  return std::ranges::count(options.methods, kLocked) > 0;
+}
+
+/// The endpoint at random configurations, lane by lane.
+Locations somewhere(const Robot& robot, unsigned long long seed) {
+  ConfigurationBlock block;
+  block.q = random_poses(robot, nullptr, kLanes, seed).array();
+  block.count = kLanes;
+  Locations X;
+  robot.locate(block, nominal_values(robot), Body::endpoint, X, nullptr);
+  return X;
+}
+
+/// Coefficients of a plane with normal `n` through the endpoint at a random configuration.
+Eigen::Vector3d plane_through(const Robot& robot, const Eigen::Vector3d& n,
+                              unsigned long long seed) {
+  const Locations X = somewhere(robot, seed);
+  int farthest = 0;  // a plane through the origin has no coefficients a b c
+  for (int lane = 1; lane < kLanes; ++lane)
+    if (std::abs(n.dot(X.p(lane))) > std::abs(n.dot(X.p(farthest)))) farthest = lane;
+  return -n / (0.6 * n.dot(X.p(farthest)));
+}
+
+Node with_noise(Node node, const MethodOptions& options) {
+  if (options.noise > 0) node.set("noise", Node::of(options.noise));
+  if (options.noise_angle > 0) node.set("noise_angle", Node::of(options.noise_angle));
+  return node;
+}
+
+/// The entry of the `place`-th set.
+Node set_entry(const Robot& robot, const MethodOptions& options, std::size_t place,
+               unsigned long long seed) {
+  const std::string& method = options.methods[place];
+  Node node = Node::map();
+  node.set("method", Node::of(method));
+  if (options.unknown) return with_noise(std::move(node), options);
+  Random random(place);
+  const Eigen::Vector3d n =
+      place == 0 ? Eigen::Vector3d(0.36, -0.48, 0.8) : random_direction(random);
+  if (method == "plane-normal") node.set("normal", Node::of(Eigen::VectorXd(n)));
+  if (method == "plane")
+    node.set("plane", Node::of(Eigen::VectorXd(plane_through(robot, n, seed))));
+  if (method == "constraint-link") node.set("length", Node::of(somewhere(robot, seed).p(0).norm()));
+  return with_noise(std::move(node), options);
+}
+
+Set locked_set(const std::string& lock, const MethodOptions& options, Problems& problems) {
+  const Place option{std::make_shared<const std::string>("--lock " + lock)};
+  Node words = Node::map();
+  words.place = option;
+  std::istringstream text(lock);
+  for (std::string word; std::getline(text, word, ',');) {
+    const size_t equals = word.find('=');
+    Node value = Node::of(equals == std::string::npos ? std::string() : word.substr(equals + 1));
+    value.place = option;
+    words.set(word.substr(0, equals), std::move(value));
+  }
+  Node node = Node::map();
+  node.place = option;
+  node.set("method", Node::of(std::string(kLocked))).set("lock", std::move(words));
+  return make_set(lock, with_noise(std::move(node), options), problems);
+}
+
+}  // namespace
+
+CLI::IsMember is_method() {
+  const std::vector<std::string_view> names = method_names();
+  return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+}
+
+std::vector<CLI::Option*> add_lock_and_unknown(CLI::App& command, MethodOptions& options) {
+  return {command
+              .add_option("--lock", options.locks,
+                          "Of locked-joint leg=N,joint=universal or spherical, again for each that "
+                          "is locked in turn; of others joint=NAME, held while the others move")
+              ->expected(1)
+              ->take_all(),
+          command.add_flag("--unknown", options.unknown, "The plane is unknown")};
+}
+
+std::string mistake(const MethodOptions& options) {
+  const bool planes = std::ranges::any_of(
+      options.methods, [](const std::string& each) { return each.starts_with("plane"); });
+  if (options.unknown && !planes)
+    return "--unknown goes with plane and plane-normal, not with " + options.methods.front();
+  if (locks_legs(options) && options.locks.empty())
+    return "--method locked-joint needs --lock leg=N,joint=universal or spherical";
+  return {};
+}
+
+Result<std::vector<int>> held_joints(const Robot& robot, const MethodOptions& options) {
+  std::vector<int> held;
+  if (locks_legs(options)) return held;
+  for (const std::string& lock : options.locks) {
+    const std::string key = "joint=";
+    const int joint = lock.starts_with(key) ? find_joint(robot, lock.substr(key.size())) : -1;
+    if (joint < 0)
+      return tl::unexpected(
+          Failure{kWrongUsage, "--lock " + lock + ": expected joint=NAME of " + robot.name() +
+                                   ", such as joint=" + robot.joints().front().name});
+    held.push_back(joint);
+  }
+  return held;
+}
+
+Result<std::vector<Set>> method_sets(const Robot& robot, const MethodOptions& options,
+                                     unsigned long long seed) {
+  Problems problems;
+  std::vector<Set> sets;
+  for (std::size_t i = 0; i < options.methods.size(); ++i) {
+    const std::string& method = options.methods[i];
+    if (method == kLocked) {
+      for (const std::string& lock : options.locks)
+        sets.push_back(locked_set(lock, options, problems));
+      continue;
+    }
+    const auto before = std::count(
+        options.methods.begin(), options.methods.begin() + static_cast<std::ptrdiff_t>(i), method);
+    sets.push_back(make_set(before == 0 ? method : method + std::to_string(before + 1),
+                            set_entry(robot, options, i, seed + i), problems));
+  }
+  if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
+  if (const std::string why = lacking_body(robot, sets); !why.empty())
+    return tl::unexpected(Failure{kWrongUsage, why});
+  return sets;
+}
+
+}  // namespace selfcal

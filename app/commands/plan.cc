@@ -1,0 +1,174 @@
+// selfcal plan ROBOT --method METHOD: which configurations to measure at.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/method_sets.h"
+#include "app/commands/subcommand.h"
+#include "app/report/plan_words.h"
+#include "app/report/progress_line.h"
+#include "io/files/file.h"
+#include "io/files/observations_csv.h"
+#include "io/files/observations_text.h"
+#include "io/files/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kTurnSpeed = 1, kSlideSpeed = 0.25;  // rad/s, m/s, where none is given
+
+struct PlanArguments {
+  std::string robot, start, out, criterion = "sigma";
+  MethodOptions options;
+  int count = 30, candidates = 1000, groups = 2;
+  std::vector<double> speed, workspace;
+  double target = 1e-3;
+  unsigned long long seed = 1;
+  bool json = false;
+};
+
+/// By joint; nothing where there are neither none, one nor one for each joint.
+std::optional<Eigen::VectorXd> speeds(const Robot& robot, const std::vector<double>& given) {
+  const std::vector<Joint>& joints = robot.joints();
+  if (given.size() > 1 && given.size() != joints.size()) return std::nullopt;
+  Eigen::VectorXd speed(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    speed[static_cast<Eigen::Index>(j)] =
+        given.empty() ? (joints[j].quantity == Quantity::angle ? kTurnSpeed : kSlideSpeed)
+                      : given[given.size() == 1 ? 0 : j];
+  return speed;
+}
+
+Workspace workspace_of(const std::vector<double>& corners) {
+  Workspace workspace;
+  if (corners.empty()) return workspace;
+  const Eigen::Map<const Eigen::Vector3d> a(corners.data()), b(corners.data() + 3);
+  workspace.box = Eigen::AlignedBox3d(a.cwiseMin(b), a.cwiseMax(b));
+  return workspace;
+}
+
+Result<PlanRequest> request_of(const Robot& robot, const PlanArguments& arguments) {
+  PlanRequest request;
+  auto sets = method_sets(robot, arguments.options, arguments.seed);
+  if (!sets) return tl::unexpected(sets.error());
+  request.pool.sets = *std::move(sets);
+  if (!arguments.start.empty()) {
+    request.pool.taken.sets = request.pool.sets;
+    if (const auto read = read_configurations(arguments.start, robot, request.pool.taken); !read)
+      return tl::unexpected(read.error());
+    request.pool.sets = request.pool.taken.sets;  // with the names of the groups
+  }
+  const auto speed = speeds(robot, arguments.speed);
+  if (!speed)
+    return tl::unexpected(Failure{kWrongUsage, "--speed takes one number, or one for each of the " +
+                                                   std::to_string(robot.joints().size()) +
+                                                   " joints"});
+  request.speed = *speed;
+  const Result<std::vector<int>> held = held_joints(robot, arguments.options);
+  if (!held) return tl::unexpected(held.error());
+  request.pool.held = *held;
+  request.count = arguments.count;
+  request.pool.candidates = arguments.candidates;
+  request.pool.groups = arguments.groups;
+  request.pool.seed = arguments.seed;
+  request.criterion = *criterion_of(arguments.criterion);
+  request.workspace = workspace_of(arguments.workspace);
+  return request;
+}
+
+/// The rows without what an instrument will only read there.
+std::string rows_text(const ConfigurationPlan& plan) {
+  DataSet data = plan.data;
+  data.rows.position.setConstant(std::nan(""));
+  data.rows.orientation.setConstant(std::nan(""));
+  data.rows.measured.clear();
+  return observations_text(data);
+}
+
+int plan_command(const PlanArguments& arguments) {
+  if (const std::string what = mistake(arguments.options); !what.empty()) return wrong_usage(what);
+  if (arguments.candidates < arguments.count)
+    return wrong_usage("--candidates must be at least --count");
+  const auto robot = load_robot(arguments.robot);
+  if (!robot) return tell(robot.error());
+  const Result<PlanRequest> request = request_of(**robot, arguments);
+  if (!request) return tell(request.error());
+  ConfigurationPlan plan;
+  {
+    ProgressLine line;
+    plan =
+        plan_configurations(**robot, values(**robot), *request,
+                            [&](std::string_view stage, double share) { line.show(stage, share); });
+  }
+  if (!plan.problem.empty()) return tell({kAnswerIsNo, plan.problem});
+  if (!arguments.out.empty())
+    if (const auto written = write_file_atomically(arguments.out, rows_text(plan)); !written)
+      return tell(written.error());
+  if (arguments.json)
+    std::printf("%s\n", plan_json(**robot, *request, plan, arguments.target).dump(1).c_str());
+  else
+    std::fputs(plan_words(**robot, *request, plan, arguments.target).c_str(), stdout);
+  return kDone;
+}
+
+std::vector<std::string> criterion_list() {
+  const std::vector<std::string_view> names = criterion_names();
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command = app.add_subcommand("plan", "Choose the configurations to measure at");
+  command->add_option("ROBOT", arguments->robot, "Robot file")->required();
+  command
+      ->add_option("--method", arguments->options.methods,
+                   "Constraint method; again for each further surface, socket or instrument")
+      ->check(is_method())
+      ->expected(1)
+      ->take_all()
+      ->required();
+  add_lock_and_unknown(*command, arguments->options);
+  command->add_option("--count", arguments->count, "Configurations to choose")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--candidates", arguments->candidates, "Configurations to choose from")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--criterion", arguments->criterion, "What is made best")
+      ->check(CLI::IsMember(criterion_list()))
+      ->capture_default_str();
+  command
+      ->add_option("--workspace", arguments->workspace,
+                   "Box where the end position counts: X Y Z X Y Z of two corners (m)")
+      ->expected(6);
+  command->add_option("--start", arguments->start,
+                      "CSV of configurations that are measured already");
+  command->add_option("--groups", arguments->groups, "Sockets or nests of a method that has such")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--noise", arguments->options.noise,
+                   "1 sigma of a measured length (m; default 2e-5)")
+      ->check(CLI::Range(1e-9, 0.1));
+  command
+      ->add_option("--noise-angle", arguments->options.noise_angle,
+                   "1 sigma of a measured angle (rad; default 2e-5)")
+      ->check(CLI::Range(1e-9, 0.1));
+  command
+      ->add_option("--speed", arguments->speed,
+                   "Joint speeds, one or one each (rad/s, m/s; default 1 and 0.25)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--target", arguments->target, "End-position accuracy wanted (m, 1 sigma)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Seed of all that is drawn")
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "CSV file for the configurations");
+  command->add_flag("--json", arguments->json, "Print JSON alone on standard output");
+  command->callback([arguments, &status] { status = plan_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,155 @@
+#include "constraints/planning/configuration_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "constraints/planning/detmax.h"
+#include "constraints/planning/refinement.h"
+#include "constraints/planning/tour.h"
+#include "constraints/statistics.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kRandomChoices = 25;           // of which the median is told
+constexpr std::size_t kFew = 200;            // units of which each is left out exactly
+constexpr std::size_t kRemovalsAfresh = 20;  // of more, after so many
+
+std::vector<Unit> some(const std::vector<Unit>& units, const std::vector<int>& which) {
+  std::vector<Unit> list;
+  for (const int each : which) list.push_back(units[static_cast<std::size_t>(each)]);
+  return list;
+}
+
+/// The median of each figure over random choices.
+PlanFigures random_figures(const PlanSystem& system, const Pool& pool, int count, Random& random) {
+  std::vector<PlanFigures> all;
+  for (int i = 0; i < kRandomChoices; ++i)
+    all.push_back(system.figures(
+        pool.data,
+        some(pool.units, random_choice(static_cast<int>(pool.units.size()), count, random))));
+  const auto of = [&](auto get) {
+    std::vector<double> values;
+    for (PlanFigures& each : all) values.push_back(get(each));
+    return median(values);
+  };
+  PlanFigures result;
+  result.sigma = of([](const PlanFigures& f) { return f.sigma; });
+  for (double Observability::*index :
+       {&Observability::condition, &Observability::o1, &Observability::o2, &Observability::o3,
+        &Observability::o4, &Observability::o5})
+    result.observability.*index = of([&](const PlanFigures& f) { return f.observability.*index; });
+  return result;
+}
+
+/// The rows of the units alone, in their order, and the units as they then are.
+DataSet rows_alone(const DataSet& data, std::vector<Unit>& units) {
+  DataSet alone = data;
+  std::vector<int> rows;
+  for (Unit& unit : units)
+    for (int& row : unit) {
+      rows.push_back(row);
+      row = static_cast<int>(rows.size()) - 1;
+    }
+  alone.rows = taken(data.rows, rows);
+  return alone;
+}
+
+std::vector<Visit> visits_of(const DataSet& data, const std::vector<Unit>& units) {
+  std::vector<Visit> list;
+  for (const Unit& unit : units)
+    list.push_back(
+        {data.rows.q.row(unit.front()).transpose(), data.rows.q.row(unit.back()).transpose()});
+  return list;
+}
+
+std::vector<double> curve_of(const PlanSystem& system, const ConfigurationPlan& plan) {
+  Design design(system.rows(plan.data, plan.units, Criterion::sigma),
+                system.objective(Criterion::sigma));
+  std::vector<int> all(plan.units.size());
+  std::iota(all.begin(), all.end(), 0);
+  design.choose(all);
+  std::vector<double> sigma{std::sqrt(-design.merit())};
+  for (std::size_t left = all.size(); left > 0; --left) {
+    design.change(design.best(-1).first, -1);
+    if (left < kFew || left % kRemovalsAfresh == 0) design.refresh();
+    sigma.push_back(std::sqrt(-design.merit()));
+  }
+  std::reverse(sigma.begin(), sigma.end());
+  return sigma;
+}
+
+/// Pairs of a paired method are groups of their own, named in the order of visiting.
+void name_pairs(const std::vector<Unit>& units, DataSet& data) {
+  for (Set& set : data.sets)
+    if (set.method->paired()) set.groups.clear();
+  for (const Unit& unit : units) {
+    Set& set = data.sets[data.rows.set[unit.front()]];
+    if (!set.method->paired()) continue;
+    for (const int row : unit) data.rows.group[row] = static_cast<int>(set.groups.size());
+    set.groups.push_back("p" + std::to_string(set.groups.size() + 1));
+  }
+}
+
+void order_visits(const Eigen::VectorXd& speed, Random& random, ConfigurationPlan& plan) {
+  const std::vector<Visit> visits = visits_of(plan.data, plan.units);
+  std::vector<int> order(visits.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), random);
+  plan.way_random = way_time(visits, order, speed);
+  order = short_tour(visits, speed);
+  plan.way = way_time(visits, order, speed);
+  plan.units = some(plan.units, order);
+  plan.data = rows_alone(plan.data, plan.units);
+  name_pairs(plan.units, plan.data);
+}
+
+}  // namespace
+
+double ConfigurationPlan::rest(double sigma) const {
+  return std::sqrt(std::max(0.0, sigma * sigma - sigma_beyond * sigma_beyond));
+}
+
+ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd& xi,
+                                      const PlanRequest& request, const Progress& progress) {
+  ConfigurationPlan plan;
+  if (progress) progress("drawing configurations", 0);
+  Pool pool = draw_pool(robot, xi, request.pool);
+  if (static_cast<int>(pool.units.size()) < request.count) {
+    plan.problem = pool.unreached;
+    return plan;
+  }
+  if (progress) progress("looking at configurations", 0);
+  const PlanSystem system(robot, request.pool, request.workspace, request.count, pool);
+  plan.problem = system.lacking();
+  if (static_cast<int>(pool.units.size()) < request.count)
+    plan.problem = "the robot cannot take enough of the configurations that were drawn";
+  if (!plan.problem.empty()) return plan;
+  plan.candidates = static_cast<int>(pool.units.size());
+  plan.parameters = system.parameters();
+  plan.aligned = system.aligned();
+  Random random(request.pool.seed);
+  plan.random = random_figures(system, pool, request.count, random);
+
+  const Objective objective = system.objective(request.criterion);
+  Design design(system.rows(pool.data, pool.units, request.criterion), objective);
+  design.choose(random_choice(design.candidates(), request.count, random));
+  exchange(design, progress);
+  plan.units = some(pool.units, design.chosen());
+  plan.data = rows_alone(pool.data, plan.units);
+  refine(
+      robot, system.equations(), objective,
+      {plan.data, plan.units, system.columns(request.criterion), system.most(), request.pool.held},
+      progress);
+
+  plan.sigma_before = system.figures(plan.data, {}).sigma;
+  plan.sigma_beyond = system.sigma_beyond(pool.data, pool.units);
+  plan.planned = system.figures(plan.data, plan.units);
+  plan.curve = curve_of(system, plan);
+  if (progress) progress("ordering configurations", 0);
+  order_visits(request.speed, random, plan);
+  return plan;
+}
+
+}  // namespace selfcal

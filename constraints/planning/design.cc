@@ -1,0 +1,364 @@
+#include "constraints/planning/design.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "constraints/methods/method.h"
+#include "kinematics/expects.h"
+#include "kinematics/linear_algebra.h"
+
+namespace selfcal {
+namespace {
+
+// Of the columns' mean square: lets a choice that does not see everything be exchanged away.
+constexpr double kRidge = 1e-10;
+constexpr std::size_t kJudged = 16;  // changes judged exactly of those that are best to first order
+// A removal that leaves a smaller part of the determinant rounds too much to go on from.
+constexpr double kLeastRemoved = 1e-5;
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+using Small =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostEquations, kMostEquations>;
+
+constexpr std::array<std::pair<Criterion, std::string_view>, 7> kCriteria = {
+    {{Criterion::sigma, "sigma"},
+     {Criterion::o1, "o1"},
+     {Criterion::o2, "o2"},
+     {Criterion::o3, "o3"},
+     {Criterion::o4, "o4"},
+     {Criterion::o5, "o5"},
+     {Criterion::condition, "condition"}}};
+
+/// I + sign B of the k x k block B at row `at`.
+Small raised(const Eigen::MatrixXd& blocks, Eigen::Index at, Eigen::Index k, int sign) {
+  Small S = sign * blocks.block(at, 0, k, k);
+  S.diagonal().array() += 1;
+  return S;
+}
+
+double determinant(const Small& S) {
+  switch (S.rows()) {
+    case 1:
+      return S(0, 0);
+    case 2:
+      return S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+    case 3:
+      return S.topLeftCorner<3, 3>().determinant();
+    default:
+      return S.determinant();
+  }
+}
+
+/// trace(S^-1 B) of positive definite S.
+double trace_of_quotient(const Small& S, const Eigen::MatrixXd& blocks, Eigen::Index at) {
+  const Eigen::Index k = S.rows();
+  if (k == 1) return blocks(at, 0) / S(0, 0);
+  if (k == 3) return (S.topLeftCorner<3, 3>().inverse() * blocks.block<3, 3>(at, 0)).trace();
+  const Small B = blocks.block(at, 0, k, k);
+  return Small(S.llt().solve(B)).trace();
+}
+
+double log_or_never(double value) { return value > 0 ? std::log(value) : kNever; }
+
+/// The merit of the eigenvalues (ascending) of C, and its derivatives to them.
+double spectral_merit(Criterion criterion, const Eigen::VectorXd& values, Eigen::VectorXd* slope) {
+  const Eigen::Index last = values.size() - 1;
+  if (!(values[0] > 0)) return kNever;
+  if (slope) slope->setZero(values.size());
+  const auto add = [&](Eigen::Index i, double factor) {
+    if (slope) (*slope)[i] += factor / values[i];
+    return factor * std::log(values[i]);
+  };
+  switch (criterion) {
+    case Criterion::o3:
+      return add(last, -0.5);
+    case Criterion::o4:
+      return add(last, -1) + add(0, 0.5);
+    case Criterion::o5: {
+      const double sum = values.cwiseSqrt().sum();
+      if (slope) *slope = -0.5 / sum * values.cwiseSqrt().cwiseInverse();
+      return -std::log(sum);
+    }
+    default:
+      return add(last, -0.5) + add(0, 0.5);
+  }
+}
+
+bool is_spectral(Criterion criterion) {
+  return criterion != Criterion::sigma && criterion != Criterion::o1;
+}
+
+}  // namespace
+
+std::string_view to_string(Criterion criterion) {
+  return kCriteria[static_cast<std::size_t>(criterion)].second;
+}
+
+std::optional<Criterion> criterion_of(std::string_view name) {
+  for (const auto& [criterion, text] : kCriteria)
+    if (text == name) return criterion;
+  return std::nullopt;
+}
+
+std::vector<std::string_view> criterion_names() {
+  std::vector<std::string_view> names;
+  for (const auto& each : kCriteria) names.push_back(each.second);
+  return names;
+}
+
+Design::Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective)
+    : objective_(std::move(objective)), in_(candidates.size(), 0) {
+  expects(!candidates.empty(), "there are candidates");
+  const Eigen::Index m = candidates.front().cols();
+  Eigen::Index rows = 0;
+  for (const Eigen::MatrixXd& w : candidates) {
+    expects(w.rows() <= kMostEquations && w.cols() == m,
+            "rows of a candidate have the columns of the others");
+    at_.push_back(rows);
+    k_.push_back(w.rows());
+    widest_ = std::max(widest_, w.rows());
+    rows += w.rows();
+  }
+  W_.resize(rows, m);
+  for (std::size_t i = 0; i < candidates.size(); ++i) W_.middleRows(at_[i], k_[i]) = candidates[i];
+  scale_columns();
+  choose({});
+}
+
+/// Units of the columns do not change the order of choices, but the rounding.
+void Design::scale_columns() {
+  const auto count = static_cast<double>(in_.size());
+  scale_ = W_.colwise().squaredNorm().transpose() / count;
+  if (objective_.prior.rows() > 0) scale_ += objective_.prior.diagonal() / count;
+  for (double& each : scale_) each = each > 0 ? std::sqrt(each) : 1;
+  const Eigen::VectorXd inverse = scale_.cwiseInverse();
+  W_ = W_ * inverse.asDiagonal();
+  for (Eigen::MatrixXd* each : {&objective_.prior, &objective_.weight})
+    if (each->rows() > 0) *each = (inverse.asDiagonal() * *each * inverse.asDiagonal()).eval();
+}
+
+Eigen::MatrixXd Design::rows_of(std::size_t candidate) const {
+  return W_.middleRows(at_[candidate], k_[candidate]);
+}
+
+void Design::choose(const std::vector<int>& chosen) {
+  std::fill(in_.begin(), in_.end(), 0);
+  for (const int each : chosen) in_[static_cast<std::size_t>(each)] = 1;
+  refresh();
+}
+
+std::vector<int> Design::chosen() const {
+  std::vector<int> list;
+  for (std::size_t i = 0; i < in_.size(); ++i)
+    if (in_[i]) list.push_back(static_cast<int>(i));
+  return list;
+}
+
+Eigen::MatrixXd Design::information(Eigen::Index first, Eigen::Index columns) const {
+  const double ridge = objective_.criterion == Criterion::sigma ? 0 : kRidge;
+  Eigen::MatrixXd H = ridge * Eigen::MatrixXd::Identity(columns, columns);
+  if (objective_.prior.rows() > 0) H += objective_.prior.block(first, first, columns, columns);
+  for (std::size_t i = 0; i < in_.size(); ++i) {
+    if (!in_[i]) continue;
+    const auto w = W_.block(at_[i], first, k_[i], columns);
+    H += w.transpose() * w;
+  }
+  return H;
+}
+
+Design::Moments Design::moments(Eigen::Index first, Eigen::Index columns) const {
+  Moments at;
+  at.C = inverse_of_positive(information(first, columns));
+  at.seen.setZero(W_.rows(), widest_);
+  const Eigen::MatrixXd WC = W_.middleCols(first, columns) * at.C;
+  for (std::size_t i = 0; i < in_.size(); ++i)
+    at.seen.block(at_[i], 0, k_[i], k_[i]) =
+        WC.middleRows(at_[i], k_[i]) * W_.block(at_[i], first, k_[i], columns).transpose();
+  return at;
+}
+
+void Design::refresh() {
+  const Eigen::Index m = W_.cols(), b = objective_.nuisance;
+  all_ = moments(0, m);
+  if (objective_.criterion == Criterion::sigma) {
+    const Eigen::MatrixXd WC = W_ * all_.C, WCA = WC * objective_.weight;
+    CAC_ = all_.C * objective_.weight * all_.C;
+    trace_ = objective_.weight.cwiseProduct(all_.C).sum();
+    spread_.setZero(W_.rows(), widest_);
+    for (std::size_t i = 0; i < in_.size(); ++i)
+      spread_.block(at_[i], 0, k_[i], k_[i]) =
+          WCA.middleRows(at_[i], k_[i]) * WC.middleRows(at_[i], k_[i]).transpose();
+  }
+  if (objective_.criterion == Criterion::o1) {
+    log_determinant_ = 2 * cholesky_root(information(0, m)).diagonal().array().log().sum();
+    if (b > 0) {
+      nuisance_ = moments(m - b, b);
+      log_determinant_ -= 2 * cholesky_root(information(m - b, b)).diagonal().array().log().sum();
+    }
+    // In the parameters' own units.
+    log_determinant_ += 2 * scale_.head(interest()).array().log().sum();
+  }
+}
+
+double Design::merit_of_spectrum(const Eigen::MatrixXd& C) const {
+  const Eigen::Index a = interest();
+  const Eigen::VectorXd unit = scale_.head(a).cwiseInverse();
+  return spectral_merit(
+      objective_.criterion,
+      symmetric_eigen(unit.asDiagonal() * C.topLeftCorner(a, a) * unit.asDiagonal()).values,
+      nullptr);
+}
+
+double Design::merit() const {
+  if (objective_.criterion == Criterion::sigma) return -trace_;
+  if (objective_.criterion == Criterion::o1) return log_determinant_;
+  return merit_of_spectrum(all_.C);
+}
+
+Design::Rise Design::rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w, int sign) {
+  const Eigen::MatrixXd G = C * w.transpose();
+  const Eigen::MatrixXd S = Eigen::MatrixXd::Identity(w.rows(), w.rows()) + sign * (w * G);
+  const Eigen::MatrixXd L = cholesky_root(S);
+  return {solve_lower(L, G.transpose()).transpose(), 2 * L.diagonal().array().log().sum()};
+}
+
+double Design::merit_after(std::size_t i, int sign) const {
+  const Small S = raised(all_.seen, at_[i], k_[i], sign);
+  const double factor = determinant(S);
+  if (!(factor > 0)) return kNever;
+  if (objective_.criterion == Criterion::sigma)
+    return -trace_ + sign * trace_of_quotient(S, spread_, at_[i]);
+  // Logarithms are taken of the best alone.
+  return objective_.nuisance > 0 ? factor / determinant(raised(nuisance_.seen, at_[i], k_[i], sign))
+                                 : factor;
+}
+
+std::pair<int, double> Design::best(int sign) const {
+  if (is_spectral(objective_.criterion)) return best_by_spectrum(sign);
+  std::pair<int, double> best{-1, kNever};
+  for (std::size_t i = 0; i < in_.size(); ++i) {
+    if ((in_[i] != 0) == (sign > 0)) continue;
+    const double merit = merit_after(i, sign);
+    if (best.first < 0 || merit > best.second) best = {static_cast<int>(i), merit};
+  }
+  if (objective_.criterion == Criterion::o1 && best.first >= 0)
+    best.second = log_determinant_ + log_or_never(best.second);
+  return best;
+}
+
+std::pair<int, double> Design::best_by_spectrum(int sign) const {
+  const Eigen::Index a = interest();
+  const Eigen::VectorXd unit = scale_.head(a).cwiseInverse();
+  const Symmetric eigen =
+      symmetric_eigen(unit.asDiagonal() * all_.C.topLeftCorner(a, a) * unit.asDiagonal());
+  Eigen::VectorXd slope;
+  spectral_merit(objective_.criterion, eigen.values, &slope);
+  const Eigen::MatrixXd turned = W_ * (all_.C.leftCols(a) * (unit.asDiagonal() * eigen.vectors));
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < in_.size(); ++i) {
+    if ((in_[i] != 0) == (sign > 0)) continue;
+    const Small S = raised(all_.seen, at_[i], k_[i], sign);
+    if (!(determinant(S) > 0)) continue;
+    const auto t = turned.middleRows(at_[i], k_[i]);
+    const Small B = t * slope.asDiagonal() * t.transpose();
+    order.emplace_back(sign * Small(S.llt().solve(B)).trace(), i);
+  }
+  const std::size_t judged = std::min(kJudged, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(judged),
+                    order.end());
+  std::pair<int, double> best{-1, kNever};
+  for (std::size_t n = 0; n < judged; ++n) {
+    const std::size_t i = order[n].second;
+    const Eigen::MatrixXd U = rise_of(all_.C, rows_of(i), sign).U;
+    const double merit = merit_of_spectrum(all_.C - sign * U * U.transpose());
+    if (best.first < 0 || merit > best.second) best = {static_cast<int>(i), merit};
+  }
+  return best;
+}
+
+void Design::update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const {
+  at.C -= sign * rise.U * rise.U.transpose();
+  const Eigen::MatrixXd by = W_.middleCols(first, at.C.cols()) * rise.U;
+  if (widest_ == 1) {
+    at.seen.col(0) -= sign * by.rowwise().squaredNorm();
+    return;
+  }
+  for (std::size_t i = 0; i < in_.size(); ++i)
+    if (k_[i] == 3 && by.cols() == 3) {
+      const Eigen::Matrix3d mine = by.block<3, 3>(at_[i], 0);
+      at.seen.block<3, 3>(at_[i], 0) -= sign * (mine * mine.transpose());
+    } else {
+      const auto mine = by.middleRows(at_[i], k_[i]);
+      at.seen.block(at_[i], 0, k_[i], k_[i]).noalias() -= sign * mine.lazyProduct(mine.transpose());
+    }
+}
+
+void Design::change(int candidate, int sign) {
+  const auto which = static_cast<std::size_t>(candidate);
+  const Eigen::MatrixXd w = rows_of(which);
+  const Rise rise = rise_of(all_.C, w, sign);
+  if (objective_.criterion == Criterion::sigma) {
+    const Eigen::MatrixXd& U = rise.U;
+    const Eigen::MatrixXd AU = objective_.weight * U, V = all_.C * AU, T = U.transpose() * AU;
+    CAC_ += U * T * U.transpose() - sign * (U * V.transpose() + V * U.transpose());
+    trace_ -= sign * T.trace();
+    const Eigen::MatrixXd by = W_ * U, along = W_ * V, half = 0.5 * by * T - sign * along;
+    for (std::size_t i = 0; i < in_.size(); ++i) {
+      const Small cross =
+          by.middleRows(at_[i], k_[i]).lazyProduct(half.middleRows(at_[i], k_[i]).transpose());
+      spread_.block(at_[i], 0, k_[i], k_[i]) += cross + cross.transpose();
+    }
+  }
+  log_determinant_ += rise.log_determinant;
+  update(all_, 0, rise, sign);
+  if (objective_.criterion == Criterion::o1 && objective_.nuisance > 0) {
+    const Rise of_nuisance = rise_of(nuisance_.C, w.rightCols(objective_.nuisance), sign);
+    log_determinant_ -= of_nuisance.log_determinant;
+    update(nuisance_, interest(), of_nuisance, sign);
+  }
+  in_[which] = sign > 0;
+}
+
+std::pair<int, double> Design::best_instead_of(int candidate) {
+  const Moments all = all_, nuisance = nuisance_;
+  const Eigen::MatrixXd CAC = CAC_, spread = spread_;
+  const double trace = trace_, log_determinant = log_determinant_;
+  const auto which = static_cast<std::size_t>(candidate);
+  const bool rounds = !(determinant(raised(all_.seen, at_[which], k_[which], -1)) > kLeastRemoved);
+  change(candidate, -1);
+  if (rounds) refresh();
+  std::pair<int, double> found = best(+1);
+  all_ = all;
+  nuisance_ = nuisance;
+  CAC_ = CAC;
+  spread_ = spread;
+  trace_ = trace;
+  log_determinant_ = log_determinant;
+  in_[which] = 1;
+  return found;
+}
+
+double Design::merit_with(const Eigen::MatrixXd& rows) const {
+  const Eigen::MatrixXd w = rows * scale_.cwiseInverse().asDiagonal();
+  const Rise rise = rise_of(all_.C, w, +1);
+  if (objective_.criterion == Criterion::sigma)
+    return -trace_ + (objective_.weight * rise.U).cwiseProduct(rise.U).sum();
+  if (objective_.criterion != Criterion::o1)
+    return merit_of_spectrum(all_.C - rise.U * rise.U.transpose());
+  double merit = log_determinant_ + rise.log_determinant;
+  if (objective_.nuisance > 0)
+    merit -= rise_of(nuisance_.C, w.rightCols(objective_.nuisance), +1).log_determinant;
+  return merit;
+}
+
+void Design::replace(int candidate, const Eigen::MatrixXd& w) {
+  const auto which = static_cast<std::size_t>(candidate);
+  expects(!in_[which] && w.rows() == k_[which], "the candidate is not chosen");
+  W_.middleRows(at_[which], k_[which]) = w * scale_.cwiseInverse().asDiagonal();
+  refresh();
+}
+
+}  // namespace selfcal

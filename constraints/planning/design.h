@@ -1,0 +1,89 @@
+// A choice of candidate measurements, and what adding or removing one would make of it.
+//
+// With C = (prior + WᵀW)^-1 of the chosen, a candidate w (k x m) changes
+//   det C^-1 by det(I +- w C wᵀ)                              (determinant lemma)
+//   C by -+ U Uᵀ,  U = C wᵀ L^-T,  L Lᵀ = I +- w C wᵀ         (Woodbury)
+//   trace(A C) by -+ trace((I +- w C wᵀ)^-1 w C A C wᵀ)
+// Of every candidate only w C wᵀ and w C A C wᵀ are kept, and updated by the same rule: a change
+// costs m k² for each candidate. The other indices are of the eigenvalues of C: the changes that
+// raise them most to first order are judged exactly.
+#pragma once
+
+#include <Eigen/Dense>
+#include <utility>
+#include <vector>
+
+#include "constraints/planning/criterion.h"
+
+namespace selfcal {
+
+class Design {
+ public:
+  /// A candidate is what one measurement adds to W: k x m, k up to kMostEquations (may differ),
+  /// whitened.
+  Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective);
+
+  /// Chooses these and no others.
+  void choose(const std::vector<int>& chosen);
+  /// Indices of the chosen, ascending.
+  std::vector<int> chosen() const;
+  bool has(int candidate) const { return in_[static_cast<std::size_t>(candidate)] != 0; }
+  int candidates() const { return static_cast<int>(in_.size()); }
+  /// How many rows a candidate has.
+  Eigen::Index rows(int candidate) const { return k_[static_cast<std::size_t>(candidate)]; }
+
+  /// What the objective asks to be large: -trace(weight C) of `sigma`, the log of the others (of o1
+  /// that of the determinant).
+  double merit() const;
+  /// The candidate outside whose addition (+1), or inside whose removal (-1), leaves the largest
+  /// merit, and that merit; -1 without one.
+  std::pair<int, double> best(int sign) const;
+  /// Adds (+1) or removes (-1) a candidate.
+  void change(int candidate, int sign);
+  /// The one that is the best in place of `candidate`, itself where no other is better, and the
+  /// merit then.
+  std::pair<int, double> best_instead_of(int candidate);
+  /// Makes anew what changes have rounded.
+  void refresh();
+
+  /// The merit with a measurement besides that is no candidate: its rows, as a candidate's.
+  double merit_with(const Eigen::MatrixXd& w) const;
+  /// Another measurement takes the place of a candidate that is not chosen; as many rows.
+  void replace(int candidate, const Eigen::MatrixXd& w);
+
+ private:
+  /// C of some columns, and for each candidate its block of w C wᵀ, in rows as W's.
+  struct Moments {
+    Eigen::MatrixXd C, seen;
+  };
+  /// What a measurement of rows `w` changes: C by -+ U Uᵀ.
+  struct Rise {
+    Eigen::MatrixXd U;
+    double log_determinant = 0;  ///< of I +- w C wᵀ
+  };
+
+  void scale_columns();
+  Eigen::MatrixXd information(Eigen::Index first, Eigen::Index columns) const;
+  Moments moments(Eigen::Index first, Eigen::Index columns) const;
+  void update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const;
+  static Rise rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w, int sign);
+  double merit_of_spectrum(const Eigen::MatrixXd& C) const;
+  std::pair<int, double> best_by_spectrum(int sign) const;
+  double merit_after(std::size_t candidate, int sign) const;
+  Eigen::Index interest() const { return W_.cols() - objective_.nuisance; }
+  Eigen::MatrixXd rows_of(std::size_t candidate) const;
+
+  Objective objective_;
+  Eigen::MatrixXd W_;                 ///< of all candidates, columns scaled
+  std::vector<Eigen::Index> at_, k_;  ///< first row and rows of each candidate
+  Eigen::Index widest_ = 0;           ///< most rows of one
+  Eigen::VectorXd scale_;             ///< a column is that of its parameter over this
+  std::vector<char> in_;
+  Moments all_, nuisance_;  ///< of all columns, of the last ones alone
+  // Of `sigma`: C A C with its blocks, and trace(A C).
+  Eigen::MatrixXd CAC_, spread_;
+  double trace_ = 0;
+  double log_determinant_ = 0;  ///< of the information, that of the nuisance columns taken off
+};
+
+}  // namespace selfcal

@@ -1,0 +1,131 @@
+#include "constraints/planning/tour.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace selfcal {
+namespace {
+
+constexpr int kLongestMoved = 3;
+constexpr int kStarts = 8;         // visits from which a tour is begun
+constexpr double kShorter = 1e-9;  // s: a smaller gain is rounding
+
+class TourSearch {
+ public:
+  TourSearch(const std::vector<Visit>& visits, const Eigen::VectorXd& speed)
+      : count_(static_cast<int>(visits.size())), way_(visits.size(), visits.size()) {
+    for (int a = 0; a < count_; ++a)
+      for (int b = 0; b < count_; ++b)
+        way_(a, b) = joint_time(visits[a].last, visits[b].first, speed);
+    both_ways_ = std::ranges::all_of(visits, [](const Visit& v) { return v.first == v.last; });
+  }
+
+  std::vector<int> run() {
+    std::vector<int> best;
+    double shortest = 0;
+    for (int start = 0; start < std::min(count_, kStarts); ++start) {
+      nearest(start);
+      while ((both_ways_ && turn_a_stretch()) || move_some())
+        ;
+      double way = 0;
+      for (int i = 1; i < count_; ++i) way += between(i - 1, i);
+      if (!best.empty() && way >= shortest) continue;
+      shortest = way;
+      best = order_;
+    }
+    return best;
+  }
+
+ private:
+  void nearest(int start) {
+    order_.resize(static_cast<std::size_t>(count_));
+    std::iota(order_.begin(), order_.end(), 0);
+    std::swap(order_[0], order_[start]);
+    for (int i = 1; i < count_; ++i) {
+      const auto next = std::min_element(order_.begin() + i, order_.end(), [&](int a, int b) {
+        return way_(order_[i - 1], a) < way_(order_[i - 1], b);
+      });
+      std::swap(order_[i], *next);
+    }
+  }
+
+  /// The way between the visits at two places; none before the first or after the last.
+  double between(int i, int j) const {
+    return i < 0 || j >= count_ ? 0 : way_(order_[i], order_[j]);
+  }
+
+  bool turn_a_stretch() {
+    bool shorter = false;
+    for (int i = 0; i + 1 < count_; ++i)
+      for (int j = i + 1; j < count_; ++j) {
+        const double before = between(i - 1, i) + between(j, j + 1);
+        const double after = (i > 0 ? way_(order_[i - 1], order_[j]) : 0) +
+                             (j + 1 < count_ ? way_(order_[i], order_[j + 1]) : 0);
+        if (after > before - kShorter) continue;
+        std::reverse(order_.begin() + i, order_.begin() + j + 1);
+        shorter = true;
+      }
+    return shorter;
+  }
+
+  bool move_some() {
+    bool shorter = false;
+    for (int length = 1; length <= kLongestMoved; ++length)
+      for (int i = 0; i + length <= count_; ++i)
+        if (move(i, length)) shorter = true;
+    return shorter;
+  }
+
+  /// Moves the `length` visits from place i on to where the way gets shortest.
+  bool move(int i, int length) {
+    const int end = i + length, first = order_[i], last = order_[end - 1];
+    const double left = between(i - 1, i) + between(end - 1, end) -
+                        (i > 0 && end < count_ ? way_(order_[i - 1], order_[end]) : 0);
+    double most = kShorter;
+    int best = -1;
+    for (int to = 0; to <= count_; ++to) {  // before the visit at place `to`
+      if (to >= i && to <= end) continue;
+      const double more = (to > 0 ? way_(order_[to - 1], first) : 0) +
+                          (to < count_ ? way_(last, order_[to]) : 0) - between(to - 1, to);
+      if (left - more <= most) continue;
+      most = left - more;
+      best = to;
+    }
+    if (best < 0) return false;
+    if (best < i)
+      std::rotate(order_.begin() + best, order_.begin() + i, order_.begin() + end);
+    else
+      std::rotate(order_.begin() + i, order_.begin() + end, order_.begin() + best);
+    return true;
+  }
+
+  int count_;
+  Eigen::MatrixXd way_;  ///< from the end of one to the beginning of another (s)
+  bool both_ways_ = true;
+  std::vector<int> order_;
+};
+
+}  // namespace
+
+double joint_time(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                  const Eigen::VectorXd& speed) {
+  return ((to - from).array().abs() / speed.array()).maxCoeff();
+}
+
+double way_time(const std::vector<Visit>& visits, const std::vector<int>& order,
+                const Eigen::VectorXd& speed) {
+  double time = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Visit& here = visits[static_cast<std::size_t>(order[i])];
+    time += joint_time(here.first, here.last, speed);
+    if (i > 0)
+      time += joint_time(visits[static_cast<std::size_t>(order[i - 1])].last, here.first, speed);
+  }
+  return time;
+}
+
+std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::VectorXd& speed) {
+  return TourSearch(visits, speed).run();
+}
+
+}  // namespace selfcal

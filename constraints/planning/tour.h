@@ -1,0 +1,31 @@
+// In which order configurations are visited so that the way is short.
+//
+// From each of several beginnings, the next one is the nearest; then a stretch turned round (2-opt;
+// only where ways are as long back as forth) or up to three visits moved elsewhere (Or-opt), as
+// long as the way gets shorter.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+namespace selfcal {
+
+/// From where a visit is begun to where it ends (readings).
+struct Visit {
+  Eigen::VectorXd first, last;
+};
+
+/// Time (s) from one configuration to another, all joints moving at once, each at its speed (rad/s,
+/// m/s; above 0).
+double joint_time(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                  const Eigen::VectorXd& speed);
+
+/// Time from the first visit to the end of the last in this order, what the visits themselves take
+/// included.
+double way_time(const std::vector<Visit>& visits, const std::vector<int>& order,
+                const Eigen::VectorXd& speed);
+
+/// The order, which begins at any visit.
+std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::VectorXd& speed);
+
+}  // namespace selfcal
