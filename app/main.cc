@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   add_trial(app, status);
   add_identifiable(app, status);
   add_plan(app, status);
+  add_compensate(app, status);
   add_robot(app, status);
   add_data(app, status);
   add_serve(app, status);

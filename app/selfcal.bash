@@ -12,12 +12,13 @@ _selfcal() {
     return
   fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable plan diagnose trial simulate robot data serve monitor command history report --help --version" ;;
+    1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
     *:diagnose) words="--sim --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
+    *:compensate) words="--nominal --out --help" ;;
     *:plan) words="--method --unknown --lock --count --candidates --criterion --workspace --start --groups --noise --noise-angle --speed --target --seed --out --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check convert --help" ;;

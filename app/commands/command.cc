@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/find_robot.h"
+#include "app/commands/support/find_robot.h"
 #include "app/report/format.h"
 #include "app/report/message_json.h"
 #include "io/dds/clients/commander.h"

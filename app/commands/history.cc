@@ -4,9 +4,9 @@
 #include <memory>
 #include <set>
 
-#include "app/commands/find_store.h"
-#include "app/commands/session_export.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/find_store.h"
+#include "app/commands/support/session_export.h"
 #include "app/report/drift.h"
 #include "app/report/format.h"
 #include "app/report/message_json.h"

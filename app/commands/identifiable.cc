@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/commands/method_sets.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/method_sets.h"
 #include "app/report/progress_line.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/identifiability/excitation.h"

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/find_robot.h"
-#include "app/commands/signals.h"
+#include "app/commands/support/find_robot.h"
+#include "app/commands/support/signals.h"
 #include "app/report/format.h"
 #include "app/report/message_json.h"
 #include "app/report/monitor_news.h"

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/method_sets.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/method_sets.h"
 #include "app/report/plan_words.h"
 #include "app/report/progress_line.h"
 #include "io/files/file.h"

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/find_store.h"
-#include "app/commands/session_export.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/find_store.h"
+#include "app/commands/support/session_export.h"
 #include "app/report/format.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"

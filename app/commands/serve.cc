@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/signals.h"
-#include "app/commands/simulated_robot.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/signals.h"
+#include "app/commands/support/simulated_robot.h"
 #include "app/service/service.h"
 #include "io/clock.h"
 #include "io/dds/messenger.h"

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands/signals.h"
-#include "app/commands/simulated_robot.h"
 #include "app/commands/subcommand.h"
+#include "app/commands/support/signals.h"
+#include "app/commands/support/simulated_robot.h"
 #include "io/files/data_set_writer.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"

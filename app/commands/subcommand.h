@@ -25,6 +25,7 @@ void add_identify(CLI::App& app, int& status);
 void add_diagnose(CLI::App& app, int& status);
 void add_identifiable(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
+void add_compensate(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_trial(CLI::App& app, int& status);
 void add_robot(CLI::App& app, int& status);

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "app/commands/signals.h"
-#include "app/commands/simulated_robot.h"
+#include "app/commands/support/signals.h"
+#include "app/commands/support/simulated_robot.h"
 #include "app/report/paced_output.h"
 #include "io/clock.h"
 #include "io/dds/robot_side.h"

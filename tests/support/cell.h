@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/simulated_robot.h"
+#include "app/commands/support/simulated_robot.h"
 #include "app/service/config.h"
 #include "io/dds/clients/commander.h"
 #include "io/dds/clients/monitor.h"

@@ -1,6 +1,6 @@
 // What is stored with a session is the description of a data set and what the raw counts mean;
 // dataset.yaml is the former. It is written last: a folder without it is no data set.
-#include "app/commands/session_export.h"
+#include "app/commands/support/session_export.h"
 
 #include <system_error>
 

@@ -1,4 +1,4 @@
-#include "app/commands/signals.h"
+#include "app/commands/support/signals.h"
 
 #include <csignal>
 

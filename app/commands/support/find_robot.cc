@@ -1,6 +1,6 @@
-#include "app/commands/find_robot.h"
+#include "app/commands/support/find_robot.h"
 
-#include "app/commands/signals.h"
+#include "app/commands/support/signals.h"
 #include "app/report/format.h"
 #include "io/clock.h"
 #include "io/dds/clients/discovery.h"

@@ -1,4 +1,4 @@
-#include "app/commands/simulated_robot.h"
+#include "app/commands/support/simulated_robot.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "app/commands/find_store.h"
+#include "app/commands/support/find_store.h"
 
 #include <cstdlib>
 

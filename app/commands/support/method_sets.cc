@@ -1,4 +1,4 @@
-#include "app/commands/method_sets.h"
+#include "app/commands/support/method_sets.h"
 
 #include <algorithm>
 #include <memory>

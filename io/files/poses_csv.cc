@@ -1,0 +1,85 @@
+#include "io/files/poses_csv.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "constraints/methods/maker.h"
+#include "io/files/csv.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kPose = 7;
+constexpr double kUnit = 1e-3;  // off 1 that a quaternion's length may be
+
+/// Places of the columns, those of the pose first, then the joints' if there are any.
+class PoseReader {
+ public:
+  explicit PoseReader(int joints) : joints_(joints) {}
+
+  std::optional<RowFault> take_header(Cells names) {
+    static constexpr const char* kNames[kPose] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
+    for (const char* name : kNames) {
+      const auto place = find(names, name);
+      if (!place) return RowFault{std::string("column ") + name + " is missing"};
+      places_.push_back(*place);
+    }
+    for (int j = 1; j <= joints_; ++j) {
+      const auto place = find(names, "q" + std::to_string(j));
+      if (place) places_.push_back(*place);
+    }
+    if (const auto found = static_cast<int>(places_.size()) - kPose; found != 0 && found != joints_)
+      return RowFault{"columns q1 to q" + std::to_string(joints_) + ": all of them or none"};
+    return std::nullopt;
+  }
+
+  std::optional<RowFault> take_row(Cells cells) {
+    Eigen::VectorXd numbers(static_cast<Eigen::Index>(places_.size()));
+    WantedPose pose;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const auto number = parse_number(cells[places_[i]]);
+      if (!number) return RowFault{"expected a number", places_[i]};
+      if (i < 3 && std::abs(*number) > kFarthestPlace)
+        return RowFault{"expected metres (millimetres?)", places_[i]};
+      numbers[static_cast<Eigen::Index>(i)] = *number;
+      if (i < kPose) pose.text += (i > 0 ? "," : "") + std::string(cells[places_[i]]);
+    }
+    const Eigen::Quaterniond turn(numbers[3], numbers[4], numbers[5], numbers[6]);
+    if (!(std::abs(turn.norm() - 1) < kUnit))
+      return RowFault{"expected a unit quaternion qw qx qy qz", places_[3]};
+    pose.location.p = numbers.head<3>();
+    pose.location.R = turn.normalized().toRotationMatrix();
+    if (numbers.size() > kPose) pose.near = numbers.tail(joints_);
+    poses_.push_back(std::move(pose));
+    return std::nullopt;
+  }
+
+  std::vector<WantedPose> hand_over() { return std::move(poses_); }
+
+ private:
+  static std::optional<std::size_t> find(Cells names, std::string_view name) {
+    const auto at = std::ranges::find(names, name);
+    if (at == names.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - names.begin());
+  }
+
+  int joints_;
+  std::vector<std::size_t> places_;
+  std::vector<WantedPose> poses_;
+};
+
+}  // namespace
+
+Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path, int joints) {
+  PoseReader reader(joints);
+  const auto done = read_csv(
+      path, [&](Cells names) { return reader.take_header(names); },
+      [&](Cells cells, int) { return reader.take_row(cells); });
+  if (!done) return tl::unexpected(done.error());
+  std::vector<WantedPose> poses = reader.hand_over();
+  if (poses.empty()) return tl::unexpected(Failure{kBadInput, path.string() + ": has no rows"});
+  return poses;
+}
+
+}  // namespace selfcal

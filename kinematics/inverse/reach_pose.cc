@@ -1,0 +1,127 @@
+#include "kinematics/inverse/reach_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/expects.h"
+#include "kinematics/linear_algebra.h"
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+constexpr int kMostSteps = 100;
+constexpr double kThere = 1e-9;       // m, rad
+constexpr double kWhole = 0.3;        // m/rad: what a turn weighs beside a shift
+constexpr double kBeside = 1e-5;      // the same, where the orientation cannot be had
+constexpr double kLongestStep = 0.5;  // rad or m
+constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6, kLeastDamping = 1e-12;  // m^2
+
+/// One lane on its way.
+struct Lane {
+  Eigen::VectorXd q, e;  ///< where it is, and what is left there
+  Eigen::MatrixXd J;
+  double damping = kFirstDamping;
+  ReachedPose best;
+  bool done = false;
+};
+
+class DampedSteps {
+ public:
+  DampedSteps(const Robot& robot, const Eigen::VectorXd& xi, const Location& wanted)
+      : robot_(robot),
+        xi_(xi),
+        wanted_(wanted),
+        whole_(robot.joints().size() >= 6),
+        weight_(whole_ ? kWhole : kBeside) {}
+
+  std::vector<ReachedPose> run(const Eigen::MatrixXd& starts) {
+    std::vector<Lane> lanes(static_cast<std::size_t>(starts.rows()));
+    for (std::size_t i = 0; i < lanes.size(); ++i)
+      lanes[i].q = starts.row(static_cast<Eigen::Index>(i)).transpose();
+    std::vector<Eigen::VectorXd> proposed;
+    for (const Lane& lane : lanes) proposed.push_back(lane.q);
+    for (int step = 0; step <= kMostSteps; ++step) {
+      evaluate(proposed);
+      bool any = false;
+      for (std::size_t i = 0; i < lanes.size(); ++i) {
+        if (!lanes[i].done) take(static_cast<int>(i), step, proposed[i], lanes[i]);
+        if (lanes[i].done) continue;
+        any = true;
+        proposed[i] = next(lanes[i]);
+      }
+      if (!any) break;
+    }
+    std::vector<ReachedPose> list;
+    for (Lane& lane : lanes) list.push_back(std::move(lane.best));
+    return list;
+  }
+
+ private:
+  void evaluate(const std::vector<Eigen::VectorXd>& proposed) {
+    ConfigurationBlock block;
+    block.count = static_cast<int>(proposed.size());
+    block.q.resize(kLanes, proposed.front().size());
+    for (int lane = 0; lane < kLanes; ++lane)
+      block.q.row(lane) =
+          proposed[std::min(static_cast<std::size_t>(lane), proposed.size() - 1)].transpose();
+    closure_ = robot_.locate(block, xi_, Body::endpoint, X_, &psi_);
+    robot_.joint_jacobian(block, xi_, Body::endpoint, psi_, J_);
+  }
+
+  /// Takes the proposal where it is better than where the lane is, else damps more.
+  void take(int i, int step, const Eigen::VectorXd& proposed, Lane& lane) {
+    if (!closure_.closes(i)) return refuse(lane);
+    const Eigen::Vector3d shift = wanted_.p - X_.p(i);
+    const Eigen::Vector3d turn = log_rotation(wanted_.R * X_.R(i).transpose());
+    Eigen::VectorXd e(6);
+    e << shift, weight_ * turn;
+    if (lane.e.size() > 0 && !(e.norm() < lane.e.norm())) return refuse(lane);
+    if (lane.e.size() > 0) lane.damping = std::max(lane.damping / 10, kLeastDamping);
+    lane.q = proposed;
+    lane.e = e;
+    lane.J.resize(6, J_.cols());
+    for (int c = 0; c < 6; ++c) lane.J.row(c) = (c < 3 ? 1 : weight_) * J_.row(c * kLanes + i);
+    const bool there = shift.norm() < kThere && (!whole_ || turn.norm() < kThere);
+    lane.best = {proposed, shift.norm(), turn.norm(), step, there};
+    // Beside the position, the orientation has still to come as near as it goes.
+    lane.done = there && (whole_ || lane.damping <= kLeastDamping);
+  }
+
+  static void refuse(Lane& lane) {
+    lane.damping *= 10;
+    lane.done = lane.e.size() == 0 || lane.damping > kMostDamping;
+  }
+
+  static Eigen::VectorXd next(const Lane& lane) {
+    const Eigen::Index n = lane.J.cols();
+    Eigen::MatrixXd A(6 + n, n);
+    A.topRows(6) = lane.J;
+    A.bottomRows(n) = std::sqrt(lane.damping) * Eigen::MatrixXd::Identity(n, n);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(6 + n);
+    b.head(6) = lane.e;
+    Eigen::VectorXd dq = least_squares(A, b);
+    if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
+    return lane.q + dq;
+  }
+
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  const Location& wanted_;
+  bool whole_;  ///< position and orientation can be had
+  double weight_;
+  Closure closure_;
+  Locations X_;
+  PsiBlock psi_;
+  Eigen::MatrixXd J_;
+};
+
+}  // namespace
+
+std::vector<ReachedPose> reach_pose(const Robot& robot, const Eigen::VectorXd& xi,
+                                    const Location& wanted, const Eigen::MatrixXd& starts) {
+  expects(starts.rows() >= 1 && starts.rows() <= kLanes, "one to kLanes starts");
+  return DampedSteps(robot, xi, wanted).run(starts);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,140 @@
+// Commands that put a calibrated robot where it is wanted, by its own forward kinematics.
+#include "kinematics/inverse/compensation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "constraints/sampling/random_poses.h"
+#include "io/files/robot_file.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/rotation.h"
+#include "tests/kinematics/kind_examples.h"
+#include "tests/kinematics/parsed_robot.h"
+
+namespace selfcal {
+namespace {
+
+using Robots = std::pair<std::shared_ptr<const Robot>, std::shared_ptr<const Robot>>;
+
+/// The robot of `text`, and one off by 1 mm and 1 mrad in every parameter, with `effects`.
+Robots off_by_a_millimetre(const std::string& text, const std::string& effects = "") {
+  std::shared_ptr<const Robot> nominal = robot_of(text);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd xi = values(*nominal);
+  for (std::size_t i = 0; i < nominal->parameters().size(); ++i)
+    if (const Parameter& p = nominal->parameters()[i]; p.free)
+      xi[static_cast<Eigen::Index>(i)] += 1e-3 * normal(random);
+  std::string file = robot_text(*nominal, xi);
+  if (!effects.empty()) file += "effects: " + effects + "\n";
+  return {nominal, robot_of(file)};
+}
+
+/// Poses of the nominal robot all over its range, and the largest errors of the calibrated one
+/// there by the commands. Some of them stand at a limit, or where the wrist is stretched and a
+/// millimetre turns its joints by more than a correction may.
+void expect_compensated(const Robots& robots, int poses, double most) {
+  const auto& [nominal, calibrated] = robots;
+  const Eigen::VectorXd xi = values(*calibrated);
+  const Compensation compensation(nominal, calibrated, random_poses(*nominal, nullptr, 31, 1));
+  const Eigen::MatrixXd q = random_poses(*nominal, nullptr, poses, 7);
+  double error = 0, angle = 0;
+  std::map<Reach, int> count;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Location wanted = locate(*nominal, values(*nominal), q.row(i).transpose());
+    const Command command = compensation.command(wanted, Eigen::VectorXd(q.row(i).transpose()));
+    ++count[command.status];
+    if (command.status != Reach::reached) {
+      EXPECT_EQ(command.q.size(), 0);
+      continue;
+    }
+    EXPECT_TRUE(within_limits(*nominal, command.q));
+    const Location is = locate(*calibrated, xi, command.q);
+    error = std::max(error, (is.p - wanted.p).norm());
+    if (nominal->joints().size() >= 6)
+      angle = std::max(angle, log_rotation(is.R * wanted.R.transpose()).norm());
+  }
+  std::printf("%s: %d of %d poses, %.2g m and %.2g rad at most; %d singular, %d at a limit\n",
+              nominal->name().c_str(), count[Reach::reached], poses, error, angle,
+              count[Reach::singular], count[Reach::limit]);
+  EXPECT_EQ(count[Reach::out_of_reach], 0);
+  EXPECT_GT(count[Reach::reached], 0.9 * poses);
+  EXPECT_LT(error, most);
+  EXPECT_LT(angle, most);
+}
+
+std::string shipped(const std::string& name) {
+  const auto robot = load_robot(SELFCAL_SOURCE_DIR "/app/examples/" + name + ".robot.yaml");
+  return robot_text(**robot, values(**robot));
+}
+
+TEST(Compensation, PutsTheIrb1600WhereItIsWanted) {
+  expect_compensated(off_by_a_millimetre(shipped("irb1600")), 400, 1e-8);
+}
+
+TEST(Compensation, TakesEffectsAlong) {
+  expect_compensated(
+      off_by_a_millimetre(shipped("rx90"),
+                          "[{effect: transmission_error, at: j2, sin1: 1.0e-3, cos1: 5.0e-4}]"),
+      200, 1e-8);
+}
+
+TEST(Compensation, WorksForRobotsWithLoops) {
+  for (const char* kind : {"linear-delta", "gough-stewart", "hexaslide"})
+    expect_compensated(off_by_a_millimetre(kind_examples().at(kind)), 60, 1e-8);
+}
+
+const char* const kTwoLinks =
+    "robot: planar\nkind: serial\nframes:\n"
+    "  - {name: j1, joint: revolute, limits: [-1, 1]}\n"
+    "  - {name: j2, joint: revolute, d: 1, limits: [-2, 2]}\n"
+    "  - {name: tool, joint: fixed, d: 1}\n";
+
+Command of_two_links(const Location& wanted, const char* calibrated = kTwoLinks) {
+  const std::shared_ptr<const Robot> nominal = robot_of(kTwoLinks), other = robot_of(calibrated);
+  const Compensation compensation(nominal, other, random_poses(*nominal, nullptr, 31, 1));
+  return compensation.command(wanted, std::nullopt);
+}
+
+TEST(Compensation, SaysWhatIsInTheWay) {
+  const Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
+  EXPECT_EQ(of_two_links({level, {1.2, 0.3, 0}}).status, Reach::reached);
+  // Half a metre farther than both links are long.
+  const Command far = of_two_links({level, {2.5, 0, 0}});
+  EXPECT_EQ(far.status, Reach::out_of_reach);
+  EXPECT_EQ(far.q.size(), 0);
+  EXPECT_NEAR(far.error, 0.5, 1e-3);
+  // Behind it: within reach, but not for joint 1.
+  EXPECT_EQ(of_two_links({level, {-1.9, 0, 0}}).status, Reach::limit);
+  // Stretched: the nominal robot just gets there, one that is shorter by 2 mm does not.
+  const Command stretched = of_two_links({level, {2, 0, 0}},
+                                         "robot: planar\nkind: serial\nframes:\n"
+                                         "  - {name: j1, joint: revolute, limits: [-1, 1]}\n"
+                                         "  - {name: j2, joint: revolute, d: 0.998,"
+                                         " limits: [-2, 2]}\n"
+                                         "  - {name: tool, joint: fixed, d: 1}\n");
+  EXPECT_EQ(stretched.status, Reach::singular);
+  EXPECT_NEAR(stretched.error, 2e-3, 1e-5);
+}
+
+TEST(Compensation, NamesWhatAControllerTakes) {
+  const auto robot = robot_of(
+      "robot: arm\nkind: serial\nframes:\n"
+      "  - {name: base, joint: fixed, r: 0.5}\n"
+      "  - {name: j1, joint: revolute, d: 0.3}\n"
+      "  - {name: j2, joint: revolute, alpha: 1.5707963267948966, r: 0.4}\n"
+      "  - {name: j3, joint: revolute, alpha: 0.3}\n");
+  std::vector<std::string> names;
+  for (const int i : controller_parameters(*robot)) {
+    const Parameter& p = robot->parameters()[static_cast<std::size_t>(i)];
+    if (p.part != Part::base) names.push_back(p.frame + "." + p.field);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"j1.d", "j1.theta", "j2.theta", "j2.r", "j3.alpha",
+                                             "j3.theta"}));
+}
+
+}  // namespace
+}  // namespace selfcal
