@@ -103,7 +103,8 @@ DataSet device_rows(int count, Random& random) {
   return data;
 }
 
-/// `count` of the rows, those that tell the nominal robot's parameters best together.
+/// `count` of the rows, those that tell the nominal robot's parameters best together; rows that it
+/// cannot take are left out.
 std::vector<int> best_rows(const Robot& nominal, const DataSet& pool, int count, Random& random) {
   const Equations equations(nominal, pool, Use::fit);
   State state{nominal_values(nominal), {}, {}};
@@ -116,7 +117,14 @@ std::vector<int> best_rows(const Robot& nominal, const DataSet& pool, int count,
     W.conservativeResize(W.rows() + 1, 54);
     W.bottomRows<1>() = dense.W.row(k).head<54>();
   }
-  return detmax(candidates, count, random).chosen;
+  std::vector<int> rows;
+  for (int row = 0; row < pool.rows.rows(); ++row)
+    if (candidates[static_cast<size_t>(row)].rows() > 0) rows.push_back(row);
+  std::erase_if(candidates, [](const Eigen::MatrixXd& W) { return W.rows() == 0; });
+  std::vector<int> best;
+  for (const int each : detmax(candidates, count, random).chosen)
+    best.push_back(rows[static_cast<size_t>(each)]);
+  return best;
 }
 
 /// Uniform noise of up to `noise` m and rad on readings and angles.
