@@ -12,6 +12,7 @@
 #include "io/files/poses_csv.h"
 #include "io/files/robot_file.h"
 #include "kinematics/inverse/compensation.h"
+#include "kinematics/robot_text.h"
 
 namespace selfcal {
 namespace {
@@ -22,15 +23,6 @@ constexpr unsigned long long kSeed = 1;  // of the starts: the same poses give t
 struct CompensateArguments {
   std::string calibrated, nominal, poses, out;
 };
-
-/// Joints of the same names in the same order; else what is wrong.
-std::string unlike(const Robot& nominal, const Robot& calibrated) {
-  const std::vector<Joint>&a = nominal.joints(), &b = calibrated.joints();
-  const bool same =
-      a.size() == b.size() && std::ranges::equal(a, b, {}, &Joint::name, &Joint::name);
-  if (nominal.kind() == calibrated.kind() && same) return {};
-  return "is not the same machine as --nominal: its kind or its joints differ";
-}
 
 std::string row_of(const WantedPose& wanted, const Command& command, Eigen::Index joints) {
   std::string row = wanted.text;
@@ -92,8 +84,9 @@ int compensate_command(const CompensateArguments& arguments) {
     robots[i] = *std::move(robot);
   }
   const auto& [nominal, calibrated] = robots;
-  if (const std::string what = unlike(*nominal, *calibrated); !what.empty())
-    return tell({kInputIsBad, arguments.calibrated + " " + what});
+  if (nominal->text().identity() != calibrated->text().identity())
+    return tell({kInputIsBad, arguments.calibrated + ": is no calibration of the robot in " +
+                                  arguments.nominal + ": the maker's figures differ"});
   const auto joints = static_cast<Eigen::Index>(nominal->joints().size());
   const auto wanted = read_poses(arguments.poses, static_cast<int>(joints));
   if (!wanted) return tell(wanted.error());
