@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <string>
 
 #include "io/files/data_set_file.h"
+#include "tests/io/scratch.h"
 
 namespace selfcal {
 namespace {
@@ -14,19 +14,19 @@ using testing::HasSubstr;
 
 /// What is wrong with a gauge parallel to a table, of these rows.
 std::string references_error(const std::string& rows) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "references_without_rows";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "a.robot.yaml") << "robot: a\nkind: serial\nframes:\n"
-                                            "  - {name: j1, joint: revolute}\n"
-                                            "  - {name: tool, joint: fixed, d: 0.5}\n";
-  std::ofstream(folder / "dataset.yaml")
-      << "robot: a.robot.yaml\nobservations: o.csv\nsets:\n"
-         "  table: {method: plane}\n"
-         "  gauge: {method: plane, parallel_to: {set: table, distance: 0.2, noise: 2.0e-6}}\n"
-         "  tracker: {method: position}\n";
-  std::ofstream(folder / "o.csv") << "set,q1,x,y,z,part\n" << rows;
-  const auto loaded = load_data_set(folder);
+  const Scratch scratch;
+  scratch.write("a.robot.yaml",
+                "robot: a\nkind: serial\nframes:\n"
+                "  - {name: j1, joint: revolute}\n"
+                "  - {name: tool, joint: fixed, d: 0.5}\n");
+  scratch.write(
+      "dataset.yaml",
+      "robot: a.robot.yaml\nobservations: o.csv\nsets:\n"
+      "  table: {method: plane}\n"
+      "  gauge: {method: plane, parallel_to: {set: table, distance: 0.2, noise: 2.0e-6}}\n"
+      "  tracker: {method: position}\n");
+  scratch.write("o.csv", "set,q1,x,y,z,part\n" + rows);
+  const auto loaded = load_data_set(scratch.folder());
   return loaded ? "" : loaded.error().what;
 }
 
