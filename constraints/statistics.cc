@@ -75,8 +75,12 @@ double chi_square_exceeds(double value, double freedom) {
 }
 
 double log_chi_square_below(double value, double freedom) {
+  // Boost divides by Gamma(freedom / 2 + 1) far below the mean, which overflows.
+  constexpr double kFarBelow = 1e-3;
   const double below =
-      boost::math::cdf(boost::math::chi_squared_distribution<double, Fast>(freedom), value);
+      value > kFarBelow * freedom
+          ? boost::math::cdf(boost::math::chi_squared_distribution<double, Fast>(freedom), value)
+          : 0;
   if (below > std::numeric_limits<double>::min()) return std::log(below);
   // The incomplete gamma function's series, which far below its mean converges fast.
   const double a = freedom / 2, x = value / 2;

@@ -44,6 +44,9 @@ TEST(Statistics, KnowTheLogarithmOfAProbabilityTooSmallForANumber) {
   EXPECT_NEAR(log_chi_square_below(3.8415, 1), std::log(0.95), 1e-5);
   // Of four freedoms: 1 - (1 + x / 2) exp(-x / 2).
   EXPECT_NEAR(log_chi_square_below(6, 4), std::log(1 - 4 * std::exp(-3.0)), 1e-12);
+  // With 400 degrees of freedom and hardly a square the series has one term: x^a e^-x / a!, where
+  // ln 200! = 863.2319871924 (Abramowitz and Stegun, table 6.4 continued by Stirling's series).
+  EXPECT_NEAR(log_chi_square_below(2e-9, 400), 200 * std::log(1e-9) - 863.2319871924, 1e-6);
   // Far below its mean the series begins with (x / 2)^(k / 2) exp(-x / 2) / Gamma(k / 2 + 1), and
   // goes on by x / (k + 2), of which the next would be 3e-7 here.
   const double x = 1, k = 1800;
