@@ -18,6 +18,21 @@ namespace {
 
 constexpr double kLooseness = 10;  ///< prior sigma over the largest usual size
 
+bool same_text(const Node& a, const Node& b) {
+  return a.kind == b.kind && a.text == b.text && a.keys == b.keys &&
+         std::ranges::equal(a.items, b.items, same_text);
+}
+
+/// Two effects that differ in their parameters alone: these add up, for effects are linear in them.
+bool add_up(const Effect& a, const Effect& b) {
+  const auto shape = [](const Effect& effect) {
+    return effect
+        .describe(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect.parameters().size())))
+        .without({"named"});
+  };
+  return same_text(shape(a), shape(b));
+}
+
 class CorrectedRobot final : public Robot, public RobotText {
  public:
   CorrectedRobot(std::shared_ptr<const Robot> geometry,
@@ -117,12 +132,21 @@ class CorrectedRobot final : public Robot, public RobotText {
   Node describe(const Eigen::VectorXd& xi) const override {
     Node node = geometry_->text().describe(xi.head(geometry_parameters()));
     Node list = Node::list();
+    std::vector<Eigen::VectorXd> value;
+    std::vector<size_t> entries;
     Eigen::Index at = geometry_parameters();
-    for (const auto& effect : effects_) {
-      const auto count = static_cast<Eigen::Index>(effect->parameters().size());
-      list.items.push_back(effect->describe(xi.segment(at, count)));
+    for (size_t i = 0; i < effects_.size(); ++i) {
+      const auto count = static_cast<Eigen::Index>(effects_[i]->parameters().size());
+      value.emplace_back(xi.segment(at, count));
       at += count;
+      const auto same = std::ranges::find_if(
+          entries, [&](size_t other) { return add_up(*effects_[i], *effects_[other]); });
+      if (same != entries.end())
+        value[*same] += value.back();
+      else
+        entries.push_back(i);
     }
+    for (const size_t i : entries) list.items.push_back(effects_[i]->describe(value[i]));
     node.set("effects", std::move(list));
     return node;
   }

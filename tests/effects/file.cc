@@ -102,6 +102,23 @@ TEST_P(EffectFile, KeepsWhetherADiagnosisNamedIt) {
   }
 }
 
+TEST_P(EffectFile, HasOneEntryOfWhatWasFoundTwice) {
+  std::mt19937_64 random(95);
+  const EffectInstance at = random_instance(GetParam(), random);
+  const Node entry = parsed(robot_text(*at.robot, at.xi)).find("effects")->items.front();
+  Problems problems;
+  const auto twice = correct(at.geometry, {entry, entry}, at.site, problems);
+  ASSERT_NE(twice, nullptr) << problems.list.front();
+  const auto own = at.xi.size() - at.own();
+  Eigen::VectorXd xi(at.own() + 2 * own);
+  xi << at.xi, 0.5 * at.xi.tail(own);
+  const auto back = robot_of(parsed(robot_text(*twice, xi)));
+  ASSERT_NE(back, nullptr);
+  EXPECT_EQ(effect_entries(*back).size(), 1U);
+  // An effect is linear in its parameters.
+  EXPECT_LT((values(*back).tail(own) - 1.5 * at.xi.tail(own)).norm(), 1e-15);
+}
+
 const char* const kArm =
     "robot: arm\nkind: serial\nframes:\n"
     "  - {name: base, joint: fixed, r: 0.5}\n"
