@@ -14,7 +14,7 @@ _selfcal() {
   case $COMP_CWORD:$command in
     1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
-    *:diagnose) words="--sim --since --next --out --json --help" ;;
+    *:diagnose) words="--sim --tool --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/simulator.h"
 #include "app/report/diagnosis_json.h"
 #include "app/report/diagnosis_summary.h"
 #include "app/report/format.h"
+#include "app/report/gap_words.h"
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/progress_line.h"
 #include "diagnosis/diagnosis.h"
@@ -20,7 +22,7 @@ namespace selfcal {
 namespace {
 
 struct DiagnoseArguments {
-  std::string data_set, since, simulated, next, out;
+  std::string data_set, since, simulated, tool, next, out;
   bool json = false;
 };
 
@@ -32,6 +34,7 @@ struct Inputs {
   LoadedDataSet measured;
   std::shared_ptr<const Robot> robot;
   std::optional<LoadedDataSet> before, simulated;
+  std::optional<SimulatorGap> gap;  ///< of the simulator, where it is a model that was asked
 };
 
 Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const Robot& robot) {
@@ -44,6 +47,23 @@ Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const R
   return std::optional(*std::move(other));
 }
 
+/// The rows of the robot's simulator: a data set, or what a model says at the rows of the robot.
+Result<void> load_simulated(const DiagnoseArguments& arguments, Inputs& inputs) {
+  if (!is_simulator_model(arguments.simulated)) {
+    auto other = load_other(arguments.simulated, *inputs.robot);
+    if (!other) return tl::unexpected(other.error());
+    inputs.simulated = *std::move(other);
+    return {};
+  }
+  auto simulation =
+      ask_simulator(arguments.simulated, arguments.tool, inputs.measured, *inputs.robot);
+  if (!simulation) return tl::unexpected(simulation.error());
+  print_notices(simulation->measured);
+  inputs.simulated = std::move(simulation->measured);
+  inputs.gap = std::move(simulation->gap);
+  return {};
+}
+
 /// All of them, before anything that takes long.
 Result<Inputs> load(const DiagnoseArguments& arguments) {
   auto measured = load_data_set(arguments.data_set);
@@ -52,9 +72,10 @@ Result<Inputs> load(const DiagnoseArguments& arguments) {
   const std::shared_ptr<const Robot> robot = std::move(measured->robot);
   auto before = load_other(arguments.since, *robot);
   if (!before) return tl::unexpected(before.error());
-  auto simulated = load_other(arguments.simulated, *robot);
-  if (!simulated) return tl::unexpected(simulated.error());
-  return Inputs{*std::move(measured), robot, *std::move(before), *std::move(simulated)};
+  Inputs inputs{*std::move(measured), robot, *std::move(before), {}, {}};
+  if (const auto loaded = load_simulated(arguments, inputs); !loaded)
+    return tl::unexpected(loaded.error());
+  return inputs;
 }
 
 Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) {
@@ -70,9 +91,11 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
   const DataSet& simulated = inputs.simulated->data;
   const Diagnosis other = diagnose(inputs.robot, simulated, {}, shown_on(line));
   if (!other.problem.empty()) return bad_input(arguments.simulated + ": " + other.problem);
-  found.sim = {inputs.simulated->name, differences(found.diagnosis, other,
-                                                   compare(inputs.robot, simulated, data,
-                                                           Between::machines, {}, shown_on(line)))};
+  found.sim = {
+      inputs.simulated->name,
+      differences(found.diagnosis, other,
+                  compare(inputs.robot, simulated, data, Between::machines, {}, shown_on(line))),
+      inputs.gap};
   return found;
 }
 
@@ -82,6 +105,8 @@ std::string words_of(const Findings& findings) {
   std::string text = summary(findings.diagnosis);
   if (findings.since)
     text += "Since " + findings.since->name + ": " + findings.since->comparison.why + "\n";
+  if (findings.sim && findings.sim->gap)
+    text += "Against " + findings.sim->name + ": " + gap_in_words(*findings.sim->gap) + "\n";
   if (findings.sim)
     for (const std::string& each : findings.sim->differences.sentences)
       text += "Against " + findings.sim->name + ": " + each + "\n";
@@ -114,6 +139,8 @@ Result<void> write_findings(const DiagnoseArguments& arguments, const Inputs& in
 }
 
 int diagnose_command(const DiagnoseArguments& arguments) {
+  if (!arguments.tool.empty() && !is_simulator_model(arguments.simulated))
+    return wrong_usage("--tool names a site or body of a model, and --sim gives none");
   const auto inputs = load(arguments);
   if (!inputs) return tell(inputs.error());
   const auto findings = find(arguments, *inputs);
@@ -133,7 +160,10 @@ void add_diagnose(CLI::App& app, int& status) {
       "Where the gap between model and machine lies, what causes it, how far it closes");
   command->add_option("DATASET", arguments->data_set, "Folder with dataset.yaml")->required();
   command->add_option("--sim", arguments->simulated,
-                      "Data set of the robot's simulator: in what the two differ");
+                      "The robot's simulator, its data set or its model for MuJoCo (.xml): in "
+                      "what the two differ");
+  command->add_option("--tool", arguments->tool,
+                      "Site or body of the model that is measured (default: its only one)");
   command->add_option("--since", arguments->since,
                       "Earlier data set of the same robot: what changed");
   command->add_option("--next", arguments->next, "File for the rows to measure next");

@@ -9,6 +9,8 @@
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "io/models/delta_firmware.h"
+#include "io/models/mjcf_text.h"
+#include "io/models/mujoco.h"
 #include "io/models/ur_kinematics.h"
 #include "io/models/urdf_text.h"
 #include "kinematics/rotation.h"
@@ -29,29 +31,54 @@ void note_left_out(const std::vector<std::string>& all) {
   for (const std::string& each : all) note("left out: " + each);
 }
 
-/// The robot file that `text`, a URDF or a robot file, comes to.
+/// The robot file of a chain, after a line that says where it is from.
+Result<std::string> chain_file(const JointChain& chain, const std::string& origin,
+                               const ConvertArguments& arguments) {
+  const std::string converted =
+      "# From " + origin + "\n" + write_yaml(serial::write(frames_of(chain)));
+  if (const auto robot = robot_of(converted, arguments.file + ", converted"); !robot)
+    return tl::unexpected(robot.error());
+  return converted;
+}
+
+/// A model of MuJoCo's own, which its first element tells.
+bool is_mjcf(const std::string& text) { return text.find("<mujoco") != std::string::npos; }
+
+Result<std::string> from_mjcf(const ConvertArguments& arguments) {
+  if (!arguments.ends.base.empty())
+    return tl::unexpected(
+        Failure{kWrongUsage,
+                "--base chooses a link of a URDF: a model for MuJoCo is taken from its world"});
+  const auto model = read_mujoco(arguments.file, arguments.ends.tip);
+  if (!model) return tl::unexpected(model.error());
+  for (const std::string& notice : model->notices) note(notice);
+  return chain_file(model->chain,
+                    "the MuJoCo model " + model->chain.name + ", its world to " + model->tool,
+                    arguments);
+}
+
+/// The robot file that `text`, a URDF, a model for MuJoCo or a robot file, comes to.
 Result<std::string> as_robot_file(const std::string& text, const ConvertArguments& arguments) {
   if (!looks_like_xml(text)) {
     const auto robot = robot_of(text, arguments.file);
     if (!robot) return tl::unexpected(robot.error());
     return robot_text(**robot, values(**robot));
   }
+  if (is_mjcf(text)) return from_mjcf(arguments);
   const auto urdf = read_urdf(text, arguments.file, arguments.ends);
   if (!urdf) return tl::unexpected(urdf.error());
   for (const std::string& notice : urdf->notices) note(notice);
-  const std::string converted = "# From the URDF " + urdf->chain.name + ", " + urdf->ends.base +
-                                " to " + urdf->ends.tip + "\n" +
-                                write_yaml(serial::write(frames_of(urdf->chain)));
-  if (const auto robot = robot_of(converted, arguments.file + ", converted"); !robot)
-    return tl::unexpected(robot.error());
-  return converted;
+  return chain_file(
+      urdf->chain,
+      "the URDF " + urdf->chain.name + ", " + urdf->ends.base + " to " + urdf->ends.tip, arguments);
 }
 
-/// Names what no other program holds of a robot.
-void note_effects(const Node& robot) {
+/// Names what another program does not hold of a robot: its effects but for those that it `holds`.
+void note_effects(const Node& robot, bool (*holds)(const Node& entry) = nullptr) {
   const Node* effects = robot.find("effects");
   if (!effects) return;
   for (const Node& entry : effects->items) {
+    if (holds && holds(entry)) continue;
     const Node* name = entry.find("effect");
     const Node* at = entry.find("at");
     note("left out: the effect " + (name ? name->text : "?") +
@@ -118,6 +145,27 @@ Result<std::string> to_urdf(const Node& robot, const ConvertArguments& arguments
   return made->text;
 }
 
+/// A joint's compliance as one number, which MuJoCo has as a spring.
+bool is_joint_spring(const Node& entry) {
+  const Node *name = entry.find("effect"), *c = entry.find("c"), *at = entry.find("at");
+  return name && name->text == "joint_compliance" && at && c &&
+         written_number(c->text).value_or(0) > 0;
+}
+
+Result<std::string> to_mjcf(const Node& robot, const ConvertArguments& arguments) {
+  const auto model = serial_model(robot, arguments);
+  if (!model) return tl::unexpected(model.error());
+  note_effects(robot, is_joint_spring);
+  std::vector<JointSpring> springs;
+  if (const Node* effects = robot.find("effects"))
+    for (const Node& entry : effects->items)
+      if (is_joint_spring(entry))
+        springs.push_back({entry.find("at")->text, *written_number(entry.find("c")->text)});
+  const MjcfText made = mjcf_of(serial::with_usual_masses(*model), springs);
+  note_left_out(made.left_out);
+  return made.text;
+}
+
 Result<std::string> to_ur(const Node& robot, const ConvertArguments& arguments) {
   const auto model = serial_model(robot, arguments);
   if (!model) return tl::unexpected(model.error());
@@ -156,6 +204,7 @@ Result<std::string> converted(const std::string& robot, const ConvertArguments& 
   const auto node = parse_yaml(robot, arguments.file);
   if (!node) return tl::unexpected(node.error());
   if (arguments.to == "urdf") return to_urdf(*node, arguments);
+  if (arguments.to == "mjcf") return to_mjcf(*node, arguments);
   if (arguments.to == "ur") return to_ur(*node, arguments);
   return to_delta(*node, arguments);
 }
@@ -190,17 +239,21 @@ int convert(const ConvertArguments& arguments) {
 void add_robot_convert(CLI::App& robot, int& status) {
   auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command = robot.add_subcommand(
-      "convert", "A robot file from a URDF, or a calibrated robot for another program");
-  command->add_option("FILE", arguments->file, "URDF or NAME.robot.yaml")->required();
+      "convert",
+      "A robot file from a URDF or a model for MuJoCo, or a calibrated robot for another program");
+  command->add_option("FILE", arguments->file, "URDF, model for MuJoCo or NAME.robot.yaml")
+      ->required();
   command->add_option("--base", arguments->ends.base,
                       "Link of the URDF that the chain begins at (default: the root)");
   command->add_option("--tip", arguments->ends.tip,
-                      "Link of the URDF that the chain ends at (default: the only end)");
+                      "Link of the URDF, or site or body of the model, that the chain ends at "
+                      "(default: the only one)");
   command
       ->add_option("--to", arguments->to,
-                   "yaml: a robot file; urdf; ur: kinematics of Universal Robots' driver; delta: "
+                   "yaml: a robot file; urdf; mjcf: a model for MuJoCo; ur: kinematics of "
+                   "Universal Robots' driver; delta: "
                    "lines for printers' firmwares")
-      ->check(CLI::IsMember({"yaml", "urdf", "ur", "delta"}))
+      ->check(CLI::IsMember({"yaml", "urdf", "mjcf", "ur", "delta"}))
       ->capture_default_str();
   command->add_option("--like", arguments->like,
                       "URDF or UR kinematics whose joints get the calibrated poses");

@@ -73,6 +73,18 @@ std::string false_rows_in_words(const Diagnosis& diagnosis) {
   return text;
 }
 
+std::string gap_in_words(const SimulatorGap& gap) {
+  std::string others;
+  for (const std::string& each : gap.sets) others += (others.empty() ? "" : ", ") + each;
+  if (gap.rows == 0)
+    return "how far it is from the robot cannot be said by rows of " + others +
+           ", which are told against each other";
+  return mm(gap.rms) + " mm from the robot" +
+         printed(" on %.0f rows%s (rms)", static_cast<double>(gap.rows),
+                 gap.kept_aside ? " kept aside" : "") +
+         (others.empty() ? "" : ", those of " + others + " not counted");
+}
+
 std::string next_in_words(const NextStep& step) {
   std::string list;
   for (const std::string& each : step.separates)

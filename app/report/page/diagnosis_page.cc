@@ -42,7 +42,12 @@ std::vector<std::string> next_sentences(const Diagnosis& diagnosis) {
 Json to_json(const Findings& findings) {
   Json json = to_json(findings.diagnosis);
   if (findings.since) json["since"] = to_json(findings.since->comparison);
-  if (findings.sim) json["sim"] = to_json(findings.sim->differences);
+  if (findings.sim) {
+    json["sim"] = to_json(findings.sim->differences);
+    if (findings.sim->gap)
+      json["sim"]["gap"] = {{"rms", finite(findings.sim->gap->rms)},
+                            {"rows", findings.sim->gap->rows}};
+  }
   return json;
 }
 

@@ -7,6 +7,7 @@
 #include "app/report/page/page.h"
 #include "diagnosis/comparison/comparison.h"
 #include "diagnosis/comparison/simulation.h"
+#include "diagnosis/comparison/simulator_gap.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
@@ -19,6 +20,7 @@ struct SinceBefore {
 struct AgainstSimulation {
   std::string name;
   Differences differences;
+  std::optional<SimulatorGap> gap = {};  ///< of a model that was asked itself
 };
 
 /// All that a person asked of one data set.

@@ -1,0 +1,113 @@
+#include "app/commands/support/simulator.h"
+
+#include <algorithm>
+
+#include "constraints/methods/data_set.h"
+#include "io/models/mujoco.h"
+
+namespace selfcal {
+namespace {
+
+/// 1 sigma of one coordinate (m) that the simulated rows are taken for: far below any instrument's
+/// on a real robot, far above what a balance of forces leaves open.
+constexpr double kSimulatedNoise = 1e-6;
+
+std::vector<MujocoLoad> loads_of(const Observations& rows) {
+  std::vector<MujocoLoad> loads;
+  for (int row = 0; row < rows.rows(); ++row) {
+    MujocoLoad load;
+    load.q = rows.q.row(row).transpose();
+    if (rows.wrench.rows() > 0 && rows.wrench.row(row).allFinite()) {
+      load.force = rows.wrench.row(row).head<3>().transpose();
+      load.moment = rows.wrench.row(row).tail<3>().transpose();
+    }
+    loads.push_back(std::move(load));
+  }
+  return loads;
+}
+
+/// A name that no set of the machine's has: one name would be one instrument.
+std::string free_set_name(const std::filesystem::path& file, const DataSet& real) {
+  std::string name = file.stem().string();
+  while (std::ranges::find(real.sets, name, &Set::name) != real.sets.end()) name += "_";
+  return name;
+}
+
+Set position_set(const std::string& name, const DataSet& real) {
+  Node entry = Node::map();
+  entry.set("method", Node::of(std::string("position"))).set("noise", Node::of(kSimulatedNoise));
+  const auto all = [&](bool (Method::*is)() const) {
+    return std::ranges::all_of(real.sets, [&](const Set& set) { return (*set.method.*is)(); });
+  };
+  if (all(&Method::frame_unknown)) entry.set("frame", Node::of(std::string("unknown")));
+  if (all(&Method::point_unknown)) entry.set("point", Node::of(std::string("unknown")));
+  Problems problems;
+  return make_set(name, entry, problems);
+}
+
+Observations simulated_rows(const Observations& real, const ToolPoses& tool) {
+  std::vector<int> at_rest;
+  for (int row = 0; row < real.rows(); ++row)
+    if (tool[static_cast<std::size_t>(row)]) at_rest.push_back(row);
+  const Observations kept = taken(real, at_rest);
+  Observations rows;
+  rows.q = kept.q;
+  rows.wrench = kept.wrench;
+  rows.time = kept.time;
+  rows.check = kept.check;
+  rows.set.assign(at_rest.size(), 0);
+  rows.group.assign(at_rest.size(), -1);
+  rows.position.resize(rows.rows(), 3);
+  for (int i = 0; i < rows.rows(); ++i)
+    rows.position.row(i) = tool[static_cast<std::size_t>(at_rest[i])]->p.transpose();
+  return rows;
+}
+
+std::vector<std::string> notices_of(const MujocoPoses& poses, const Robot& robot) {
+  const auto joints = static_cast<int>(robot.joints().size());
+  const auto rows = std::to_string(poses.tool.size());
+  std::vector<std::string> list = {
+      poses.driven == 0 ? "no position actuator drives the joints: they stand at the readings"
+      : poses.driven == joints
+          ? "its position actuators are told the readings and hold the joints"
+          : std::to_string(poses.driven) + " of " + std::to_string(joints) +
+                " joints are held by position actuators, the others stand at the readings"};
+  if (poses.touching > 0)
+    list.push_back("it touches something in " + std::to_string(poses.touching) + " of " + rows +
+                   " rows");
+  const auto lost = std::ranges::count(poses.tool, false, &std::optional<Location>::has_value);
+  if (lost > 0)
+    list.push_back(std::to_string(lost) + " of " + rows +
+                   " rows are left out: it comes to no rest there");
+  return list;
+}
+
+}  // namespace
+
+bool is_simulator_model(const std::filesystem::path& path) {
+  const std::string end = path.extension().string();
+  return end == ".xml" || end == ".mjcf" || end == ".mjb" || end == ".urdf";
+}
+
+Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::string& tool,
+                                 const LoadedDataSet& real, const Robot& robot) {
+  const auto poses = settled_poses(file, tool, loads_of(real.data.rows));
+  if (!poses) return tl::unexpected(poses.error());
+  if (std::ranges::count(poses->tool, false, &std::optional<Location>::has_value) ==
+      std::ssize(poses->tool))
+    return bad_input(file.string() + ": comes to rest at none of the rows of " + real.name);
+  Simulation simulation;
+  simulation.gap = simulator_gap(real.data, poses->tool);
+  LoadedDataSet& measured = simulation.measured;
+  measured.name = file.filename().string();
+  measured.notices = notices_of(*poses, robot);
+  measured.files = {file};
+  measured.data.target = real.data.target;
+  measured.data.workspace = real.data.workspace;
+  measured.data.order_is_time = real.data.order_is_time;
+  measured.data.sets = {position_set(free_set_name(file, real.data), real.data)};
+  measured.data.rows = simulated_rows(real.data.rows, poses->tool);
+  return simulation;
+}
+
+}  // namespace selfcal

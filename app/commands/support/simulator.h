@@ -1,0 +1,28 @@
+// The user's own simulator, a model that MuJoCo loads, asked at the configurations of a data set.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diagnosis/comparison/simulator_gap.h"
+#include "io/files/data_set_file.h"
+
+namespace selfcal {
+
+/// A model for MuJoCo, by its name's end (.xml, .mjcf, .mjb, .urdf), and no data set.
+bool is_simulator_model(const std::filesystem::path& path);
+
+struct Simulation {
+  LoadedDataSet measured;  ///< its rows with the tool where the simulator puts it, as positions
+  SimulatorGap gap;        ///< of the machine's rows from it
+};
+
+/// Asks the model `file` at every row of `real`, whose joints the model must have; `tool` as
+/// read_mujoco has it. The simulated rows are positions, seen by an instrument in the model's
+/// world; its place is unknown where those of `real` are, and so is the target's. Wrenches of the
+/// rows act on the tool.
+Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::string& tool,
+                                 const LoadedDataSet& real, const Robot& robot);
+
+}  // namespace selfcal

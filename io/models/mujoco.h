@@ -1,0 +1,53 @@
+// Models that MuJoCo loads (MJCF, or a URDF by its reader): the chain to a tool, and where the
+// model itself puts that tool at given readings, gravity, springs and contacts included.
+//
+// mujoco_engine.cc is built where libmujoco is found; mujoco_missing.cc, which refuses, where not.
+//
+// Of the joints between the world and the tool those are the robot's that an actuator drives or no
+// spring holds; the others, springs that nothing drives, give way.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/result.h"
+#include "kinematics/chains/joint_chain.h"
+
+namespace selfcal {
+
+struct MujocoChain {
+  JointChain chain;                  ///< W is the model's world, T the tool; springs at their rest
+  std::string tool;                  ///< the site or body that T is, as found
+  std::vector<std::string> notices;  ///< what a person should know
+};
+
+/// The chain from the world to `tool`, a site or a body; empty: the model's only site or, without
+/// sites, its only body that carries no other. Refuses what MuJoCo refuses, a tool that is not
+/// there or not one, ball and free joints on the chain, joints that follow others by an equality,
+/// and a chain without a joint of the robot.
+Result<MujocoChain> read_mujoco(const std::filesystem::path& file, const std::string& tool);
+
+/// One configuration at which the model is asked.
+struct MujocoLoad {
+  Eigen::VectorXd q;                                 ///< readings, by joint of the chain (rad or m)
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N, on the tool, in its axes
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< N m, the same
+};
+
+struct MujocoPoses {
+  std::vector<std::optional<Location>> tool;  ///< in the world; nothing where it came to no rest
+  int driven = 0;                             ///< joints that a position actuator holds
+  int touching = 0;                           ///< configurations with contacts
+};
+
+/// Where the tool stands at rest. A joint with a position actuator is commanded to its reading and
+/// gives way as the actuator lets it; one without stands at its reading. Joints that follow these
+/// by an equality follow exactly. Springs of the chain settle to the balance of all forces, by
+/// Newton's method on the inverse dynamics at no acceleration; what is off the chain stays where
+/// the model has it.
+Result<MujocoPoses> settled_poses(const std::filesystem::path& file, const std::string& tool,
+                                  const std::vector<MujocoLoad>& loads);
+
+}  // namespace selfcal
