@@ -4,8 +4,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/circle_robot.h"
 #include "app/report/format.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
@@ -40,7 +42,7 @@ std::string unknown_name(const Robot& robot, const Options& options) {
 
 Result<void> write_solution(const IdentifyArguments& arguments, const Robot& robot,
                             const LoadedDataSet& loaded, const Solution& solution,
-                            const std::string& json) {
+                            const std::string& json, const std::string& robot_file) {
   const std::filesystem::path out(arguments.out);
   const PageSubject subject{robot, loaded.data, loaded.name, unix_now_ms()};
   if (auto done = write_file_atomically(out / "report.html",
@@ -48,7 +50,7 @@ Result<void> write_solution(const IdentifyArguments& arguments, const Robot& rob
       !done)
     return done;
   if (auto done = write_file_atomically(out / "result.json", json + "\n"); !done) return done;
-  return write_file_atomically(out / "calibrated.robot.yaml", robot_text(robot, solution.values));
+  return write_file_atomically(out / "calibrated.robot.yaml", robot_file);
 }
 
 /// Whether the effect of a robot file's `entry` is one of those asked for (EFFECT or EFFECT@PLACE).
@@ -82,6 +84,13 @@ int identify_command(const IdentifyArguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
   print_notices(*loaded);
+  std::optional<CircleRobot> circles;
+  if (of_circles_alone(loaded->data)) {
+    auto found = circle_robot(*loaded);
+    if (!found) return tell(found.error());
+    circles = std::move(*found);
+    loaded->robot = circles->robot;
+  }
   const auto model = with_effects(std::move(loaded->robot), loaded->data, arguments);
   if (!model) return wrong_usage(model.error());
   const Robot& robot = **model;
@@ -100,13 +109,18 @@ int identify_command(const IdentifyArguments& arguments) {
     solution = identify(robot, loaded->data, options,
                         [&](std::string_view stage, double share) { line.show(stage, share); });
   }
+  if (circles) compare_with_file(*circles, solution);
   const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
   if (arguments.json)
     std::printf("%s\n", json.c_str());
   else
     std::fputs(summary(loaded->data, solution).c_str(), stdout);
   if (!arguments.out.empty())
-    if (const auto written = write_solution(arguments, robot, *loaded, solution, json); !written)
+    if (const auto written = write_solution(arguments, robot, *loaded, solution, json,
+                                            circles && arguments.effects.empty()
+                                                ? nominal_text(*circles, solution)
+                                                : robot_text(robot, solution.values));
+        !written)
       return tell(written.error());
   return solution.verdict.answer == Answer::improved ? kDone : kAnswerIsNo;
 }

@@ -138,10 +138,16 @@ std::vector<Set> read_sets(const Node& node, Problems& problems) {
 }
 
 std::string lacking_body(const Robot& robot, const std::vector<Set>& sets) {
-  for (const Set& set : sets)
+  for (const Set& set : sets) {
     if (set.method && !has_body(robot, set.method->body()))
       return "set " + set.name + ": this " + std::string(robot.kind()) +
              " robot has no such joint to lock";
+    const std::string joint = set.method ? set.method->turning_joint() : "";
+    if (joint.empty()) continue;
+    const int j = find_joint(robot, joint);
+    if (j < 0 || robot.joints()[static_cast<std::size_t>(j)].quantity != Quantity::angle)
+      return "set " + set.name + ": " + robot.name() + " has no joint '" + joint + "' that turns";
+  }
   return {};
 }
 

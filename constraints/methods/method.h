@@ -21,7 +21,13 @@ namespace selfcal {
 using Random = std::mt19937_64;
 
 /// Most scalar equations that one row of any method gives (the calibration index of 11.5).
-inline constexpr int kMostEquations = 6;
+inline constexpr int kMostEquations = 18;
+
+/// Markers of circle points: fewer do not tell how a body is turned.
+inline constexpr int kFewestMarkers = 3, kMostMarkers = kMostEquations / 3;
+
+/// Name of the column with a coordinate (0 to 2) of a marker (from 0) of circle points: "m1x".
+std::string marker_column(int marker, int coordinate);
 
 /// The plane n . P = d.
 struct Plane {
@@ -136,6 +142,9 @@ class Method {
   /// True when a row holds only at certain configurations (a touch); false for an instrument's
   /// reading, which any configuration has.
   virtual bool constrains() const { return true; }
+  /// Name of the only joint that moves between the rows of a group; empty of methods that let all
+  /// move.
+  virtual std::string turning_joint() const { return {}; }
   /// True when one of the equations is of a length, or of an angle, which has a noise of its own.
   bool has_lengths() const;
   bool has_angles() const;

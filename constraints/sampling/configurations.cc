@@ -81,9 +81,13 @@ class Sampler {
     Set& set = data_.sets[request.set];
     const Method& method = *set.method;
     locked_.clear();
-    if (!request.held.empty()) {
+    std::vector<int> held = request.held;
+    const int turning = find_joint(robot_, method.turning_joint());
+    for (int joint = 0; turning >= 0 && joint < static_cast<int>(robot_.joints().size()); ++joint)
+      if (joint != turning) held.push_back(joint);
+    if (!held.empty()) {
       const Eigen::MatrixXd there = random_poses(robot_, nullptr, 1, random_());
-      for (const int joint : request.held) locked_.emplace_back(joint, there(0, joint));
+      for (const int joint : held) locked_.emplace_back(joint, there(0, joint));
     }
     Eigen::VectorXd& nuisance = sampled_.truth.nuisance[request.set];
     const Eigen::VectorXd* reference =

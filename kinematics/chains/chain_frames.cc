@@ -54,11 +54,12 @@ struct Stand {
 /// `x` or its opposite, whichever is nearer to `to`; where neither is, as it is.
 Vector3d nearer(const Vector3d& x, const Vector3d& to) { return x.dot(to) < -kClear ? -x : x; }
 
-/// Frame j on `axis`, for `next` to follow; A is the frame before its theta and r.
-Stand stand(const AxisLine& axis, const AxisLine& next, const Isometry3d& A) {
+/// Frame j on `axis`, for `next` to follow, x rather along `before`; A is the frame before its
+/// theta and r.
+Stand stand(const AxisLine& axis, const AxisLine& next, const Isometry3d& A,
+            const Vector3d& before) {
   const Vector3d n = axis.z.cross(next.z);
   const double sine = n.norm(), cosine = axis.z.dot(next.z);
-  const Vector3d before = A.linear().col(0);
   if (sine < kParallel) {
     Vector3d to = foot(next, A.translation()) - A.translation();
     to -= axis.z * axis.z.dot(to);
@@ -179,8 +180,8 @@ serial::Model frames_of(const JointChain& chain) {
     frame.value = leading.value;
     const bool last = j + 1 == chain.joints.size();
     const Isometry3d own = axis_frame(joint);
-    const Stand at =
-        last ? Stand{own.translation(), own.linear().col(0)} : stand(line(j), line(j + 1), A);
+    const Stand at = last ? Stand{own.translation(), own.linear().col(0)}
+                          : stand(line(j), line(j + 1), A, joint.x.value_or(A.linear().col(0)));
     turn_on(A, at, frame);
     F = F * serial::pose_in_parent(frame, 0);
     frame.lower = joint.lower;

@@ -26,7 +26,10 @@ struct ChainJoint {
   serial::Motion motion = serial::Motion::revolute;        ///< never fixed
   Eigen::Isometry3d X_WJ = Eigen::Isometry3d::Identity();  ///< with all joints at zero
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit, in J
-  double lower = 0, upper = 0;                             ///< rad or m; equal: not limited
+  /// In W, which of the two ways x of its frame points; without, that which turns less against the
+  /// frame before.
+  std::optional<Eigen::Vector3d> x = {};
+  double lower = 0, upper = 0;  ///< rad or m; equal: not limited
   std::optional<Mimicry> mimicry;
   std::optional<double> mass;  ///< kg, of all that it carries up to the next joint
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< m, of this mass, in J

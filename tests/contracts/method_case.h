@@ -71,6 +71,8 @@ inline std::vector<MethodCase> method_cases() {
       {"LockedSphericalJoint", "s: {method: locked-joint, lock: {leg: 5, joint: spherical}}", true,
        true},
       {"ConstraintLink", "s: {method: constraint-link, length: 0.75}"},
+      {"CirclePoint", "s: {method: circle-point, joint: j2}"},
+      {"CirclePointOfMostMarkers", "s: {method: circle-point, joint: j2, markers: 6}"},
       {"SphereKnown", "s: {method: sphere, center: [0.6, 0.1, 0.5], radius: 0.1}"},
   };
 }

@@ -11,6 +11,7 @@ namespace selfcal {
 namespace {
 
 const char* const kLocked = "locked-joint";
+const char* const kCircles = "circle-point";
 
 bool locks_legs(const MethodOptions& options) {
   return std::ranges::count(options.methods, kLocked) > 0;
@@ -76,6 +77,18 @@ Set locked_set(const std::string& lock, const MethodOptions& options, Problems& 
   return make_set(lock, with_noise(std::move(node), options), problems);
 }
 
+/// A set of circle points for each joint that turns.
+std::vector<Set> circle_sets(const Robot& robot, const MethodOptions& options, Problems& problems) {
+  std::vector<Set> sets;
+  for (const Joint& joint : robot.joints()) {
+    if (joint.quantity != Quantity::angle) continue;
+    Node node = Node::map();
+    node.set("method", Node::of(std::string(kCircles))).set("joint", Node::of(joint.name));
+    sets.push_back(make_set(joint.name, with_noise(std::move(node), options), problems));
+  }
+  return sets;
+}
+
 }  // namespace
 
 CLI::IsMember is_method() {
@@ -127,6 +140,10 @@ Result<std::vector<Set>> method_sets(const Robot& robot, const MethodOptions& op
     if (method == kLocked) {
       for (const std::string& lock : options.locks)
         sets.push_back(locked_set(lock, options, problems));
+      continue;
+    }
+    if (method == kCircles) {
+      for (Set& set : circle_sets(robot, options, problems)) sets.push_back(std::move(set));
       continue;
     }
     const auto before = std::count(

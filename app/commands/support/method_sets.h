@@ -26,7 +26,8 @@ std::vector<CLI::Option*> add_lock_and_unknown(CLI::App& command, MethodOptions&
 /// What is wrong with the options among themselves; empty where nothing is.
 std::string mistake(const MethodOptions& options);
 
-/// A set of each method (of each lock, of locked-joint), named after it. Planes and normals are
+/// A set of each method (of each lock, of locked-joint; of each joint that turns, of circle-point),
+/// named after it. Planes and normals are
 /// known unless the options say otherwise, a plane through the endpoint at a random configuration;
 /// a link is as long as such a one asks for.
 Result<std::vector<Set>> method_sets(const Robot& robot, const MethodOptions& options,

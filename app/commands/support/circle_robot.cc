@@ -1,0 +1,73 @@
+// The axes are found by themselves, then all rows are met at once from there.
+#include "app/commands/support/circle_robot.h"
+
+#include <algorithm>
+
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+
+namespace selfcal {
+namespace {
+
+Failure bad_circles(const LoadedDataSet& loaded, const std::vector<std::string>& problems) {
+  std::string all;
+  for (const std::string& each : problems) all += (all.empty() ? "" : "\n") + each;
+  return {kBadInput, loaded.name + ": " + all};
+}
+
+void set_tolerances(serial::Model& model, double tolerance) {
+  for (serial::Frame& frame : model.frames) frame.tolerance.setConstant(tolerance);
+  model.frames.back().tolerance.setConstant(-1);  // no axis tells of the tool
+}
+
+}  // namespace
+
+Result<CircleRobot> circle_robot(const LoadedDataSet& loaded) {
+  const Robot& robot = *loaded.robot;
+  if (robot.kind() != "serial")
+    return bad_input(loaded.name + ": circle points tell the axes of a serial robot, and " +
+                     robot.name() + " is of kind " + std::string(robot.kind()));
+  Problems problems;
+  const serial::Model file =
+      serial::read(robot.text().describe(values(robot)).without({"effects"}), problems);
+  if (problems.any()) return bad_input(problems);
+  std::vector<std::string> lacking;
+  std::optional<AxisModel> model = axis_model(file, loaded.data, lacking);
+  if (!model) return tl::unexpected(bad_circles(loaded, lacking));
+  set_tolerances(model->found, kLittleKnown);
+  auto found = robot_of(write_yaml(serial::write(model->found)), "the robot of the axes");
+  if (!found) return tl::unexpected(found.error());
+  return CircleRobot{std::move(*found), std::move(*model)};
+}
+
+void compare_with_file(const CircleRobot& start, Solution& solution) {
+  const std::vector<Parameter> made = serial::parameters(start.model.made);
+  for (ParameterResult& each : solution.parameters) {
+    const auto same = std::ranges::find(made, each.parameter.name, &Parameter::name);
+    if (same != made.end()) each.parameter.nominal = same->value;
+  }
+}
+
+std::string nominal_text(const CircleRobot& start, const Solution& solution) {
+  Problems problems;
+  serial::Model model =
+      serial::read(start.robot->text().describe(solution.values).without({"effects"}), problems);
+  set_tolerances(model, -1);
+  for (serial::Frame& frame : model.frames) {
+    frame.nominal = frame.value;
+    frame.rpy_nominal = frame.rpy;
+    frame.gear_nominal = frame.gear;
+    for (const ParameterResult& each : solution.parameters) {
+      // Nearer to kLittleKnown are figures that other ones make up for: a choice, not a doubt.
+      if (each.parameter.frame != frame.name || each.sigma < serial::kLinkTolerance ||
+          each.sigma > kLittleKnown / 2)
+        continue;
+      const auto names = serial::field_names(frame.whole);
+      const auto field = std::ranges::find(names, each.parameter.field);
+      if (field != names.end()) frame.tolerance[field - names.begin()] = each.sigma;
+    }
+  }
+  return write_yaml(serial::write(model));
+}
+
+}  // namespace selfcal
