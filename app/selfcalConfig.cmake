@@ -1,6 +1,8 @@
 # find_package(selfcal): the target selfcal::selfcal and what it links to.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
+find_dependency(PkgConfig)
+pkg_check_modules(HWY REQUIRED libhwy)
 find_dependency(tl-expected)
 find_dependency(nlohmann_json)
 find_dependency(yaml-cpp)

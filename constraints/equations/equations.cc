@@ -5,9 +5,11 @@
 #include "constraints/equations/equations_inner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kinematics/corrected_robot.h"
+#include "kinematics/kernels/kernels.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -16,13 +18,16 @@ namespace {
 /// Adds G (of one side) times Psi to the rows of W, equation by equation.
 void add_product(const MethodOutput::Block& G, const PsiBlock& psi, int equations,
                  Eigen::MatrixXd& W) {
-  for (int a = 0; a < equations; ++a)
-    for (int c = 0; c < 6; ++c) {
-      const auto g = G.col(6 * a + c);
-      if ((g == 0).all()) continue;
-      W.middleRows(a * kLanes, kLanes).leftCols(psi.cols()).array() +=
-          psi.middleRows(c * kLanes, kLanes).array().colwise() * g;
-    }
+  for (int a = 0; a < equations; ++a) {
+    std::array<kernels::LaneProduct, 6> products;
+    size_t terms = 0;
+    for (int c = 0; c < 6; ++c)
+      if ((G.col(6 * a + c) != 0).any())
+        products[terms++] = {G.col(6 * a + c).data(), psi.data() + c * kLanes};
+    kernels::add_products(products.data(), terms, kLanes, static_cast<size_t>(psi.cols()),
+                          static_cast<size_t>(psi.rows()), W.data() + a * kLanes,
+                          static_cast<size_t>(W.rows()));
+  }
 }
 
 /// Columns of a rigid motion of the world: shifts, then turns about the origin.

@@ -1,11 +1,24 @@
 // Householder QR of [R; new rows] whenever the buffer is full (Golub and Van Loan, 5.2 and 6.5).
 #include "constraints/equations/streaming_qr.h"
 
-#include "kinematics/linear_algebra.h"
+#include <algorithm>
+
+#include "kinematics/kernels/kernels.h"
 
 namespace selfcal {
+namespace {
 
-StreamingQr::StreamingQr(int columns) : columns_(columns), buffer_(5 * columns, columns) {}
+/// Rows of the buffer: as many as stay in the first cache, a multiple of what kernels ask for.
+Eigen::Index buffered(int columns) {
+  constexpr Eigen::Index kNumbers = 4096, kFewest = 32, kMost = 256;  // 32 kB of doubles
+  constexpr auto kStep = static_cast<Eigen::Index>(kernels::kMultiple);
+  return std::clamp(kNumbers / std::max(columns, 1) / kStep * kStep, kFewest, kMost);
+}
+
+}  // namespace
+
+StreamingQr::StreamingQr(int columns)
+    : R_(Eigen::MatrixXd::Zero(columns, columns)), buffer_(buffered(columns), columns) {}
 
 void StreamingQr::push(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
   for (Eigen::Index done = 0; done < rows.rows();) {
@@ -17,18 +30,18 @@ void StreamingQr::push(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
   }
 }
 
-Eigen::MatrixXd StreamingQr::R() {
+const Eigen::MatrixXd& StreamingQr::R() {
   reduce();
-  return buffer_.topRows(columns_);
+  return R_;
 }
 
 void StreamingQr::reduce() {
-  if (filled_ < columns_) {
-    buffer_.middleRows(filled_, columns_ - filled_).setZero();
-    filled_ = columns_;
-  }
-  triangularise(buffer_.topRows(filled_));
-  filled_ = columns_;
+  constexpr auto kStep = static_cast<Eigen::Index>(kernels::kMultiple);
+  const Eigen::Index rows = (filled_ + kStep - 1) / kStep * kStep;
+  buffer_.middleRows(filled_, rows - filled_).setZero();
+  kernels::append_rows(R_.data(), static_cast<size_t>(R_.cols()), buffer_.data(),
+                       static_cast<size_t>(rows), static_cast<size_t>(buffer_.rows()));
+  filled_ = 0;
 }
 
 }  // namespace selfcal

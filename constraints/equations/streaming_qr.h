@@ -6,8 +6,8 @@
 
 namespace selfcal {
 
-/// Keeps R (columns x columns, upper triangular) of all rows pushed so far. Memory is a few times
-/// columns^2 whatever the count of rows; each row costs about 3 columns^2 operations.
+/// Keeps R (columns x columns, upper triangular) of all rows pushed so far. Memory is that of R and
+/// of rows that fit the fastest cache; each row costs about 2 columns^2 operations.
 class StreamingQr {
  public:
   explicit StreamingQr(int columns);
@@ -15,13 +15,13 @@ class StreamingQr {
   /// Appends rows (any count, `columns` wide).
   void push(const Eigen::Ref<const Eigen::MatrixXd>& rows);
   /// R such that R^T R = W^T W over all rows.
-  Eigen::MatrixXd R();
+  const Eigen::MatrixXd& R();
 
  private:
   void reduce();
 
-  Eigen::Index columns_, filled_ = 0;
-  Eigen::MatrixXd buffer_;  // the current R on top, new rows below
+  Eigen::Index filled_ = 0;
+  Eigen::MatrixXd R_, buffer_;  ///< of the rows before, the rows since
 };
 
 }  // namespace selfcal

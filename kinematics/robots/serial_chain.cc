@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kinematics/kernels/kernels.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal::serial {
@@ -47,7 +48,8 @@ void step_numbers(Motion motion, const Eigen::Ref<const Eigen::VectorXd>& v, con
   Lanes theta = Lanes::Constant(kLanes, v[kTheta]), r = Lanes::Constant(kLanes, v[kR]);
   if (motion == Motion::revolute) theta += variable;
   if (motion == Motion::prismatic) r += variable;
-  const Lanes c = theta.cos(), s = theta.sin();
+  Lanes c(kLanes), s(kLanes);
+  kernels::sine_cosine(theta.data(), kLanes, s.data(), c.data());
   pose.x = combine(c, x, s, y);
   pose.y = combine(c, y, -s, x);
   advance(pose.p, r, pose.z);
