@@ -12,6 +12,12 @@ std::string_view to_string(MoveKind kind) {
       return "seat";
     case MoveKind::retract:
       return "retract";
+    case MoveKind::lock:
+      return "lock";
+    case MoveKind::visit:
+      return "visit";
+    case MoveKind::release:
+      return "release";
   }
   return "";
 }

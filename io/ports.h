@@ -101,6 +101,9 @@ enum class MoveKind : std::uint8_t {
             ///< longer hears the service
   seat,     ///< the tool gives way until it sits in the socket or nest
   retract,  ///< back out of a contact
+  lock,     ///< stand, every leg held, and engage the lock that the label names; done when engaged
+  visit,    ///< with a lock engaged: the legs give way to what it allows nearest `q`
+  release,  ///< stand, every leg held, and open whatever lock is engaged; done when open
 };
 std::string_view to_string(MoveKind kind);
 
@@ -108,7 +111,8 @@ std::string_view to_string(MoveKind kind);
 struct MotionRequest {
   std::uint64_t id = 0;  ///< grows with every request
   MoveKind kind = MoveKind::travel;
-  std::string label;      ///< of the touch it serves ("table 17"), for a person
+  std::string label;      ///< of the touch it serves ("table 17"), for a person; of a lock, which:
+                          ///< "leg 1 universal"
   std::vector<double> q;  ///< target, by joint
   double speed = 1;       ///< largest joint speed (rad/s or m/s)
 };

@@ -67,9 +67,9 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
     if (known && scenario.sets[s].within.radius <= 0)
       problems.add(scenario.sets[s].entry.place,
                    "set " + sets_[s].name + ": a machine needs `within` of every surface");
-    if (!known && scenario.sets[s].places.empty())
+    if (!known && scenario.sets[s].places.empty() && sets_[s].method->planned() != Planned::lock)
       problems.add(scenario.sets[s].entry.place,
-                   "set " + sets_[s].name + ": a machine needs planes or `places`");
+                   "set " + sets_[s].name + ": a machine needs planes, locks or `places`");
     truth_.groups.push_back(true_groups(scenario.sets[s], *sets_[s].method));
     for (std::size_t g = 0; g < scenario.sets[s].places.size(); ++g)
       if (sets_[s].groups.size() <= g) sets_[s].groups.push_back("g" + std::to_string(g));
@@ -86,7 +86,7 @@ bool Machine::broken(MachineFault::What what, Nanoseconds t) const {
   });
 }
 
-bool Machine::busy() const { return moving_ || now_ < last_motion_ + kAfterglow; }
+bool Machine::busy() const { return moving_ || turn_ || now_ < last_motion_ + kAfterglow; }
 
 double Machine::celsius() const {
   return settings_.temperature + settings_.warming * seconds(now_) / 3600;
@@ -104,6 +104,7 @@ EncoderSample Machine::sample(Nanoseconds t) const {
 void Machine::advance(Nanoseconds now) {
   if (now <= now_) return;
   pass_crossings(now);
+  pass_lock(now);
   if (moving_ && now >= path_.end()) {
     now_ = path_.end();
     last_motion_ = now_;
@@ -178,6 +179,8 @@ void Machine::request(const MotionRequest& request) {
       return refuse(joint.name + " cannot go to " + format_number(request.q[j]));
   }
   if (moving_) stop("another move was asked for");
+  if (request.kind == MoveKind::lock || request.kind == MoveKind::release)
+    return turn_lock(request);
   begin(request);
 }
 
@@ -186,6 +189,7 @@ void Machine::begin(const MotionRequest& request) {
   Eigen::VectorXd target = Eigen::Map<const Eigen::VectorXd>(
       request.q.data(), static_cast<Eigen::Index>(request.q.size()));
   if (request.kind == MoveKind::seat) target = seat(request, here);
+  if (request.kind == MoveKind::visit) target = give_way(request);
   path_ = Trajectory(here, target, std::min(request.speed, settings_.speed), settings_.acceleration,
                      now_);
   ahead_ = crossings(request, path_);

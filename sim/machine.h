@@ -39,6 +39,7 @@ class Machine {
   void advance(Nanoseconds now);
   Nanoseconds now() const { return now_; }
   /// True from a request to half a second after the robot stands.
+  /// Or while a lock is on its way.
   bool busy() const;
   bool moving() const { return moving_.has_value(); }
   /// The moment after now() at which the next sample is taken.
@@ -89,6 +90,13 @@ class Machine {
   void stick(Nanoseconds until);
   Nanoseconds period() const { return nanoseconds(settings_.encoder_period); }
 
+  // sim/machine_lock.cc
+  void turn_lock(const MotionRequest& request);
+  void pass_lock(Nanoseconds until);
+  void engage(int set);
+  int set_of_lock(const std::string& lock) const;
+  Eigen::VectorXd give_way(const MotionRequest& request);
+
   // sim/machine_contact.cc
   std::vector<Crossing> crossings(const MotionRequest& request, const Trajectory& path);
   Eigen::VectorXd seat(const MotionRequest& request, const Eigen::VectorXd& from);
@@ -118,6 +126,15 @@ class Machine {
   std::vector<Crossing> ahead_;  // not yet reached on the path, in the order of s
   double contact_offset_ = 0;    // m, at which the touch in progress triggers
   int contact_set_ = -1;
+  /// A lock on its way to engage (its set) or to open (-1).
+  struct LockTurn {
+    std::uint64_t id = 0;
+    Nanoseconds due = 0;
+    int set = -1;
+  };
+  std::optional<LockTurn> turn_;
+  int locked_ = -1;  // set of the lock that is engaged
+  bool slipped_ = false;
   bool closed_ = false, stuck_ = false;
   std::deque<EncoderSample> samples_;
   std::deque<Edge> edges_;

@@ -64,6 +64,7 @@ double Machine::offset(const MotionRequest& request, int set) {
 std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
                                                   const Trajectory& path) {
   std::vector<Crossing> found;
+  if (request.kind == MoveKind::visit) return found;
   if (request.kind == MoveKind::seat) {
     found.push_back({1.0, true});
     return found;

@@ -9,10 +9,15 @@ namespace selfcal {
 namespace {
 
 using What = MachineFault::What;
-constexpr std::array<std::pair<std::string_view, What>, 4> kFaults = {{{"encoders", What::encoders},
-                                                                       {"stuck", What::stuck},
-                                                                       {"refuse", What::refuse},
-                                                                       {"silent", What::silent}}};
+constexpr std::array<std::pair<std::string_view, What>, 8> kFaults = {
+    {{"encoders", What::encoders},
+     {"stuck", What::stuck},
+     {"refuse", What::refuse},
+     {"silent", What::silent},
+     {"lock_refuse", What::lock_refuse},
+     {"lock_late", What::lock_late},
+     {"lock_open", What::lock_open},
+     {"lock_slip", What::lock_slip}}};
 
 MachineFault read_fault(const Node& node, Problems& problems) {
   Fields fields(node, "machine fault", problems);
@@ -24,7 +29,9 @@ MachineFault read_fault(const Node& node, Problems& problems) {
       fault.what = value;
       known = true;
     }
-  if (!known) fields.fail("what", "encoders, stuck, refuse or silent");
+  if (!known)
+    fields.fail("what",
+                "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or lock_slip");
   fault.at = fields.number("at", 0, 0, 1e9);
   fault.duration = fields.number("for", 1e9, 0, 1e9);
   fields.refuse_unknown();
@@ -45,6 +52,8 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   within("trigger_delay", machine.trigger_delay, 0, 0.1);
   machine.bounce = fields.integer("bounce", machine.bounce, 0, 20);
   within("missed", machine.missed, 0, 0.5);
+  within("lock_time", machine.lock_time, 0, 10);
+  within("lock_slip", machine.lock_slip, 0, 0.1);
   within("temperature", machine.temperature, -40, 80);
   within("warming", machine.warming, -20, 20);
   machine.trigger_pull = fields.text("trigger_pull", "");

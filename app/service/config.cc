@@ -171,6 +171,7 @@ class Reader {
     limit("touch", c_.limits.touch);
     limit("settle", c_.limits.settle);
     limit("retract", c_.limits.retract);
+    limit("lock", c_.limits.lock);
     limit("computing", c_.limits.computing);
   }
 
@@ -233,14 +234,16 @@ class Reader {
     Fields f(node, "set " + c_.sets[set].name, problems_);
     TouchTarget target;
     target.set = set;
-    target.touches = f.integer("touches", 40, 4, 10000);
+    target.touches = f.integer("touches", 40, 4, 10000);  // configurations, of a lock
     const Node *surface = f.node("surface"), *within = f.node("within"), *places = f.node("places");
     if (method->planned() == Planned::surface)
       read_plane(f, surface, within, target);
     else if (method->planned() == Planned::places)
       read_sockets(f, places, target);
+    else if (method->planned() == Planned::lock)
+      read_lock(f, *method, target);
     else
-      f.fail("method", "what a touch can do, one of " + planned_methods());
+      f.fail("method", "what a session can do, one of " + planned_methods());
     c_.targets.push_back(std::move(target));
   }
 
@@ -264,6 +267,20 @@ class Reader {
     target.places = read_places(*places, f.what() + " places", problems_);
     target.outward = read_unit(f, "way_out");
     target.within = {};
+  }
+
+  /// The lock is engaged with its leg as it is turned at home.
+  void read_lock(Fields& f, const Method& method, TouchTarget& target) {
+    for (const char* key : {"surface", "within", "places", "way_out"})
+      if (f.has(key)) return f.fail(key, "none of a lock: it is engaged as the leg stands at home");
+    if (const std::string lacking = lacking_body(*c_.robot, c_.sets); !lacking.empty())
+      return f.fail("lock", "a joint of the robot: " + lacking);
+    if (c_.plan.home.size() == 0) return;  // said before
+    const ConfigurationBlock home = block_of(c_.plan.home);
+    Locations X;
+    if (!c_.robot->locate(home, values(*c_.robot), method.body(), X, nullptr).closes(0))
+      return f.fail("method", "`motion: home` of a platform whose legs meet there");
+    target.outward = X.R(0).col(2);
   }
 
   std::filesystem::path folder_;

@@ -39,7 +39,8 @@
 //     attempts       3          1 to 20         failures before a configuration is put aside
 //     most_lost      5          1 to 1000       configurations put aside in a row before it stops
 //   limits           {}         1 to 3600 s     time for self_test 10, planning 120, approach 60,
-//                                               touch 60, settle 2, retract 30, computing 600
+//                                               touch 60, settle 2, retract 30, lock 30,
+//                                               computing 600
 //   sets             required                   NAME: {an entry of dataset.yaml's sets, and:
 //     touches        40         4 to 10000      configurations
 //     surface        planes                     {point: [x, y, z], normal: [x, y, z]}, roughly; the

@@ -25,9 +25,10 @@ Reflex::~Reflex() {
   if (thread_.joinable()) thread_.join();  // within kLook
 }
 
-Result<void> Reflex::request(const MotionRequest& request, bool guarded) {
+Result<void> Reflex::request(const MotionRequest& request, std::optional<bool> until) {
   const std::lock_guard lock(motion_);
-  guarded_ = guarded ? request.id : 0;
+  guarded_ = until ? request.id : 0;
+  until_ = until.value_or(true);
   return ports_.motion->request(request);
 }
 
@@ -75,15 +76,16 @@ void Reflex::settle(Nanoseconds now) {
   if (!edge) return;
   level_ = edge->closed;
   settled_ = edge;
-  if (edge->closed) guard(*edge);
+  guard(*edge);
 }
 
 void Reflex::guard(const Edge& edge) {
   {
     const std::lock_guard lock(motion_);
-    if (guarded_ == 0) return;
+    if (guarded_ == 0 || edge.closed != until_) return;
     stopped_ = std::exchange(guarded_, 0);
-    if (const auto sent = ports_.motion->stop("touched"); !sent) broken_ = sent.error().what;
+    if (const auto sent = ports_.motion->stop(edge.closed ? "touched" : "the lock opened"); !sent)
+      broken_ = sent.error().what;
   }
   if (!ports_.trigger_clock || !edge.timed) return;
   const Nanoseconds took = ports_.trigger_clock->now() - edge.time - quiet_;

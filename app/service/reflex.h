@@ -42,8 +42,8 @@ class Reflex {
   Reflex(const Reflex&) = delete;
   Reflex& operator=(const Reflex&) = delete;
 
-  /// Asks for a move; where `guarded`, the next closing stops it.
-  Result<void> request(const MotionRequest& request, bool guarded);
+  /// Asks for a move, which the trigger's next change to `until` stops.
+  Result<void> request(const MotionRequest& request, std::optional<bool> until);
   Result<void> stop(const std::string& why);
   /// Whether a contact stopped this move: the robot's word that it was stopped is then no refusal.
   bool has_stopped(std::uint64_t id) const { return stopped_ == id; }
@@ -80,7 +80,8 @@ class Reflex {
   std::string broken_;
 
   std::mutex motion_;          ///< requests and stops in their order
-  std::uint64_t guarded_ = 0;  ///< the move that the next closing stops; 0 for none
+  std::uint64_t guarded_ = 0;  ///< the move that the next change to until_ stops; 0 for none
+  bool until_ = true;          ///< closed
 
   std::mutex news_mutex_;
   TriggerNews news_;

@@ -125,6 +125,7 @@ Nanoseconds Service::longest_wait() const {
 
 void Service::shut_down() {
   if (may_move(situation_.state)) stop("the service is shutting down");
+  if (situation_.engaged) release();
   remember_use();
   tell("info", "shut down");
   supervisor_.stopping();

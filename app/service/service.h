@@ -69,6 +69,7 @@ class Service {
   void stop(const std::string& why);
   double touch_speed(const StepRecord& step) const;
   std::string label() const;
+  void release();
 
   // service_session.cc: from the plan to the last touch
   std::string config_hash() const;
@@ -80,7 +81,10 @@ class Service {
   void announce_plan();
   int repeats() const;
   bool next_via_home(int step) const;
+  int lock_of(int step) const;
+  void read();
   void read_touch();
+  void read_visit();
   void outlier(const std::string& why);
   void keep(TouchRecord touch);
   void abort(const std::string& why);

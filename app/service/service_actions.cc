@@ -21,9 +21,13 @@ void Service::act(const Action& action) {
     case Do::go_touch:
     case Do::go_back:
     case Do::back_off:
+    case Do::lock:
+    case Do::visit:
       return make_move(action.what);
+    case Do::release:
+      return release();
     case Do::read:
-      return read_touch();
+      return read();
     case Do::outlier:
       return outlier(action.why);
     case Do::abort:

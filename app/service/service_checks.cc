@@ -95,6 +95,11 @@ void Service::check_self() {
 void Service::check_rest() {
   if (situation_.state != ServiceState::collecting || situation_.phase != Phase::settle) return;
   if (senses_.at_rest() != true || !senses_.closing()) return;
+  if (situation_.engaged) {
+    // Readings of the configuration itself, not of the way there.
+    if (senses_.samples().last().time > situation_.since) put(Event::What::at_rest);
+    return;
+  }
   const Nanoseconds edge = senses_.closing()->time - nanoseconds(config_.touch.delay);
   if (senses_.samples().last().time > edge) put(Event::What::at_rest);
 }

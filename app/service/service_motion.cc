@@ -2,6 +2,24 @@
 #include "app/service/service.h"
 
 namespace selfcal {
+namespace {
+
+/// The trigger's change that ends the move. Out of a contact the way is free, and a lock closes and
+/// opens it; everywhere else a contact ends the move.
+std::optional<bool> stopped_by(MoveKind kind) {
+  switch (kind) {
+    case MoveKind::retract:
+    case MoveKind::lock:
+    case MoveKind::release:
+      return std::nullopt;
+    case MoveKind::visit:
+      return false;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
 
 /// The move of an action, for the touch in progress.
 void Service::make_move(Action::Do what) {
@@ -20,6 +38,10 @@ void Service::make_move(Action::Do what) {
                   touch_speed(step));
     case Do::go_back:
       return move(MoveKind::retract, step.start, 2 * touch_speed(step));
+    case Do::lock:
+      return move(MoveKind::lock, step.start, touch_speed(step));
+    case Do::visit:
+      return move(MoveKind::visit, step.touch, travel / 4);
     case Do::back_off:
       return move(MoveKind::retract, reached_, travel / 4);
     default:
@@ -47,17 +69,31 @@ void Service::move(MoveKind kind, const std::vector<double>& q, double speed) {
   MotionRequest request;
   request.id = ++motion_id_;
   request.kind = kind;
-  request.label = label();
+  request.label =
+      kind == MoveKind::lock ? meaning_.sets[lock_of(situation_.step) - 1].method->lock() : label();
   request.q = q;
   request.speed = speed;
   asked_ = q;
   outstanding_ = true;
   stopped_ = 0;
   senses_.expect(request.id);
-  senses_.forget_closing();
-  // Out of a contact the way is free; everywhere else a contact ends the move.
-  if (const auto sent = reflex_.request(request, kind != MoveKind::retract); !sent)
+  if (kind != MoveKind::visit) senses_.forget_closing();  // that of the lock stays
+  if (const auto sent = reflex_.request(request, stopped_by(kind)); !sent)
     put(Event::What::broken, false, sent.error().what);
+}
+
+/// Opens whatever lock is engaged: as a move of its own while collecting, whose end is waited for;
+/// else beside the stop, which is said again until the robot stands.
+void Service::release() {
+  if (situation_.state == ServiceState::collecting)
+    return move(MoveKind::release, reached_, config_.speeds.travel);
+  const MotionRequest request{.id = ++motion_id_,
+                              .kind = MoveKind::release,
+                              .label = "whatever is locked",
+                              .q = reached_,
+                              .speed = config_.speeds.travel};
+  if (const auto sent = reflex_.request(request, std::nullopt); !sent)
+    tell("error", "a lock may still be engaged: " + sent.error().what);
 }
 
 void Service::stop(const std::string& why) {

@@ -99,7 +99,7 @@ void Service::tell_progress(const TouchRecord* touch, const std::string& note) {
     progress.set = session_.plan[touch->step].set;
     progress.index = static_cast<std::uint32_t>(touch->step);
     progress.accepted = touch->outcome == TouchOutcome::taken;
-    if (progress.accepted) {
+    if (progress.accepted && lock_of(touch->step) == 0) {  // of a lock there is no length
       const Session recent = lately(session_, touch->step);
       progress.residual = running_residual(*models_.active(), rows_of(*models_.active(), recent,
                                                                       meaning_, Parts::all_fit))

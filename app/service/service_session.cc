@@ -25,6 +25,14 @@ std::vector<TouchTarget> shared_out(std::vector<TouchTarget> targets, std::size_
   return targets;
 }
 
+/// A lock is engaged at another direction each time: only what stays where it is can be checked.
+std::vector<TouchTarget> lasting(const std::vector<Set>& sets, std::vector<TouchTarget> targets) {
+  std::erase_if(targets, [&](const TouchTarget& target) {
+    return sets[target.set].method->planned() == Planned::lock;
+  });
+  return targets;
+}
+
 }  // namespace
 
 std::string Service::config_hash() const {
@@ -32,7 +40,7 @@ std::string Service::config_hash() const {
 }
 
 bool Service::can_check() const {
-  if (models_.session() == 0) return false;
+  if (models_.session() == 0 || lasting(config_.sets, config_.targets).empty()) return false;
   const auto base = store_.session(models_.session());
   return base && base->config_hash == config_hash() && base->model_hash == models_.hash();
 }
@@ -51,7 +59,7 @@ void Service::begin_plan(const std::string& why) {
   options.seed = record.seed;
   const std::vector<TouchTarget> targets =
       situation_.kind == SessionKind::check
-          ? shared_out(config_.targets, config_.schedule.check_touches)
+          ? shared_out(lasting(config_.sets, config_.targets), config_.schedule.check_touches)
           : config_.targets;
   auto plan = std::make_shared<TouchPlan>();
   computation_.start([plan, robot = models_.active(), sets = config_.sets, targets, options,
@@ -124,6 +132,7 @@ void Service::announce_plan() {
   event.steps = static_cast<int>(session_.plan.size());
   event.step = next_step(session_, repeats(), config_.limits.attempts);
   event.via_home = true;
+  event.lock = lock_of(event.step);
   if (!senses_.encoders_alive(now_) || senses_.at_rest() != true)
     return put(Event::What::planned, false, "the robot does not stand still, or is silent");
   if (const std::string strangers = two_senders(); !strangers.empty())
@@ -133,12 +142,15 @@ void Service::announce_plan() {
   if (here && event.step < event.steps) {
     const StepRecord& step = session_.plan[event.step];
     // It was in the middle of this very touch: the way back is the way out.
-    const bool in_it = off_path(*here, step) < kNearPath;
     const StepRecord* last =
         session_.touches.empty() ? nullptr : &session_.plan[session_.touches.back().step];
+    // Whatever lock an earlier life has left engaged is released before anything moves.
+    event.release = event.lock != 0 || (last && lock_of(last->index) != 0);
+    // It was in the middle of this very touch: the way back is the way out.
+    const bool in_it = !event.release && off_path(*here, step) < kNearPath;
     if (in_it) {
       event.via_home = false;
-    } else if (last && off_path(*here, *last) < kNearPath) {
+    } else if (!event.release && last && off_path(*here, *last) < kNearPath) {
       // The last touch was stored, and the robot is not out of it yet.
       event.back_off = true;
       reached_ = last->start;
@@ -156,6 +168,32 @@ bool Service::next_via_home(int step) const {
   // The plan's ways lead from one step to the next; after steps that were left out the way leads
   // through home.
   return session_.plan[step].via_home || step > situation_.step + 1;
+}
+
+/// The lock that a step wants engaged, by its set from 1; 0 for none.
+int Service::lock_of(int step) const {
+  if (step >= static_cast<int>(session_.plan.size())) return 0;
+  const int set = set_index(meaning_, session_.plan[step].set);
+  return meaning_.sets[set].method->planned() == Planned::lock ? set + 1 : 0;
+}
+
+void Service::read() {
+  if (situation_.engaged)
+    read_visit();
+  else
+    read_touch();
+}
+
+/// The readings at rest, with the edge that confirmed the lock.
+void Service::read_visit() {
+  TouchRecord visit;
+  visit.step = situation_.step;
+  visit.edge = senses_.closing()->time;
+  visit.before = visit.after = senses_.samples().last();
+  const TouchRuling ruling = rule_on_visit(*models_.active(), reading_of(visit, meaning_));
+  visit.outcome = ruling.outcome;
+  visit.why = ruling.why;
+  keep(std::move(visit));
 }
 
 void Service::read_touch() {
@@ -202,6 +240,7 @@ void Service::keep(TouchRecord touch) {
   event.why = touch.why;
   event.step = next_step(session_, repeats(), config_.limits.attempts);
   event.via_home = next_via_home(event.step);
+  event.lock = lock_of(event.step);
   put(std::move(event));
   tell_progress(&session_.touches.back(), touch.why);
 }

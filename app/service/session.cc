@@ -18,12 +18,6 @@ constexpr double kSpeedStep = 1e-3;  // s, over which a speed is taken
 
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
-int set_index(const Decoding& meaning, const std::string& name) {
-  for (std::size_t s = 0; s < meaning.sets.size(); ++s)
-    if (meaning.sets[s].name == name) return static_cast<int>(s);
-  return 0;
-}
-
 int group_index(Set& set, const std::string& name) {
   if (name.empty()) return -1;
   const auto found = std::ranges::find(set.groups, name);
@@ -51,6 +45,12 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
 }
 
 }  // namespace
+
+int set_index(const Decoding& meaning, const std::string& name) {
+  for (std::size_t s = 0; s < meaning.sets.size(); ++s)
+    if (meaning.sets[s].name == name) return static_cast<int>(s);
+  return 0;
+}
 
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q) {
   return locate(robot, values(robot), q).p;
@@ -158,10 +158,13 @@ std::vector<StepState> step_states(const Session& session, int repeats, int atte
   return states;
 }
 
+/// When its readings hold: at the edge; under a lock, whose edge is long past, at its sample.
+Nanoseconds moment_of(const TouchRecord& touch) { return std::max(touch.edge, touch.before.time); }
+
 /// By the edges, which no step of the wall clock moves; by that clock where the computer has
 /// started anew in between.
 double seconds_between(const TouchRecord& before, const TouchRecord& after) {
-  if (after.edge >= before.edge) return seconds(after.edge - before.edge);
+  if (moment_of(after) >= moment_of(before)) return seconds(moment_of(after) - moment_of(before));
   return std::max(0.0, static_cast<double>(after.unix_ms - before.unix_ms) / 1000);
 }
 
@@ -182,6 +185,50 @@ Reading reading_of(const TouchRecord& touch, const Decoding& meaning) {
                          meaning.scales);
 }
 
+namespace {
+
+/// Rows of one engagement of a lock; its edge is the engagement's.
+struct Engagement {
+  int rows = 0, fit = 0, set = -1;
+  bool tells() const { return rows >= kFewestOfLock && fit >= 2; }
+};
+
+/// The set of each touch, negative of one to be left out; `sets` gains those of later engagements.
+std::vector<int> sets_of_touches(const std::vector<const TouchRecord*>& touches,
+                                 const std::vector<StepRecord>& plan, const Decoding& meaning,
+                                 std::vector<Set>& sets) {
+  std::vector<int> list;
+  std::map<int, std::map<Nanoseconds, Engagement>> locks;
+  for (const TouchRecord* touch : touches) {
+    const StepRecord& step = plan[touch->step];
+    list.push_back(set_index(meaning, step.set));
+    if (sets[list.back()].method->planned() != Planned::lock) continue;
+    Engagement& engagement = locks[list.back()][touch->edge];
+    ++engagement.rows;
+    engagement.fit += !step.check;
+  }
+  for (auto& [set, engagements] : locks) {
+    const auto telling =
+        std::ranges::count_if(engagements, [](const auto& each) { return each.second.tells(); });
+    int number = 0;
+    for (auto& [edge, engagement] : engagements) {
+      if (telling > 0 && !engagement.tells()) continue;
+      engagement.set = set;
+      if (++number == 1) continue;
+      engagement.set = static_cast<int>(sets.size());
+      Set again = sets[set];
+      again.name += "-" + std::to_string(number);
+      sets.push_back(std::move(again));
+    }
+  }
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (const auto lock = locks.find(list[i]); lock != locks.end())
+      list[i] = lock->second.at(touches[i]->edge).set;
+  return list;
+}
+
+}  // namespace
+
 DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning, Parts parts) {
   DataSet data;
   data.sets = meaning.sets;
@@ -194,23 +241,30 @@ DataSet rows_of(const Robot& robot, const Session& session, const Decoding& mean
     rows.insert(rows.end(), good.begin(), good.end());
     repeat.insert(repeat.end(), good.size(), good.size() > 1 ? step.index : -1);
   }
+  std::vector<int> sets = sets_of_touches(rows, session.plan, meaning, data.sets);
+  for (std::size_t i = rows.size(); i-- > 0;)
+    if (sets[i] < 0) {
+      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(i));
+      repeat.erase(repeat.begin() + static_cast<std::ptrdiff_t>(i));
+      sets.erase(sets.begin() + static_cast<std::ptrdiff_t>(i));
+    }
   Observations& out = data.rows;
   size_rows(out, static_cast<Eigen::Index>(rows.size()),
             static_cast<Eigen::Index>(meaning.scales.size()));
   out.repeat = std::move(repeat);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const StepRecord& step = session.plan[rows[i]->step];
-    const int set = set_index(meaning, step.set);
+    const int set = sets[i], configured = set_index(meaning, step.set);
     const auto row = static_cast<Eigen::Index>(i);
     const Reading reading = reading_of(*rows[i], meaning);
     out.q.row(row) = reading.q.transpose();
-    out.normal.row(row) = meaning.outward[set].transpose();
+    out.normal.row(row) = meaning.outward[configured].transpose();
     out.velocity.row(row) = reading.dq.transpose();
     out.temperature[row] = rows[i]->temperature;
     out.time[row] = i == 0 ? 0 : out.time[row - 1] + seconds_between(*rows[i - 1], *rows[i]);
     const double noise = touch_noise(data.sets[set]);
-    out.noise_factor[row] =
-        std::hypot(1, speed_out(robot, reading, meaning.outward[set]) * reading.sigma_time / noise);
+    out.noise_factor[row] = std::hypot(
+        1, speed_out(robot, reading, meaning.outward[configured]) * reading.sigma_time / noise);
     out.set.push_back(set);
     out.group.push_back(group_index(data.sets[set], step.group));
     out.check.push_back(parts == Parts::as_planned ? step.check : parts == Parts::all_check);
@@ -254,6 +308,20 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Deco
       return {TouchOutcome::differs,
               "differs by " + format_number(std::round(apart * 1e6)) + " um from the one before"};
   }
+  return {};
+}
+
+TouchRuling rule_on_visit(const Robot& robot, const Reading& reading) {
+  for (Eigen::Index j = 0; j < reading.q.size(); ++j) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+    if (!joint.allows(reading.q[j]))
+      return {TouchOutcome::outlier, joint.name + " reads " + format_number(reading.q[j]) +
+                                         ", out of its range under the lock"};
+  }
+  Locations X;
+  if (!robot.locate(block_of(reading.q), values(robot), Body::endpoint, X, nullptr).closes(0))
+    return {TouchOutcome::outlier,
+            "the legs do not meet at these readings: the assembly mode is lost"};
   return {};
 }
 

@@ -41,6 +41,9 @@ Result<Decoding> read_meaning(const std::string& text);
 /// what their counts stand for. Rows of sessions with different ones do not belong together.
 std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales);
 
+/// Of a set by its name; that of the first where there is none.
+int set_index(const Decoding& meaning, const std::string& name);
+
 /// The plan as the store keeps it.
 std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets);
 
@@ -57,7 +60,10 @@ Reading reading_of(const TouchRecord& touch, const Decoding& meaning);
 /// The rows that the good touches make, in the order of the plan, with speed, time and temperature.
 /// With `all_check` every row only judges, with `all_fit` every row identifies. A row's noise is
 /// that of its set and, on top, what the reading leaves open (Reading::sigma_time) at the speed at
-/// which `robot`, nearly the true one, came in.
+/// which `robot`, nearly the true one, came in. Each engagement of a lock has constants of its own:
+/// the first is the set, a later one a set NAME-2, NAME-3 … beside it; one of fewer than
+/// kFewestOfLock rows, two of them to fit, is left out beside one that has more.
+inline constexpr int kFewestOfLock = 4;
 enum class Parts { as_planned, all_check, all_fit };
 DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning,
                 Parts parts = Parts::as_planned);
@@ -73,6 +79,9 @@ struct TouchRuling {
 TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
                           const StepRecord& step, const Reading& reading, double search,
                           double tolerance);
+
+/// Readings under a lock: legs within their lengths, and the loop closes in its assembly mode.
+TouchRuling rule_on_visit(const Robot& robot, const Reading& reading);
 
 /// Endpoint at readings `q` with the robot's own values (m, world).
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q);

@@ -42,6 +42,12 @@ std::string_view to_string(Phase phase) {
       return "settle";
     case Phase::retract:
       return "retract";
+    case Phase::lock:
+      return "lock";
+    case Phase::visit:
+      return "visit";
+    case Phase::release:
+      return "release";
   }
   return "";
 }
@@ -98,6 +104,13 @@ std::string_view hardware_may(ServiceState state, Phase phase) {
       return "stand still; told to stop";
     case Phase::retract:
       return "move slowly out of the contact";
+    case Phase::lock:
+      return "stand still with every leg held while the lock engages, until the trigger closes";
+    case Phase::visit:
+      return "move slowly with the lock engaged, its legs giving way; the trigger's opening stops "
+             "it";
+    case Phase::release:
+      return "stand still with every leg held while the lock opens, until the trigger opens";
     case Phase::none:
       return "stand still";
   }

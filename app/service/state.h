@@ -21,8 +21,8 @@ enum class ServiceState : std::uint8_t {
   fault,
 };
 
-/// Where a touch is, while collecting.
-enum class Phase : std::uint8_t { none, approach, touch, settle, retract };
+/// Where a touch is, while collecting; lock, visit and release are of a joint's lock.
+enum class Phase : std::uint8_t { none, approach, touch, settle, retract, lock, visit, release };
 
 enum class SessionKind : std::uint8_t { full, check };
 

@@ -68,6 +68,7 @@ void TransitionStep::enter(Phase phase) {
 void TransitionStep::fault(const std::string& why) {
   if (s_.state == ServiceState::fault) return;
   act(Do::stop, why);
+  let_go();
   act(Do::give_up);
   act(Do::tell, "fault: " + why);
   // While a session is being planned the store has none of it yet.

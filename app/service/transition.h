@@ -2,6 +2,7 @@
 // to be done. It reads no clock, no port and no file; every moment comes in with the event.
 //
 //   self-test → idle → planning → collecting ⟲ (approach → touch → settle → retract)
+//     or of a lock: approach → lock ⟲ (visit → settle) → release
 //     → analysing → identifying → judging → awaiting acceptance → applying → publishing → idle
 //   and from everywhere: fault, which stops motion and keeps what was collected.
 #pragma once
@@ -23,6 +24,7 @@ struct Limits {
   Nanoseconds touch = 60 * kSecond;
   Nanoseconds settle = 2 * kSecond;
   Nanoseconds retract = 30 * kSecond;
+  Nanoseconds lock = 30 * kSecond;        ///< a lock's engaging, or its release
   Nanoseconds computing = 600 * kSecond;  ///< analysing, identifying, judging
   Nanoseconds retry_self_test = 10 * kSecond;
   int attempts = 3;       ///< of one touch, before it is put aside
@@ -44,7 +46,10 @@ struct Situation {
   bool stray = false;          ///< the trigger closed where nothing was to be touched
   int next_step = 0;           ///< after the retract; `step` itself when it needs another touch
   bool next_via_home = false;  ///< of the step after this one
-  bool out = false;            ///< the retract has ended; the trigger may still be closed
+  bool out = false;            ///< what was asked has ended; the trigger may not have followed
+  int lock = 0;                ///< that the step wants engaged; 0 for none
+  int next_lock = 0;           ///< of the step after this one
+  bool engaged = false;        ///< a lock was asked for and has not been released
   bool follow_up = false;      ///< a full session comes after what is being published
   bool closed = false;         ///< the trigger's debounced level
   bool candidate = false;      ///< a result waits for a person
@@ -85,6 +90,8 @@ struct Event {
   std::int64_t session = 0;
   int step = 0, steps = 0;
   bool via_home = false;  ///< of the step that comes next
+  int lock = 0;           ///< of the step that comes next
+  bool release = false;   ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
 };
 
@@ -99,6 +106,9 @@ struct Action {
     go_to_start,
     go_touch,
     go_back,   ///< motion for the step in progress
+    lock,      ///< engage the lock of the step in progress
+    visit,     ///< to the step in progress with the lock engaged
+    release,   ///< open whatever lock is engaged
     back_off,  ///< to where the last move began, out of a contact that was not looked for
     read,      ///< judge and store the touch whose edge was seen
     outlier,   ///< store the attempt as failed; `why`

@@ -9,16 +9,19 @@ void TransitionStep::planned() {
   s_.session = event_.session;
   s_.kind = event_.kind;
   s_.step = event_.step;
+  s_.lock = s_.next_lock = event_.lock;
   s_.steps = event_.steps;
   s_.lost_in_a_row = 0;
   s_.unfinished = false;
   if (s_.step >= s_.steps) return analyse();
-  if (s_.closed && event_.via_home && !event_.back_off)
+  if (s_.closed && event_.via_home && !event_.back_off && !event_.release)
     return fault("the trigger is closed away from any touch: move the robot out by hand");
   enter(ServiceState::collecting, s_.why);
   s_.felt = false;
-  if (!event_.back_off) return approach(event_.via_home);
   s_.next_step = s_.step;
+  s_.next_via_home = event_.via_home;
+  if (event_.release) return release();
+  if (!event_.back_off) return approach(event_.via_home);
   s_.attempt = s_.failures = 0;
   s_.stray = true;
   back_off();
@@ -42,6 +45,7 @@ void TransitionStep::touch() {
 void TransitionStep::closed() {
   s_.closed = true;
   if (s_.state != ServiceState::collecting) return;
+  if (s_.phase == Phase::lock) return locked();
   if (s_.phase == Phase::touch) {
     s_.felt = true;
     act(Do::stop, "touched");
@@ -55,6 +59,9 @@ void TransitionStep::closed() {
 
 void TransitionStep::opened() {
   s_.closed = false;
+  if (s_.phase == Phase::release) return released();
+  if (s_.engaged && (s_.phase == Phase::visit || s_.phase == Phase::settle))
+    return fault("the lock opened by itself at " + touch_name());
   back_out();
 }
 
@@ -67,10 +74,12 @@ void TransitionStep::moved() {
     enter(Phase::approach);
     return act(Do::go_to_start);
   }
-  if (s_.phase == Phase::approach) return touch();
+  if (s_.phase == Phase::approach) return s_.lock != 0 ? lock() : touch();
   if (s_.phase == Phase::touch) return act(Do::outlier, "no touch up to the end of the search");
-  if (s_.phase != Phase::retract) return;
+  if (s_.phase == Phase::visit) return enter(Phase::settle);
   s_.out = true;
+  if (s_.phase == Phase::lock) return locked();
+  if (s_.phase == Phase::release) return released();
   back_out();
 }
 
@@ -94,7 +103,13 @@ void TransitionStep::back_out() {
   if (s_.closed) return;  // the time limit tells when it is stuck
   if (s_.stray) return backed_off();
   if (s_.next_step == s_.step) return touch();
+  go_on();
+}
+
+/// To the next step, from where nothing is touched and nothing locked.
+void TransitionStep::go_on() {
   s_.step = s_.next_step;
+  s_.lock = s_.next_lock;
   if (s_.step >= s_.steps) return analyse();
   approach(s_.next_via_home);
 }
@@ -115,6 +130,7 @@ void TransitionStep::read() {
   ++s_.attempt;
   s_.next_step = event_.step;
   s_.next_via_home = event_.via_home;
+  s_.next_lock = event_.lock;
   s_.out = false;
   if (event_.ok)
     s_.lost_in_a_row = 0;
@@ -123,13 +139,17 @@ void TransitionStep::read() {
   else if (s_.next_step != s_.step && ++s_.lost_in_a_row >= limits_.most_failures)
     return fault(std::to_string(s_.lost_in_a_row) +
                  " touches in a row gave nothing; the last: " + event_.why);
+  if (s_.engaged) return visited();
   enter(Phase::retract);
   act(Do::go_back);
 }
 
 void TransitionStep::refused() {
   if (s_.state != ServiceState::collecting) return;
-  fault("motion to " + touch_name() + " was refused: " + event_.why);
+  const std::string what = s_.phase == Phase::lock      ? "the lock for "
+                           : s_.phase == Phase::release ? "the lock's release after "
+                                                        : "motion to ";
+  fault(what + touch_name() + " was refused: " + event_.why);
 }
 
 }  // namespace selfcal

@@ -49,6 +49,7 @@ void TransitionStep::asked_to_abort() {
     return refuse_in_this_state();
   grant();
   act(Do::stop, "aborted by command");
+  let_go();
   act(Do::abort, "aborted by command");
   s_.unfinished = false;
   s_.held = true;

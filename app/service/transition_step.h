@@ -4,6 +4,7 @@
 //   transition_sessions.cc    the self-test, and how a session begins or goes on
 //   transition_commands.cc    what a person asks for
 //   transition_collecting.cc  touch by touch: approach, touch, settle, retract
+//   transition_locks.cc       configurations with a joint locked: lock, visit, settle, release
 //   transition_computing.cc   from the touches to the decision and its result
 //   transition_time.cc        what takes too long
 #pragma once
@@ -63,9 +64,19 @@ class TransitionStep {
   void at_rest();
   void back_off();
   void back_out();
+  void go_on();
   void backed_off();
   void read();
   void refused();
+
+  // transition_locks.cc
+  void lock();
+  void locked();
+  void visit();
+  void visited();
+  void release();
+  void released();
+  void let_go();
 
   // transition_computing.cc
   void analyse();

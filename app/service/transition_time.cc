@@ -37,6 +37,12 @@ void TransitionStep::tick_collecting() {
       return late(limits_.retract,
                   s_.closed ? "the trigger is stuck closed: opening after " + touch_name()
                             : "the way out of " + touch_name());
+    case Phase::lock:
+      return late(limits_.lock, "the lock's confirmation by the trigger for " + touch_name());
+    case Phase::visit:
+      return late(limits_.approach, "the way to " + touch_name() + " with the lock engaged");
+    case Phase::release:
+      return late(limits_.lock, "the lock stays closed: its release after " + touch_name());
     case Phase::none:
       return;
   }

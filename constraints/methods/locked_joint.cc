@@ -40,6 +40,11 @@ class LockedJoint final : public Method {
   bool sees_point() const override { return false; }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return 2; }
+  Planned planned() const override { return Planned::lock; }
+  std::string lock() const override {
+    return "leg " + std::to_string(chain_ + 1) +
+           (kind_ == PassiveKind::spherical ? " spherical" : " universal");
+  }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
                         const Observations&, const Eigen::VectorXd*,

@@ -38,8 +38,9 @@ struct Plane {
 /// The surface that the tool touches; instruments, sockets and nests have none.
 enum class TouchedSurface { none, plane, curved };
 
-/// What a session's plan can do for a method: touch a surface, sit in sockets or nests, or nothing.
-enum class Planned { no, surface, places };
+/// What a session's plan can do for a method: touch a surface, sit in sockets or nests, visit what
+/// a lock allows, or nothing.
+enum class Planned { no, surface, places, lock };
 
 /// Rows of one set to be evaluated together, one a lane.
 struct MethodInput {
@@ -155,6 +156,8 @@ class Method {
   virtual Body body() const { return point_unknown() ? Body::last_link : Body::endpoint; }
 
   virtual Planned planned() const { return Planned::no; }
+  /// The joint that is locked, as the robot is asked for it ("leg 1 universal"); empty for none.
+  virtual std::string lock() const { return {}; }
   /// True when where the touched surface lies, or how it is turned, is given.
   virtual bool place_known() const { return false; }
   virtual TouchedSurface touches() const { return TouchedSurface::none; }

@@ -8,7 +8,8 @@
 namespace selfcal {
 namespace {
 
-constexpr double kNoise = 2e-5;  // m, where a set does not say its own
+constexpr double kNoise = 2e-5;       // m, where a set does not say its own
+constexpr double kAngleNoise = 2e-5;  // rad, as well
 
 /// What is unknown of a surface or a socket.
 struct PlaceUnknowns {
@@ -39,7 +40,35 @@ class Columns {
   std::map<std::pair<int, int>, PlaceUnknowns> at_;
 };
 
-/// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket).
+/// Rows of a candidate in the unknowns of its surface or socket, and of the robot, whose body moves
+/// with `psi`.
+Eigen::MatrixXd touch_row(const PossibleTouch& each, const PlaceUnknowns& nuisance, int columns,
+                          const Eigen::MatrixXd& psi, const Eigen::Vector3d& p) {
+  const bool socket = each.group >= 0;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(socket ? 3 : 1, columns);
+  const Eigen::MatrixXd moves = psi.topRows<3>();
+  W.leftCols(moves.cols()) = socket ? moves : Eigen::MatrixXd(nuisance.normal.transpose() * moves);
+  if (socket)
+    W.middleCols(nuisance.column, 3) = -Eigen::Matrix3d::Identity();
+  else
+    W.middleCols(nuisance.column, 3) << p.transpose() * tangents(nuisance.normal), -1;
+  return W;
+}
+
+/// Of a lock: the leg's direction turns off the unknown one, dr_a = (u x e_a) . turn.
+Eigen::MatrixXd lock_rows(const PlaceUnknowns& nuisance, int columns, const Eigen::MatrixXd& psi) {
+  const auto E = tangents(nuisance.normal);
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(2, columns);
+  for (int a = 0; a < 2; ++a) {
+    const Eigen::Vector3d turn = nuisance.normal.cross(E.col(a));
+    W.row(a).head(psi.cols()) = turn.transpose() * psi.bottomRows<3>();
+    W(a, nuisance.column + a) = -1;
+  }
+  return W;
+}
+
+/// Whitened rows of the candidates, one matrix each (1 row for a surface, 3 for a socket, 2 for a
+/// lock).
 std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& xi,
                                      const std::vector<Set>& sets,
                                      const std::vector<PossibleTouch>& candidates,
@@ -50,25 +79,25 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, static_cast<int>(robot.joints().size())), 0};
   Locations X;
   PsiBlock psi;
-  for (std::size_t first = 0; first < candidates.size(); first += kLanes) {
-    block.count = static_cast<int>(std::min<std::size_t>(kLanes, candidates.size() - first));
+  for (std::size_t first = 0; first < candidates.size(); first += block.count) {
+    const Body body = sets[candidates[first].set].method->body();
+    block.count = 0;
+    while (block.count < kLanes && first + block.count < candidates.size() &&
+           sets[candidates[first + block.count].set].method->body() == body)
+      ++block.count;
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) = candidates[first + std::min(lane, block.count - 1)].q.transpose().array();
-    robot.locate(block, xi, Body::endpoint, X, &psi);
+    robot.locate(block, xi, body, X, &psi);
     for (int lane = 0; lane < block.count; ++lane) {
       const PossibleTouch& each = candidates[first + lane];
-      Eigen::MatrixXd moves(3, parameters);
-      for (int c = 0; c < 3; ++c) moves.row(c) = psi.row(c * kLanes + lane);
-      const PlaceUnknowns& nuisance = columns.of(each);
-      const bool socket = each.group >= 0;
-      Eigen::MatrixXd W = Eigen::MatrixXd::Zero(socket ? 3 : 1, columns.end());
-      W.leftCols(parameters) =
-          socket ? moves : Eigen::MatrixXd(nuisance.normal.transpose() * moves);
-      if (socket)
-        W.middleCols(nuisance.column, 3) = -Eigen::Matrix3d::Identity();
+      Eigen::MatrixXd moves(6, parameters);
+      for (int c = 0; c < 6; ++c) moves.row(c) = psi.row(c * kLanes + lane);
+      const Set& set = sets[each.set];
+      if (set.method->planned() == Planned::lock)
+        rows.push_back(lock_rows(columns.of(each), columns.end(), moves) / angle_noise(set));
       else
-        W.middleCols(nuisance.column, 3) << X.p(lane).transpose() * tangents(nuisance.normal), -1;
-      rows.push_back(W / touch_noise(sets[each.set]));
+        rows.push_back(touch_row(each, columns.of(each), columns.end(), moves, X.p(lane)) /
+                       touch_noise(set));
     }
   }
   return rows;
@@ -86,6 +115,8 @@ Eigen::MatrixXd prior(const Robot& robot, int columns) {
 }  // namespace
 
 double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; }
+
+double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angle : kAngleNoise; }
 
 std::vector<int> d_optimal_touches(const Robot& robot, const Eigen::VectorXd& xi,
                                    const std::vector<Set>& sets,

@@ -25,6 +25,8 @@ inline constexpr double kPlaceVariance = 1;
 
 /// 1 sigma of a touch of the set as its data sheet says (m), 20 um where it says none.
 double touch_noise(const Set& set);
+/// The same of an angle (rad).
+double angle_noise(const Set& set);
 
 /// Indices of the chosen candidates in the order of choice, as many of each set as `counts` says or
 /// as there are. `xi` are the parameters that are believed.

@@ -6,12 +6,6 @@
 #include "constraints/planning/d_optimal.h"
 
 namespace selfcal {
-namespace {
-
-constexpr double kAngleNoise = 2e-5;  // rad, where a set does not say its own
-
-}  // namespace
-
 PlanEquations::PlanEquations(const Robot& robot, const std::vector<Set>& sets, State state)
     : robot_(robot),
       state_(std::move(state)),
@@ -28,8 +22,7 @@ PlanEquations::PlanEquations(const Robot& robot, const std::vector<Set>& sets, S
 
 std::vector<Scale> PlanEquations::scale(const std::vector<Set>& sets) const {
   std::vector<Scale> list;
-  for (const Set& set : sets)
-    list.push_back({touch_noise(set), set.noise_angle > 0 ? set.noise_angle : kAngleNoise});
+  for (const Set& set : sets) list.push_back({touch_noise(set), angle_noise(set)});
   return list;
 }
 

@@ -7,6 +7,7 @@
 
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/methods/plane.h"
+#include "constraints/methods/unit_normal.h"
 #include "constraints/planning/d_optimal.h"
 #include "constraints/sampling/contact.h"
 #include "constraints/sampling/random_poses.h"
@@ -64,6 +65,11 @@ class Candidates {
     request.rows_per_group =
         std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
     if (target.plane) request.nuisance = data.sets[0].method->nuisance_of(*target.plane);
+    if (locks(target.set)) {
+      Location engaged;
+      engaged.R << tangents(target.outward), target.outward;
+      request.nuisance = data.sets[0].method->through(engaged, nullptr, random);
+    }
     request.patch = target.within;
     request.places = target.places;
     const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
@@ -81,6 +87,11 @@ class Candidates {
   /// Fills in where the touch begins and where it is given up.
   bool enter(const TouchTarget& target, int obstacle, const DataSet& data, const State& truth,
              int row, PlannedTouch& touch) const {
+    if (locks(target.set)) {
+      touch.start = touch.end = touch.touch;
+      return within_limits(robot_, touch.touch, options_.limit_margin) &&
+             path_is_free(robot_, xi_, options_.home, touch.touch, obstacles_, options_.apart);
+    }
     const Location X = locate(robot_, xi_, touch.touch);
     if ((X.R * robot_.tool_axis()).dot(-target.outward) < std::cos(options_.tilt)) return false;
     touch.start = touch.end = touch.touch;
@@ -108,6 +119,8 @@ class Candidates {
       wanted.head<3>() = distance * target.outward;
     return move_to_residual(robot_, data, truth, row, wanted, q);
   }
+
+  bool locks(int set) const { return sets_[set].method->planned() == Planned::lock; }
 
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
@@ -149,7 +162,7 @@ void mark_check(std::vector<PlannedTouch>& touches, std::size_t sets, double sha
 /// The touches of each target in an order of short ways, begun at home; a touch that can be
 /// reached neither directly nor through home is left out.
 std::vector<PlannedTouch> order(const Robot& robot, const Eigen::VectorXd& xi,
-                                std::vector<PlannedTouch> touches,
+                                const std::vector<Set>& sets, std::vector<PlannedTouch> touches,
                                 const std::vector<Obstacle>& obstacles,
                                 const TouchPlanOptions& options) {
   std::vector<PlannedTouch> path;
@@ -163,6 +176,10 @@ std::vector<PlannedTouch> order(const Robot& robot, const Eigen::VectorXd& xi,
     PlannedTouch next = std::move(*nearest);
     touches.erase(nearest);
     next.via_home = !path_is_free(robot, xi, here, next.start, obstacles, options.apart);
+    // A lock stays engaged from its first configuration to its last.
+    const bool held = !path.empty() && path.back().set == next.set &&
+                      sets[next.set].method->planned() == Planned::lock;
+    if (next.via_home && held) continue;
     if (next.via_home &&
         (!path_is_free(robot, xi, here, options.home, obstacles, options.apart) ||
          !path_is_free(robot, xi, options.home, next.start, obstacles, options.apart)))
@@ -228,7 +245,7 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   std::vector<PlannedTouch> chosen = choose(robot, xi, sets, targets, usable);
   mark_check(chosen, sets.size(), options.check);
   tell("ordering touches", 0);
-  plan.touches = order(robot, xi, std::move(chosen), obstacles, options);
+  plan.touches = order(robot, xi, sets, std::move(chosen), obstacles, options);
   return plan;
 }
 

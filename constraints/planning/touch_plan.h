@@ -25,7 +25,8 @@ struct Obstacle {
 struct TouchTarget {
   int set = 0;
   int touches = 0;
-  Eigen::Vector3d outward;       ///< direction of the way out (world, unit)
+  Eigen::Vector3d outward;       ///< direction of the way out (world, unit); of a lock, the
+                                 ///< leg's as seen from what carries it
   std::optional<Plane> plane;    ///< nominal, with its distance; nothing for sockets
   std::vector<Location> places;  ///< nominal sockets or nests, one a group; empty for planes
   Patch within;
@@ -47,7 +48,8 @@ struct PlannedTouch {
   int set = 0, group = -1;
   bool check = false;
   bool via_home = false;              ///< the way there leads through `home`
-  Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up
+  Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up; all the
+                                      ///< same under a lock
 };
 
 struct TouchPlan {

@@ -18,8 +18,9 @@ std::optional<E> named(std::string_view word, const std::array<E, n>& all) {
   return std::nullopt;
 }
 
-constexpr std::array kMoveKinds = {MoveKind::travel, MoveKind::touch, MoveKind::seat,
-                                   MoveKind::retract};
+constexpr std::array kMoveKinds = {MoveKind::travel,  MoveKind::touch, MoveKind::seat,
+                                   MoveKind::retract, MoveKind::lock,  MoveKind::visit,
+                                   MoveKind::release};
 constexpr std::array kOutcomes = {MotionReply::Outcome::accepted, MotionReply::Outcome::done,
                                   MotionReply::Outcome::stopped, MotionReply::Outcome::refused};
 constexpr std::string_view kStop = "stop";

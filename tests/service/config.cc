@@ -176,6 +176,7 @@ TEST(Config, HasTheDefaultsOfItsTable) {
       {"limits.touch", seconds(config->limits.touch)},
       {"limits.settle", seconds(config->limits.settle)},
       {"limits.retract", seconds(config->limits.retract)},
+      {"limits.lock", seconds(config->limits.lock)},
       {"limits.computing", seconds(config->limits.computing)},
       {"sets.touches", config->targets[0].touches},
       {"accept.check", config->plan.check},

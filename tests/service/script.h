@@ -30,6 +30,12 @@ inline std::string name_of(Action::Do what) {
       return "go_back";
     case Do::back_off:
       return "back_off";
+    case Do::lock:
+      return "lock";
+    case Do::visit:
+      return "visit";
+    case Do::release:
+      return "release";
     case Do::read:
       return "read";
     case Do::outlier:
