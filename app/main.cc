@@ -1,4 +1,6 @@
 // The program selfcal: one binary, a subcommand for each job.
+#include <malloc.h>
+
 #include <cstdio>
 #include <exception>
 
@@ -42,6 +44,9 @@ int run(int argc, char** argv) {
 }  // namespace selfcal
 
 int main(int argc, char** argv) {
+  // Blocks of rows come and go by the thousand: what is freed stays with the process, up to 16 MiB,
+  // in place of going back to the kernel each time.
+  mallopt(M_TRIM_THRESHOLD, 16 << 20);
   try {
     const int status = selfcal::run(argc, argv);
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;

@@ -195,6 +195,10 @@ int show_expected(const Config& config, const TouchPlan& plan) {
       "  end position known then to %.3g mm in the workspace (1 sigma; worst %.3g mm), to %.3g mm "
       "over the whole range of the joints\n",
       1e3 * expected.workspace.rms, 1e3 * expected.workspace.max, 1e3 * expected.endpoint.rms);
+  const MotionTime time = motion_time(*config.robot, values(*config.robot), plan, config.plan,
+                                      config.speeds.touch, config.touch.repeats);
+  std::printf("  motion %.0f min: %.0f min between touches, %.0f min into contacts and out\n",
+              (time.travel + time.touching) / 60, time.travel / 60, time.touching / 60);
   const bool reached = known_to(expected.workspace, config.target);
   std::printf("  target %.3g mm: %s\n", 1e3 * config.target,
               reached ? "yes"

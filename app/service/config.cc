@@ -142,7 +142,7 @@ class Reader {
       const double q = (*home)[static_cast<Eigen::Index>(j)];
       if (!joint.allows(q)) f.fail("home", "a reading of " + joint.name + " within its limits");
     }
-    c_.speeds.travel = f.number("speed", c_.speeds.travel, 1e-3, 100);
+    c_.plan.speed = c_.speeds.travel = f.number("speed", c_.speeds.travel, 1e-3, 100);
     c_.speeds.touch = f.number("touch_speed", c_.speeds.touch, 1e-4, 1);
     c_.plan.clearance = f.number("clearance", c_.plan.clearance, 1e-3, 0.5);
     c_.plan.search = f.number("search", c_.plan.search, 1e-4, 0.1);

@@ -80,7 +80,7 @@ class Service {
   bool open(Session session);
   void announce_plan();
   int repeats() const;
-  bool next_via_home(int step) const;
+  void tell_way(int step, Event& event) const;
   int lock_of(int step) const;
   void read();
   void read_touch();

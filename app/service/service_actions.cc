@@ -17,6 +17,7 @@ void Service::act(const Action& action) {
     case Do::resume:
       return resume();
     case Do::go_home:
+    case Do::go_along:
     case Do::go_to_start:
     case Do::go_touch:
     case Do::go_back:

@@ -30,6 +30,8 @@ void Service::make_move(Action::Do what) {
   switch (what) {
     case Do::go_home:
       return move(MoveKind::travel, home, travel);
+    case Do::go_along:
+      return move(MoveKind::travel, step.way[step.way.size() - situation_.way], travel);
     case Do::go_to_start:
       return situation_.closed ? move(MoveKind::retract, step.start, touch_speed(step))
                                : move(MoveKind::travel, step.start, travel);
@@ -37,7 +39,7 @@ void Service::make_move(Action::Do what) {
       return move(step.group.empty() ? MoveKind::touch : MoveKind::seat, step.end,
                   touch_speed(step));
     case Do::go_back:
-      return move(MoveKind::retract, step.start, 2 * touch_speed(step));
+      return move(MoveKind::retract, step.start, kRetreatFaster * touch_speed(step));
     case Do::lock:
       return move(MoveKind::lock, step.start, touch_speed(step));
     case Do::visit:

@@ -163,11 +163,12 @@ void Service::announce_plan() {
   put(std::move(event));
 }
 
-bool Service::next_via_home(int step) const {
-  if (step >= static_cast<int>(session_.plan.size())) return false;
-  // The plan's ways lead from one step to the next; after steps that were left out the way leads
-  // through home.
-  return session_.plan[step].via_home || step > situation_.step + 1;
+/// The plan's ways lead from one step to the next; after steps that were left out the way leads
+/// through home.
+void Service::tell_way(int step, Event& event) const {
+  if (step >= static_cast<int>(session_.plan.size())) return;
+  event.via_home = session_.plan[step].via_home || step > situation_.step + 1;
+  event.way = static_cast<int>(session_.plan[step].way.size());
 }
 
 /// The lock that a step wants engaged, by its set from 1; 0 for none.
@@ -239,7 +240,7 @@ void Service::keep(TouchRecord touch) {
   event.ok = touch.outcome == TouchOutcome::taken;
   event.why = touch.why;
   event.step = next_step(session_, repeats(), config_.limits.attempts);
-  event.via_home = next_via_home(event.step);
+  tell_way(event.step, event);
   event.lock = lock_of(event.step);
   put(std::move(event));
   tell_progress(&session_.touches.back(), touch.why);

@@ -121,6 +121,7 @@ std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& 
     if (touch.group >= 0) step.group = "g" + std::to_string(touch.group);
     step.check = touch.check;
     step.via_home = touch.via_home;
+    for (const Eigen::VectorXd& place : touch.way) step.way.push_back(list_of(place));
     step.start = list_of(touch.start);
     step.touch = list_of(touch.touch);
     step.end = list_of(touch.end);

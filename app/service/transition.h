@@ -43,9 +43,11 @@ struct Situation {
   int failures = 0;            ///< stray closings on the way to this step
   int lost_in_a_row = 0;       ///< steps put aside one after another
   bool via_home = false;       ///< on the way to home, not yet to the start
+  int way = 0;                 ///< places of the step's way that are still ahead, before the start
   bool stray = false;          ///< the trigger closed where nothing was to be touched
   int next_step = 0;           ///< after the retract; `step` itself when it needs another touch
   bool next_via_home = false;  ///< of the step after this one
+  int next_way = 0;            ///< as well
   bool out = false;            ///< what was asked has ended; the trigger may not have followed
   int lock = 0;                ///< that the step wants engaged; 0 for none
   int next_lock = 0;           ///< of the step after this one
@@ -90,6 +92,7 @@ struct Event {
   std::int64_t session = 0;
   int step = 0, steps = 0;
   bool via_home = false;  ///< of the step that comes next
+  int way = 0;            ///< as well: places that the way leads through
   int lock = 0;           ///< of the step that comes next
   bool release = false;   ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
@@ -103,6 +106,7 @@ struct Action {
     plan,     ///< a session of the situation's kind
     resume,   ///< the unfinished session
     go_home,
+    go_along,  ///< to the next place of the step's way
     go_to_start,
     go_touch,
     go_back,   ///< motion for the step in progress

@@ -1,4 +1,6 @@
 // Touch by touch: approach → touch → settle → retract, and the contacts that were not looked for.
+#include <utility>
+
 #include "app/service/transition_step.h"
 
 namespace selfcal {
@@ -20,20 +22,27 @@ void TransitionStep::planned() {
   s_.felt = false;
   s_.next_step = s_.step;
   s_.next_via_home = event_.via_home;
+  s_.next_way = event_.way;
   if (event_.release) return release();
-  if (!event_.back_off) return approach(event_.via_home);
+  if (!event_.back_off) return approach();
   s_.attempt = s_.failures = 0;
   s_.stray = true;
   back_off();
 }
 
-void TransitionStep::approach(bool via_home) {
+void TransitionStep::approach() {
   s_.attempt = s_.failures = 0;
   s_.stray = false;
   s_.next_step = s_.step;
-  s_.via_home = via_home;
+  s_.via_home = s_.next_via_home;
+  s_.way = s_.via_home ? 0 : s_.next_way;
+  go_nearer();
+}
+
+/// Through home or along the way that was planned, then to the start.
+void TransitionStep::go_nearer() {
   enter(Phase::approach);
-  act(via_home ? Do::go_home : Do::go_to_start);
+  act(s_.via_home ? Do::go_home : s_.way > 0 ? Do::go_along : Do::go_to_start);
 }
 
 void TransitionStep::touch() {
@@ -69,10 +78,9 @@ void TransitionStep::moved() {
   if (s_.state != ServiceState::collecting) return;
   if (s_.phase == Phase::approach && s_.closed)
     return fault("the trigger is closed before " + touch_name() + ": it is stuck");
-  if (s_.phase == Phase::approach && s_.via_home) {
-    s_.via_home = false;
-    enter(Phase::approach);
-    return act(Do::go_to_start);
+  if (s_.phase == Phase::approach && (s_.via_home || s_.way > 0)) {
+    if (!std::exchange(s_.via_home, false)) --s_.way;
+    return go_nearer();
   }
   if (s_.phase == Phase::approach) return s_.lock != 0 ? lock() : touch();
   if (s_.phase == Phase::touch) return act(Do::outlier, "no touch up to the end of the search");
@@ -111,7 +119,7 @@ void TransitionStep::go_on() {
   s_.step = s_.next_step;
   s_.lock = s_.next_lock;
   if (s_.step >= s_.steps) return analyse();
-  approach(s_.next_via_home);
+  approach();
 }
 
 /// Out of a contact that was not looked for.
@@ -121,8 +129,8 @@ void TransitionStep::backed_off() {
     return fault("the trigger closes again and again on the way to " + touch_name() +
                  ": something stands in the way");
   s_.via_home = true;
-  enter(Phase::approach);
-  act(Do::go_home);
+  s_.way = 0;
+  go_nearer();
 }
 
 void TransitionStep::read() {
@@ -130,6 +138,7 @@ void TransitionStep::read() {
   ++s_.attempt;
   s_.next_step = event_.step;
   s_.next_via_home = event_.via_home;
+  s_.next_way = event_.way;
   s_.next_lock = event_.lock;
   s_.out = false;
   if (event_.ok)

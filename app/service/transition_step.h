@@ -56,7 +56,8 @@ class TransitionStep {
 
   // transition_collecting.cc
   void planned();
-  void approach(bool via_home);
+  void approach();
+  void go_nearer();
   void touch();
   void closed();
   void opened();

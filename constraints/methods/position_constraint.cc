@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "constraints/methods/maker.h"
+#include "constraints/methods/shared_point.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {
@@ -107,6 +108,11 @@ MethodPtr make_position_constraint(SetEntry& entry) {
     }
   }
   return std::make_unique<PositionConstraint>(std::move(links), entry.groups);
+}
+
+std::shared_ptr<const Method> shared_point() {
+  return std::make_shared<PositionConstraint>(std::vector<GroupDistance>(),
+                                              std::vector<std::string>());
 }
 
 }  // namespace selfcal

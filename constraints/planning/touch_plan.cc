@@ -6,9 +6,10 @@
 #include <numeric>
 
 #include "constraints/identifiability/endpoint_sigma.h"
-#include "constraints/methods/plane.h"
+#include "constraints/methods/shared_point.h"
 #include "constraints/methods/unit_normal.h"
 #include "constraints/planning/d_optimal.h"
+#include "constraints/planning/tour.h"
 #include "constraints/sampling/contact.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
@@ -17,19 +18,14 @@ namespace selfcal {
 namespace {
 
 constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
-constexpr int kPathBlocks = 3;      // of kLanes places along a path
+constexpr int kPostures = 4;        // of the robot at one point of a surface
+constexpr int kTries = 2;           // blocks of starts before a point of a surface is given up
 constexpr int kPoses = 500;         // at which the end position is judged
 constexpr unsigned long long kSeed = 1;
-constexpr int kRounds = 12;  // of sampling, until enough candidates are usable
-
-/// Distance of two configurations, each joint counted against its range.
-double distance(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  double sum = 0;
-  for (Eigen::Index j = 0; j < a.size(); ++j) {
-    sum += std::pow((a[j] - b[j]) / robot.joints()[j].range(), 2);
-  }
-  return std::sqrt(sum);
-}
+constexpr double kEdge = 0.02;     // of a patch, kept free at its edge
+constexpr int kRounds = 24;        // of sampling, until enough candidates are usable
+constexpr std::size_t kNear = 12;  // touches to which a free way is looked for
+constexpr double kOtherSet = 1e4;  // s, that no order gains by leaving a set unfinished
 
 /// Candidates of one target with their way in, as far as they are usable.
 class Candidates {
@@ -54,31 +50,58 @@ class Candidates {
   void sample(const TouchTarget& target, int obstacle, Random& random,
               std::vector<PlannedTouch>& usable) const {
     const int rows = kCandidatesEach * target.touches;
-    DataSet data;
-    data.sets = {sets_[target.set]};
-    // The nominal surface is given whole, whatever the set knows or shares of it.
-    if (target.plane) data.sets[0].method = point_on_plane();
-    data.sets[0].reference = -1;
     SampleRequest request;
-    request.rows = rows;
     request.together = target.places.empty();
+    if (target.plane) {
+      request.rows = request.rows_per_group = kPostures;
+      request.tries = kTries;
+      for (int point = 0; point < rows; point += kPostures) {
+        request.places = {{Eigen::Matrix3d::Identity(), point_of(target, random)}};
+        take(target, obstacle, shared_point(), request, random, usable);
+      }
+      return;
+    }
+    const std::shared_ptr<const Method>& method = sets_[target.set].method;
+    request.rows = rows;
     request.rows_per_group =
         std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
-    if (target.plane) request.nuisance = data.sets[0].method->nuisance_of(*target.plane);
     if (locks(target.set)) {
       Location engaged;
       engaged.R << tangents(target.outward), target.outward;
-      request.nuisance = data.sets[0].method->through(engaged, nullptr, random);
+      request.nuisance = method->through(engaged, nullptr, random);
     }
     request.patch = target.within;
     request.places = target.places;
+    take(target, obstacle, method, request, random, usable);
+  }
+
+  /// Anywhere on the nominal surface within its patch, but at its edge, which a touch may miss (m).
+  Eigen::Vector3d point_of(const TouchTarget& target, Random& random) const {
+    const Plane& plane = *target.plane;
+    const double off = plane.d.value() - plane.n.dot(target.within.centre);
+    const double all =
+        std::sqrt(std::max(0.0, target.within.radius * target.within.radius - off * off));
+    const double radius = (1 - kEdge) * all;
+    std::uniform_real_distribution<double> uniform;
+    const double away = radius * std::sqrt(uniform(random)), turn = 2 * M_PI * uniform(random);
+    return target.within.centre + off * plane.n +
+           away * (tangents(plane.n) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
+  }
+
+  /// Those of the sampled configurations that are usable.
+  void take(const TouchTarget& target, int obstacle, const std::shared_ptr<const Method>& method,
+            const SampleRequest& request, Random& random, std::vector<PlannedTouch>& usable) const {
+    DataSet data;
+    data.sets = {sets_[target.set]};
+    data.sets[0].method = method;
+    data.sets[0].reference = -1;
     const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
     for (int row = 0; row < data.rows.rows(); ++row) {
       const int group = data.rows.group[row];
-      if (group >= static_cast<int>(target.places.size()) && !target.places.empty()) continue;
+      if (group >= static_cast<int>(request.places.size()) && !request.places.empty()) continue;
       PlannedTouch touch;
       touch.set = target.set;
-      touch.group = group;
+      touch.group = target.places.empty() ? -1 : group;
       touch.touch = data.rows.q.row(row).transpose();
       if (enter(target, obstacle, data, sampled.truth, row, touch)) usable.push_back(touch);
     }
@@ -113,10 +136,7 @@ class Candidates {
     const Method& method = *data.sets[0].method;
     Eigen::VectorXd wanted =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
-    if (const auto plane = method.plane(truth.nuisance[0], nullptr))
-      wanted[0] = distance * plane->n.dot(target.outward);
-    else
-      wanted.head<3>() = distance * target.outward;
+    wanted.head<3>() = distance * target.outward;
     return move_to_residual(robot_, data, truth, row, wanted, q);
   }
 
@@ -159,65 +179,61 @@ void mark_check(std::vector<PlannedTouch>& touches, std::size_t sets, double sha
   }
 }
 
-/// The touches of each target in an order of short ways, begun at home; a touch that can be
-/// reached neither directly nor through home is left out.
-std::vector<PlannedTouch> order(const Robot& robot, const Eigen::VectorXd& xi,
-                                const std::vector<Set>& sets, std::vector<PlannedTouch> touches,
-                                const std::vector<Obstacle>& obstacles,
-                                const TouchPlanOptions& options) {
+/// Time (s) from each of home and the touches to each other: of a free way where they are near,
+/// through home else.
+Eigen::MatrixXd times_between(const Surroundings& cell, const std::vector<PlannedTouch>& touches) {
+  std::vector<const Eigen::VectorXd*> places{&cell.home};
+  for (const PlannedTouch& each : touches) places.push_back(&each.start);
+  const auto count = static_cast<Eigen::Index>(places.size());
+  const Eigen::VectorXd speed = Eigen::VectorXd::Constant(cell.home.size(), cell.speed);
+  Eigen::MatrixXd straight(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b)
+      straight(a, b) = joint_time(*places[static_cast<std::size_t>(a)],
+                                  *places[static_cast<std::size_t>(b)], speed);
+  Eigen::MatrixXd time = straight.col(0).replicate(1, count) + straight.row(0).replicate(count, 1);
+  std::vector<Eigen::Index> near(places.size());
+  for (Eigen::Index a = 1; a < count; ++a) {
+    std::iota(near.begin(), near.end(), 0);
+    const std::size_t some = std::min(near.size(), kNear + 1);
+    std::partial_sort(
+        near.begin(), near.begin() + static_cast<std::ptrdiff_t>(some), near.end(),
+        [&](Eigen::Index b, Eigen::Index c) { return straight(a, b) < straight(a, c); });
+    for (std::size_t i = 0; i < some; ++i) {
+      const Eigen::Index b = near[i];
+      if (b == 0 || b == a) continue;
+      time(a, b) = time(b, a) =
+          free_way(cell, *places[static_cast<std::size_t>(a)], *places[static_cast<std::size_t>(b)])
+              .time;
+    }
+  }
+  for (std::size_t a = 0; a < touches.size(); ++a)
+    for (std::size_t b = 0; b < touches.size(); ++b)
+      if (touches[a].set != touches[b].set)
+        time(static_cast<Eigen::Index>(a) + 1, static_cast<Eigen::Index>(b) + 1) += kOtherSet;
+  return time;
+}
+
+/// The touches in an order of short ways, begun at home, one set after the other.
+std::vector<PlannedTouch> order(const Surroundings& cell, const std::vector<Set>& sets,
+                                const std::vector<PlannedTouch>& touches) {
   std::vector<PlannedTouch> path;
-  Eigen::VectorXd here = options.home;
-  while (!touches.empty()) {
-    const auto nearest = std::ranges::min_element(touches, {}, [&](const PlannedTouch& each) {
-      // A set is finished before the next is begun.
-      const bool other = !path.empty() && each.set != path.back().set;
-      return distance(robot, here, each.start) + (other ? 1e3 : 0);
-    });
-    PlannedTouch next = std::move(*nearest);
-    touches.erase(nearest);
-    next.via_home = !path_is_free(robot, xi, here, next.start, obstacles, options.apart);
+  for (const int place : short_tour_from_first(times_between(cell, touches))) {
+    if (place == 0) continue;
+    PlannedTouch next = touches[static_cast<std::size_t>(place) - 1];
+    const FreeWay way = free_way(cell, path.empty() ? cell.home : path.back().start, next.start);
+    next.via_home = way.via_home;
+    next.way = way.through;
     // A lock stays engaged from its first configuration to its last.
     const bool held = !path.empty() && path.back().set == next.set &&
-                      sets[next.set].method->planned() == Planned::lock;
-    if (next.via_home && held) continue;
-    if (next.via_home &&
-        (!path_is_free(robot, xi, here, options.home, obstacles, options.apart) ||
-         !path_is_free(robot, xi, options.home, next.start, obstacles, options.apart)))
-      continue;
-    here = next.start;
+                      sets[static_cast<std::size_t>(next.set)].method->planned() == Planned::lock;
+    if (held && (next.via_home || !next.way.empty())) continue;
     path.push_back(std::move(next));
   }
   return path;
 }
 
 }  // namespace
-
-bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
-                  const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
-                  int touched) {
-  const auto blocked = [&](const Eigen::Vector3d& p) {
-    for (std::size_t o = 0; o < obstacles.size(); ++o) {
-      const Obstacle& each = obstacles[o];
-      if (static_cast<int>(o) == touched) continue;
-      const bool near =
-          each.within.radius <= 0 || (p - each.within.centre).norm() <= each.within.radius + apart;
-      if (near && each.outward.dot(p - each.point) < apart) return true;
-    }
-    return false;
-  };
-  ConfigurationBlock block{Eigen::ArrayXXd(kLanes, from.size()), kLanes};
-  Locations X;
-  for (int part = 0; part < kPathBlocks; ++part) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const double s = (part * kLanes + lane) / (kPathBlocks * kLanes - 1.0);
-      block.q.row(lane) = (from + s * (to - from)).transpose().array();
-    }
-    if (!robot.locate(block, xi, Body::endpoint, X, nullptr).closes()) return false;
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (blocked(X.p(lane))) return false;
-  }
-  return true;
-}
 
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
@@ -245,7 +261,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   std::vector<PlannedTouch> chosen = choose(robot, xi, sets, targets, usable);
   mark_check(chosen, sets.size(), options.check);
   tell("ordering touches", 0);
-  plan.touches = order(robot, xi, sets, std::move(chosen), obstacles, options);
+  plan.touches =
+      order({robot, xi, obstacles, options.apart, options.home, options.speed}, sets, chosen);
   return plan;
 }
 
@@ -271,6 +288,27 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
   expected.workspace = endpoint_sigma(question);
   return expected;
+}
+
+MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const TouchPlan& plan,
+                       const TouchPlanOptions& options, double touch_speed, int repeats) {
+  MotionTime time;
+  Eigen::VectorXd here = options.home;
+  const Eigen::VectorXd speed = Eigen::VectorXd::Constant(here.size(), options.speed);
+  const auto travel = [&](const Eigen::VectorXd& to) {
+    time.travel += joint_time(here, to, speed);
+    here = to;
+  };
+  for (const PlannedTouch& each : plan.touches) {
+    if (each.via_home) travel(options.home);
+    for (const Eigen::VectorXd& place : each.way) travel(place);
+    travel(each.start);
+    const double way =
+        (locate(robot, xi, each.touch).p - locate(robot, xi, each.start).p).norm() / touch_speed;
+    time.touching += repeats * (1 + 1 / kRetreatFaster) * way;
+  }
+  travel(options.home);
+  return time;
 }
 
 }  // namespace selfcal

@@ -1,25 +1,20 @@
 // Which configurations a session visits, and how it gets into each contact and out again.
 //
 // Many random configurations touch each surface or sit in each socket of the model; of these the
-// ones are taken that tell most together (spread.h). Each is entered along a straight joint path
-// from a free configuration, and no path may cross another surface.
+// ones are taken that tell most together (d_optimal.h). Each is entered along a straight joint path
+// from a free configuration, and no way between them may cross another surface (free_way.h).
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "constraints/planning/free_way.h"
 #include "constraints/progress.h"
 #include "constraints/sampling/configurations.h"
 #include "constraints/solution.h"
 
 namespace selfcal {
-
-/// What lies behind a surface within its patch: the half ball that the endpoint must keep out of.
-struct Obstacle {
-  Eigen::Vector3d point, outward;  ///< m; unit
-  Patch within;
-};
 
 /// What is asked of one set.
 struct TouchTarget {
@@ -41,6 +36,7 @@ struct TouchPlanOptions {
   double limit_margin = 0.02;  ///< rad or m, kept from the joint limits
   double check = 0.33;         ///< share kept aside to judge
   Eigen::VectorXd home;        ///< readings from which every touch can be begun
+  double speed = 0.5;          ///< rad/s or m/s, of the joints between touches
   unsigned long long seed = 1;
 };
 
@@ -48,6 +44,7 @@ struct PlannedTouch {
   int set = 0, group = -1;
   bool check = false;
   bool via_home = false;              ///< the way there leads through `home`
+  std::vector<Eigen::VectorXd> way;   ///< readings that it leads through else; none: straight
   Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up; all the
                                       ///< same under a lock
 };
@@ -76,10 +73,17 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
                              const TouchPlan& plan, const Workspace& workspace);
 
-/// True when the endpoint keeps out of every obstacle but `touched` (-1 for none) on the straight
-/// joint path from `from` to `to`.
-bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
-                  const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
-                  int touched = -1);
+/// How long the motion of a session takes (s): between the touches, from home and back to it, and
+/// into the contacts and out.
+struct MotionTime {
+  double travel = 0, touching = 0;
+};
+
+/// Out of a contact the robot moves so much faster than into it.
+inline constexpr double kRetreatFaster = 2;
+
+/// `touch_speed` is the endpoint's towards a surface (m/s), each touch made `repeats` times.
+MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const TouchPlan& plan,
+                       const TouchPlanOptions& options, double touch_speed, int repeats);
 
 }  // namespace selfcal

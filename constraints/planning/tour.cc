@@ -12,18 +12,18 @@ constexpr double kShorter = 1e-9;  // s: a smaller gain is rounding
 
 class TourSearch {
  public:
-  TourSearch(const std::vector<Visit>& visits, const Eigen::VectorXd& speed)
-      : count_(static_cast<int>(visits.size())), way_(visits.size(), visits.size()) {
-    for (int a = 0; a < count_; ++a)
-      for (int b = 0; b < count_; ++b)
-        way_(a, b) = joint_time(visits[a].last, visits[b].first, speed);
-    both_ways_ = std::ranges::all_of(visits, [](const Visit& v) { return v.first == v.last; });
-  }
+  /// `way`: from the end of one to the beginning of another (s). The first `fixed` places stay.
+  TourSearch(Eigen::MatrixXd way, bool both_ways, int fixed)
+      : count_(static_cast<int>(way.rows())),
+        fixed_(fixed),
+        way_(std::move(way)),
+        both_ways_(both_ways) {}
 
   std::vector<int> run() {
     std::vector<int> best;
     double shortest = 0;
-    for (int start = 0; start < std::min(count_, kStarts); ++start) {
+    const int starts = std::min(count_, fixed_ > 0 ? 1 : kStarts);
+    for (int start = 0; start < starts; ++start) {
       nearest(start);
       while ((both_ways_ && turn_a_stretch()) || move_some())
         ;
@@ -56,7 +56,7 @@ class TourSearch {
 
   bool turn_a_stretch() {
     bool shorter = false;
-    for (int i = 0; i + 1 < count_; ++i)
+    for (int i = fixed_; i + 1 < count_; ++i)
       for (int j = i + 1; j < count_; ++j) {
         const double before = between(i - 1, i) + between(j, j + 1);
         const double after = (i > 0 ? way_(order_[i - 1], order_[j]) : 0) +
@@ -71,7 +71,7 @@ class TourSearch {
   bool move_some() {
     bool shorter = false;
     for (int length = 1; length <= kLongestMoved; ++length)
-      for (int i = 0; i + length <= count_; ++i)
+      for (int i = fixed_; i + length <= count_; ++i)
         if (move(i, length)) shorter = true;
     return shorter;
   }
@@ -83,7 +83,7 @@ class TourSearch {
                         (i > 0 && end < count_ ? way_(order_[i - 1], order_[end]) : 0);
     double most = kShorter;
     int best = -1;
-    for (int to = 0; to <= count_; ++to) {  // before the visit at place `to`
+    for (int to = fixed_; to <= count_; ++to) {  // before the visit at place `to`
       if (to >= i && to <= end) continue;
       const double more = (to > 0 ? way_(order_[to - 1], first) : 0) +
                           (to < count_ ? way_(last, order_[to]) : 0) - between(to - 1, to);
@@ -99,9 +99,9 @@ class TourSearch {
     return true;
   }
 
-  int count_;
-  Eigen::MatrixXd way_;  ///< from the end of one to the beginning of another (s)
-  bool both_ways_ = true;
+  int count_, fixed_;
+  Eigen::MatrixXd way_;
+  bool both_ways_;
   std::vector<int> order_;
 };
 
@@ -125,7 +125,19 @@ double way_time(const std::vector<Visit>& visits, const std::vector<int>& order,
 }
 
 std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::VectorXd& speed) {
-  return TourSearch(visits, speed).run();
+  const auto count = static_cast<Eigen::Index>(visits.size());
+  Eigen::MatrixXd way(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b)
+      way(a, b) = joint_time(visits[static_cast<std::size_t>(a)].last,
+                             visits[static_cast<std::size_t>(b)].first, speed);
+  const bool both_ways =
+      std::ranges::all_of(visits, [](const Visit& v) { return v.first == v.last; });
+  return TourSearch(std::move(way), both_ways, 0).run();
+}
+
+std::vector<int> short_tour_from_first(const Eigen::MatrixXd& way) {
+  return TourSearch(way, true, 1).run();
 }
 
 }  // namespace selfcal

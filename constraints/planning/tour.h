@@ -28,4 +28,7 @@ double way_time(const std::vector<Visit>& visits, const std::vector<int>& order,
 /// The order, which begins at any visit.
 std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::VectorXd& speed);
 
+/// The order of places, begun at the first one, by the time from one to another (s; symmetric).
+std::vector<int> short_tour_from_first(const Eigen::MatrixXd& way);
+
 }  // namespace selfcal

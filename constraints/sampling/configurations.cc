@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kEnough = 8;      // lanes that reach the residual before the others are given up
 constexpr double kSame = 1e-6;  // farther apart, two configurations differ (rad, m)
-constexpr int kTries = 60;      // blocks of starts before a row is given up
+constexpr int kTries = 60;      // blocks of starts before a place is given up
 
 class Sampler {
  public:
@@ -121,6 +121,7 @@ class Sampler {
     if (opened_groups(request.set) >= static_cast<int>(set.groups.size()))
       set.groups.push_back("g" + std::to_string(set.groups.size()));
     last_of_group = -1;
+    spare_.clear();
     if (method.group_freedom() == 0) return;
     Eigen::MatrixXd& groups = sampled_.truth.groups[request.set];
     const auto place = static_cast<std::size_t>(groups.cols());
@@ -161,7 +162,7 @@ class Sampler {
       spare_.pop_back();
       return true;
     }
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    for (int attempt = 0; attempt < request.tries; ++attempt) {
       ConfigurationBlock block = starts();
       Locations X;
       const bool must = method.constrains() && !(method.paired() && last_of_group < 0);

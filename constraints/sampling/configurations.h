@@ -32,9 +32,10 @@ struct SampleRequest {
   Patch patch;
   std::vector<int> held;         ///< joints locked at readings of their own, one for all rows
   std::vector<Location> places;  ///< true locations of the first groups; random when missing
-  /// Rows may come from starts that were solved together: faster, and as random. For methods
-  /// without groups.
+  /// Rows (of a group, where there are groups) may come from starts that were solved together:
+  /// faster, and as random.
   bool together = false;
+  int tries = 60;  ///< blocks of starts before a row is given up
   /// Residual that row `i` of the request shall have (noise of a touch); zeros when empty.
   std::function<Eigen::VectorXd(int i)> residual;
 };

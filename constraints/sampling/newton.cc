@@ -60,7 +60,10 @@ Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
   for (Eigen::Index a = 0; a < miss.size(); ++a)
     for (Eigen::Index c = 0; c < 6; ++c)
       GJ.row(a) += out_.G_now(lane, 6 * a + c) * J_.row(c * kLanes + lane);
-  return least_squares(GJ, miss);
+  if (miss.size() > 1) return least_squares(GJ, miss);
+  const double squared = GJ.squaredNorm();
+  if (squared == 0) return Eigen::VectorXd::Zero(J_.cols());
+  return GJ.row(0).transpose() * (miss[0] / squared);
 }
 
 std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,

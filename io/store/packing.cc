@@ -8,6 +8,8 @@
 namespace selfcal {
 namespace {
 
+constexpr std::uint64_t kMostPlaces = 64;  // that a way leads through
+
 void put_u(std::string& out, std::uint64_t value) {
   for (; value >= 128; value >>= 7) out += static_cast<char>((value & 127) | 128);
   out += static_cast<char>(value);
@@ -106,6 +108,16 @@ void get_counts(PackedReader& in, EncoderSample& sample, const EncoderSample& ba
   }
 }
 
+void put_q(std::string& out, const std::vector<double>& q) {
+  put_u(out, q.size());
+  for (const double reading : q) put_d(out, reading);
+}
+
+void get_q(PackedReader& in, std::vector<double>& q) {
+  q.resize(in.size(8));
+  for (double& reading : q) reading = in.d();
+}
+
 /// `sample` without the counts that do not count.
 EncoderSample tidy(const EncoderSample& sample) {
   EncoderSample base;
@@ -149,7 +161,7 @@ std::string pack_labels(const std::vector<StepRecord>& plan) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     put_u(steps, place(plan[i].set));
     put_u(steps, place(plan[i].group));
-    put_u(steps, (plan[i].check ? 1U : 0U) + (plan[i].via_home ? 2U : 0U));
+    put_u(steps, (plan[i].check ? 1U : 0U) + (plan[i].via_home ? 2U : 0U) + 4 * plan[i].way.size());
     put_z(steps, plan[i].index - static_cast<std::int64_t>(i));
   }
   std::string out;
@@ -177,6 +189,8 @@ bool unpack_labels(std::string_view packed, std::vector<StepRecord>& plan) {
     step.group = names[group];
     step.check = (flags & 1) != 0;
     step.via_home = (flags & 2) != 0;
+    if (flags / 4 > kMostPlaces) return false;
+    step.way.resize(flags / 4);
     step.index = static_cast<int>(plus(in.z(), place++));
   }
   return in.at_end();
@@ -185,10 +199,8 @@ bool unpack_labels(std::string_view packed, std::vector<StepRecord>& plan) {
 std::string pack_postures(const std::vector<StepRecord>& plan) {
   std::string out;
   for (const StepRecord& step : plan) {
-    for (const std::vector<double>* q : {&step.start, &step.touch, &step.end}) {
-      put_u(out, q->size());
-      for (const double reading : *q) put_d(out, reading);
-    }
+    for (const std::vector<double>* q : {&step.start, &step.touch, &step.end}) put_q(out, *q);
+    for (const std::vector<double>& q : step.way) put_q(out, q);
   }
   return out;
 }
@@ -196,10 +208,8 @@ std::string pack_postures(const std::vector<StepRecord>& plan) {
 bool unpack_postures(std::string_view packed, std::vector<StepRecord>& plan) {
   PackedReader in{packed};
   for (StepRecord& step : plan) {
-    for (std::vector<double>* q : {&step.start, &step.touch, &step.end}) {
-      q->resize(in.size(8));
-      for (double& reading : *q) reading = in.d();
-    }
+    for (std::vector<double>* q : {&step.start, &step.touch, &step.end}) get_q(in, *q);
+    for (std::vector<double>& q : step.way) get_q(in, q);
   }
   return in.at_end();
 }

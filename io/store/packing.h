@@ -8,8 +8,8 @@
 //   stamps    z before.time, z edge - before.time, z after.time - before.time,
 //             u before.joints, z counts…, u after.joints, z counts - before's…
 //   labels    u steps, u names, s name…; per step: u set, u group (places among the names),
-//             u check + 2 via_home, z index - place
-//   postures  per step start, touch, end: u size, d…
+//             u check + 2 via_home + 4 places of the way, z index - place
+//   postures  per step start, touch, end, each place of its way: u size, d…
 //
 // Differences are modulo 2^64, so that every number comes back. Counts beyond a sample's joints
 // are not kept: they mean nothing.

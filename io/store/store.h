@@ -35,6 +35,7 @@ struct StepRecord {
   std::string set, group;
   bool check = false;                     ///< kept aside to judge
   bool via_home = false;                  ///< travel there through the home configuration
+  std::vector<std::vector<double>> way;   ///< readings to travel through else
   std::vector<double> start, touch, end;  ///< readings: free, nominal contact, farthest (rad or m)
 };
 

@@ -1,6 +1,7 @@
 // The ways between planned touches are free, and short.
 #include <gtest/gtest.h>
 
+#include "constraints/planning/tour.h"
 #include "tests/constraints/touch_plan_cell.h"
 
 namespace selfcal {
@@ -16,13 +17,81 @@ TEST(TouchPlan, ChoosesWaysThatAreFree) {
   Eigen::VectorXd here = home();
   for (const PlannedTouch& each : plan.touches) {
     if (each.via_home) {
-      EXPECT_TRUE(free(here, home()) && free(home(), each.start));
-    } else {
-      EXPECT_TRUE(free(here, each.start));
+      EXPECT_TRUE(free(here, home()));
+      here = home();
     }
+    for (const Eigen::VectorXd& place : each.way) {
+      EXPECT_TRUE(free(here, place));
+      here = place;
+    }
+    EXPECT_TRUE(free(here, each.start));
     EXPECT_TRUE(free(home(), each.start)) << "every touch can be begun at home";
     EXPECT_TRUE(free(each.start, each.end, each.set));
     here = each.start;
+  }
+}
+
+TEST(TouchPlan, HardlyEverGoesHomeBetweenTouches) {
+  PlannedCell cell = table_and_wall(30);
+  int through = 0;
+  const TouchPlan plan = cell.plan();
+  for (const PlannedTouch& each : plan.touches) through += each.via_home;
+  EXPECT_LE(through, 6) << "one in ten";
+  // As if each touch were reached through home, which is what the straight paths alone leave of
+  // most: at least twice as long.
+  double all = 0;
+  Eigen::VectorXd here = cell.options.home;
+  const Eigen::VectorXd speed = Eigen::VectorXd::Constant(6, cell.options.speed);
+  for (const PlannedTouch& each : plan.touches) {
+    all += joint_time(here, home(), speed) + joint_time(home(), each.start, speed);
+    here = each.start;
+  }
+  const MotionTime time = motion_time(rx90(), values(rx90()), plan, cell.options, 0.01, 1);
+  EXPECT_LT(time.travel, all / 2);
+}
+
+TEST(MotionTime, IsThatOfTheSlowestJointAndOfTheWayIntoTheContact) {
+  TouchPlan plan;
+  PlannedTouch touch;
+  touch.touch = touch.start = touch.end = home();
+  touch.start[1] += 0.02;
+  plan.touches = {touch};
+  TouchPlanOptions options;
+  options.home = home();
+  options.speed = 0.1;
+  touch.way = {home()};
+  touch.way[0][0] += 0.5;
+  touch.way[0][3] -= 0.2;
+  plan.touches.push_back(touch);
+  const double into = (located(touch.start).p - located(touch.touch).p).norm() / 0.01;
+  const MotionTime time = motion_time(rx90(), values(rx90()), plan, options, 0.01, 3);
+  // 0.02 to the first, 0.5 to the place and back to the second, 0.02 home.
+  EXPECT_NEAR(time.travel, (0.02 + 0.5 + 0.5 + 0.02) / 0.1, 1e-9);
+  EXPECT_NEAR(time.touching, 2 * 3 * 1.5 * into, 1e-9);
+}
+
+TEST(FreeWay, LeavesTheStraightPathOnlyWhereSomethingStandsInIt) {
+  Eigen::VectorXd from = home(), to = home();
+  from[0] = -1;
+  to[0] = 1;
+  from[1] = to[1] = 0.1;
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  Eigen::VectorXd middle_q = from;
+  middle_q[0] = 0;
+  const Eigen::Vector3d middle = located(middle_q).p;
+  const std::vector<Obstacle> post = {{middle + 0.05 * up, up, {middle, 0.15}}};
+  const Eigen::VectorXd xi = values(rx90()), free_home = home();
+  const FreeWay open = free_way({rx90(), xi, {}, 0.01, free_home, 0.5}, from, to);
+  EXPECT_TRUE(open.through.empty() && !open.via_home);
+  EXPECT_DOUBLE_EQ(open.time, 2 / 0.5);
+  const FreeWay round = free_way({rx90(), xi, post, 0.01, free_home, 0.5}, from, to);
+  ASSERT_FALSE(path_is_free(rx90(), xi, from, to, post, 0.01));
+  ASSERT_EQ(round.through.size(), 2u) << round.via_home;
+  EXPECT_GE(round.time, open.time - 1e-9);
+  Eigen::VectorXd here = from;
+  for (const Eigen::VectorXd& place : {round.through[0], round.through[1], to}) {
+    EXPECT_TRUE(path_is_free(rx90(), xi, here, place, post, 0.01));
+    here = place;
   }
 }
 

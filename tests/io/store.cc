@@ -61,6 +61,7 @@ TEST(Store, GivesBackAPlanBitByBit) {
     EXPECT_EQ(back[i].group, plan[i].group);
     EXPECT_EQ(back[i].check, plan[i].check);
     EXPECT_EQ(back[i].via_home, plan[i].via_home);
+    EXPECT_EQ(back[i].way, plan[i].way);
     EXPECT_EQ(back[i].start, plan[i].start);
     EXPECT_EQ(back[i].touch, plan[i].touch);
     EXPECT_EQ(back[i].end, plan[i].end);

@@ -66,6 +66,8 @@ inline void put(std::ostream& out, const StepRecord& s) {
   for (const std::vector<double>* q : {&s.start, &s.touch, &s.end}) {
     for (const double each : *q) out << ' ' << std::bit_cast<std::uint64_t>(each);
   }
+  for (const std::vector<double>& q : s.way)
+    for (const double each : q) out << ' ' << std::bit_cast<std::uint64_t>(each);
   out << '\n';
 }
 

@@ -51,6 +51,7 @@ inline std::vector<StepRecord> some_plan(int steps, int joints, std::uint64_t se
     for (std::vector<double>* q : {&step.start, &step.touch, &step.end}) {
       for (int joint = 0; joint < joints; ++joint) q->push_back(reading(generator));
     }
+    step.way.assign(static_cast<std::size_t>(i % 3), step.start);
   }
   return plan;
 }

@@ -22,6 +22,8 @@ inline std::string name_of(Action::Do what) {
       return "resume";
     case Do::go_home:
       return "go_home";
+    case Do::go_along:
+      return "go_along";
     case Do::go_to_start:
       return "go_to_start";
     case Do::go_touch:
@@ -126,7 +128,7 @@ struct Script {
 
   /// From the approach to the end of the retract; needs `s` in the approach to the step.
   Script& touch_well(int next) {
-    if (s.via_home) on(Event::What::moved);
+    while (s.via_home || s.way > 0) on(Event::What::moved);
     on(Event::What::moved);
     on(Event::What::closed).on(Event::What::at_rest);
     read(true, next);

@@ -131,6 +131,7 @@ TEST(StepsOf, KeepsThePlanInItsOrder) {
   touch.group = 2;
   touch.check = false;
   touch.via_home = true;
+  touch.way = {Eigen::VectorXd::Constant(6, 0.5)};
   plan.touches.push_back(touch);
   const auto steps = steps_of(plan, two_planes().sets);
   ASSERT_EQ(steps.size(), 2u);
@@ -141,6 +142,7 @@ TEST(StepsOf, KeepsThePlanInItsOrder) {
   EXPECT_EQ(steps[1].set, "far");
   EXPECT_EQ(steps[1].group, "g2");
   EXPECT_TRUE(!steps[1].check && steps[1].via_home);
+  EXPECT_EQ(steps[1].way, std::vector(1, std::vector<double>(6, 0.5)));
   EXPECT_EQ(steps[1].end, std::vector<double>(6, 0.25));
 }
 

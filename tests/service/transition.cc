@@ -50,6 +50,35 @@ TEST(Transition, GoesThroughHomeOnlyWhereThePlanSays) {
   EXPECT_EQ(script.on(What::moved).done(), "go_home");
 }
 
+TEST(Transition, GoesAlongThePlacesOfTheWayBeforeTheStart) {
+  Script script = script_at(ServiceState::planning);
+  script.planned(3, SessionKind::full, 0, false);
+  script.on(What::moved).on(What::closed).on(What::at_rest);
+  Event read;
+  read.what = What::read;
+  read.step = 1;
+  read.way = 2;
+  script.on(read).on(What::opened);
+  EXPECT_EQ(script.on(What::moved).done(), "go_along");
+  EXPECT_EQ(script.s.way, 2);
+  EXPECT_EQ(script.on(What::moved).done(), "go_along");
+  EXPECT_EQ(script.on(What::moved).done(), "go_to_start");
+  EXPECT_EQ(script.on(What::moved).done(), "go_touch");
+  EXPECT_EQ(script.s.step, 1);
+}
+
+TEST(Transition, GoesHomeFromAStrayContactWhateverTheWayWas) {
+  Script script = script_at(ServiceState::planning);
+  Event planned;
+  planned.what = What::planned;
+  planned.steps = 3;
+  planned.way = 2;
+  EXPECT_EQ(script.on(planned).done(), "go_along");
+  script.on(What::closed).on(What::at_rest).on(What::opened);
+  EXPECT_EQ(script.on(What::moved).done(), "go_home");
+  EXPECT_EQ(script.on(What::moved).done(), "go_to_start");
+}
+
 TEST(Transition, WaitsForTheTriggerToOpenAfterTheRetractHasEnded) {
   Script script = script_at(ServiceState::collecting, Phase::retract);
   EXPECT_EQ(script.on(What::moved).done(), "");

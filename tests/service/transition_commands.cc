@@ -108,6 +108,7 @@ Event random_event(std::mt19937_64& random, const Situation& s) {
   event.steps = event.what == What::planned ? 1 + below(5) : 0;
   event.step = event.what == What::planned ? below(event.steps + 1) : s.step + below(2);
   event.via_home = below(2) == 0;
+  event.way = below(3);
   event.decision = static_cast<Event::Decision>(below(4));
   return event;
 }

@@ -88,6 +88,7 @@ inline Touched go(Machine& machine, MoveKind kind, const Eigen::VectorXd& q,
 /// One touch as the service makes it: from its start until the trigger closes, then a stop.
 inline Touched touch(Machine& machine, const PlannedTouch& planned, const std::string& label) {
   if (planned.via_home) go(machine, MoveKind::travel, home(), label);
+  for (const Eigen::VectorXd& place : planned.way) go(machine, MoveKind::travel, place, label);
   go(machine, MoveKind::travel, planned.start, label);
   Touched touched;
   machine.request(request_of(MoveKind::touch, planned.end, label));

@@ -69,7 +69,7 @@ TEST(MachineFault, NeitherAnswersNorMovesWhileItIsSilent) {
 TEST(MachineFault, IsRefusedWhenNobodyKnowsIt) {
   EXPECT_THAT(problem_of("robot: r\nmachine: {faults: [{what: rust, at: 0}]}\n"
                          "sets: {a: {method: plane}}\n"),
-              testing::HasSubstr("encoders, stuck, refuse or silent"));
+              testing::HasSubstr("encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or lock_slip"));
 }
 
 TEST(Machine, WarmsUpAsItIsTold) {
@@ -92,7 +92,7 @@ TEST(Machine, RefusesAPlaneOfWhichOnlyTheNormalIsKnown) {
   const Machine machine(scenario_of("robot: r\nsets: {a: {method: plane-normal}}\n"),
                         {std::shared_ptr<void>(), &rx90()}, home(), problems);
   ASSERT_TRUE(problems.any());
-  EXPECT_THAT(problems.list.front(), testing::HasSubstr("planes or `places`"));
+  EXPECT_THAT(problems.list.front(), testing::HasSubstr("planes, locks or `places`"));
 }
 
 // ---------------------------------------------------------------------------- sockets

@@ -1,0 +1,48 @@
+// Ways from one configuration of a cell to another that nothing stands in.
+//
+// The straight joint path where it is free. Where it is not, both ends go back a part of their ways
+// to home, which are free, and the path between these places is tried; back to home itself, which
+// always serves.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "constraints/sampling/configurations.h"
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+/// What lies behind a surface within its patch: the half ball that the endpoint must keep out of.
+struct Obstacle {
+  Eigen::Vector3d point, outward;  ///< m; unit
+  Patch within;
+};
+
+/// True when the endpoint keeps out of every obstacle but `touched` (-1 for none), and `apart` (m)
+/// from it, on the straight joint path from `from` to `to`.
+bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
+                  const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
+                  int touched = -1);
+
+/// A way between two configurations, straight from each place to the next.
+struct FreeWay {
+  bool via_home = false;
+  std::vector<Eigen::VectorXd> through;  ///< readings between them; empty where it leads via home
+  double time = 0;                       ///< s
+};
+
+/// Where a robot moves between configurations. What it refers to outlives it.
+struct Surroundings {
+  const Robot& robot;
+  const Eigen::VectorXd& xi;
+  const std::vector<Obstacle>& obstacles;
+  double apart;                 ///< m, kept from every obstacle
+  const Eigen::VectorXd& home;  ///< readings
+  double speed;                 ///< of every joint (rad/s, m/s), above 0
+};
+
+/// From one configuration to another, of which each is straight from home.
+FreeWay free_way(const Surroundings& cell, const Eigen::VectorXd& from, const Eigen::VectorXd& to);
+
+}  // namespace selfcal
