@@ -99,7 +99,12 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
   return found;
 }
 
-std::string json_of(const Findings& findings) { return to_json(findings).dump(1); }
+/// With the rows of each step, for `plan --separate`.
+std::string json_of(const Inputs& inputs, const Findings& findings) {
+  nlohmann::ordered_json json = to_json(findings);
+  json["next"] = next_json(findings.diagnosis, inputs.measured.data)["steps"];
+  return json.dump(1) + "\n";
+}
 
 std::string words_of(const Findings& findings) {
   std::string text = summary(findings.diagnosis);
@@ -120,7 +125,7 @@ Result<void> write_folder(const std::filesystem::path& out, const Inputs& inputs
   const PageSubject subject{*inputs.robot, inputs.measured.data, inputs.measured.name,
                             unix_now_ms()};
   const std::pair<const char*, std::string> files[] = {
-      {"diagnosis.json", json_of(findings) + "\n"},
+      {"diagnosis.json", json_of(inputs, findings)},
       {"report.html", page_of(diagnosis_data(subject, findings))},
       {"corrected.robot.yaml", robot_text(*diagnosis.model, diagnosis.values)}};
   for (const auto& [name, text] : files)
@@ -145,7 +150,7 @@ int diagnose_command(const DiagnoseArguments& arguments) {
   if (!inputs) return tell(inputs.error());
   const auto findings = find(arguments, *inputs);
   if (!findings) return tell(findings.error());
-  std::fputs((arguments.json ? json_of(*findings) + "\n" : words_of(*findings)).c_str(), stdout);
+  std::fputs((arguments.json ? json_of(*inputs, *findings) : words_of(*findings)).c_str(), stdout);
   if (const auto written = write_findings(arguments, *inputs, *findings); !written)
     return tell(written.error());
   return findings->diagnosis.converged ? kDone : kAnswerIsNo;

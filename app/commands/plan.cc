@@ -1,11 +1,14 @@
-// selfcal plan ROBOT --method METHOD: which configurations to measure at.
+// selfcal plan ROBOT --method METHOD, plan CONFIG.yaml, plan --separate FILE: which configurations
+// to measure at.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/cell_plan.h"
 #include "app/commands/support/method_sets.h"
+#include "app/commands/support/separating_rows.h"
 #include "app/report/plan_words.h"
 #include "app/report/progress_line.h"
 #include "io/files/file.h"
@@ -19,9 +22,9 @@ namespace {
 constexpr double kTurnSpeed = 1, kSlideSpeed = 0.25;  // rad/s, m/s, where none is given
 
 struct PlanArguments {
-  std::string robot, start, out, criterion = "sigma";
+  std::string file, separate, start, out, criterion = "sigma";
   MethodOptions options;
-  int count = 30, candidates = 1000, groups = 2;
+  int count = 30, candidates = 1000, groups = 2, step = 1;
   std::vector<double> speed, workspace;
   double target = 1e-3;
   unsigned long long seed = 1;
@@ -86,11 +89,15 @@ std::string rows_text(const ConfigurationPlan& plan) {
   return observations_text(data);
 }
 
-int plan_command(const PlanArguments& arguments) {
+Result<void> write_rows(const PlanArguments& arguments, const std::string& text) {
+  return arguments.out.empty() ? Result<void>() : write_file_atomically(arguments.out, text);
+}
+
+int plan_for_robot(const PlanArguments& arguments) {
   if (const std::string what = mistake(arguments.options); !what.empty()) return wrong_usage(what);
   if (arguments.candidates < arguments.count)
     return wrong_usage("--candidates must be at least --count");
-  const auto robot = load_robot(arguments.robot);
+  const auto robot = load_robot(arguments.file);
   if (!robot) return tell(robot.error());
   const Result<PlanRequest> request = request_of(**robot, arguments);
   if (!request) return tell(request.error());
@@ -102,14 +109,54 @@ int plan_command(const PlanArguments& arguments) {
                             [&](std::string_view stage, double share) { line.show(stage, share); });
   }
   if (!plan.problem.empty()) return tell({kAnswerIsNo, plan.problem});
-  if (!arguments.out.empty())
-    if (const auto written = write_file_atomically(arguments.out, rows_text(plan)); !written)
-      return tell(written.error());
+  if (const auto written = write_rows(arguments, rows_text(plan)); !written)
+    return tell(written.error());
   if (arguments.json)
     std::printf("%s\n", plan_json(**robot, *request, plan, arguments.target).dump(1).c_str());
   else
     std::fputs(plan_words(**robot, *request, plan, arguments.target).c_str(), stdout);
   return kDone;
+}
+
+int plan_for_cell(const PlanArguments& arguments) {
+  const auto config = load_config(arguments.file);
+  if (!config) return tell(config.error());
+  CellPlan cell;
+  {
+    ProgressLine line;
+    cell =
+        plan_cell(*config, [&](std::string_view stage, double share) { line.show(stage, share); });
+  }
+  if (const auto written = write_rows(arguments, cell_plan_rows(*config, cell)); !written)
+    return tell(written.error());
+  if (arguments.json)
+    std::printf("%s\n", cell_plan_json(*config, cell).dump(1).c_str());
+  else
+    std::printf("%s: robot %s\n%s", config->id.c_str(), config->robot->name().c_str(),
+                cell_plan_words(*config, cell).c_str());
+  return cell.reaches(*config) ? kDone : kAnswerIsNo;
+}
+
+int plan_to_separate(const PlanArguments& arguments) {
+  const auto rows = read_separating_rows(arguments.separate);
+  if (!rows) return tell(rows.error());
+  const auto step = static_cast<std::size_t>(arguments.step);
+  if (!rows->steps.empty() && step > rows->steps.size())
+    return wrong_usage("--step: the diagnosis asks for " + std::to_string(rows->steps.size()) +
+                       " of them");
+  std::fputs(separating_words(*rows).c_str(), stdout);
+  if (rows->steps.empty()) return kAnswerIsNo;
+  if (const auto written = write_rows(arguments, observations_text(rows->steps[step - 1].rows));
+      !written)
+    return tell(written.error());
+  return kDone;
+}
+
+int plan_command(const PlanArguments& arguments) {
+  if (arguments.separate.empty() == arguments.file.empty())
+    return wrong_usage("plan needs a robot file with --method, a CONFIG.yaml, or --separate FILE");
+  if (!arguments.separate.empty()) return plan_to_separate(arguments);
+  return arguments.options.methods.empty() ? plan_for_cell(arguments) : plan_for_robot(arguments);
 }
 
 std::vector<std::string> criterion_list() {
@@ -122,14 +169,21 @@ std::vector<std::string> criterion_list() {
 void add_plan(CLI::App& app, int& status) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "Choose the configurations to measure at");
-  command->add_option("ROBOT", arguments->robot, "Robot file")->required();
-  command
-      ->add_option("--method", arguments->options.methods,
-                   "Constraint method; again for each further surface, socket or instrument")
-      ->check(is_method())
-      ->expected(1)
-      ->take_all()
-      ->required();
+  command->add_option("FILE", arguments->file, "Robot file, or the CONFIG.yaml of a cell");
+  CLI::Option* method =
+      command
+          ->add_option("--method", arguments->options.methods,
+                       "Constraint method; again for each further surface, socket or instrument")
+          ->check(is_method())
+          ->expected(1)
+          ->take_all();
+  CLI::Option* separate = command->add_option(
+      "--separate", arguments->separate, "diagnosis.json: rows that tell its look-alikes apart");
+  command->add_option("--step", arguments->step, "Of these, whose rows --out gets")
+      ->check(CLI::Range(1, 100))
+      ->needs(separate)
+      ->capture_default_str();
+  const std::vector<CLI::Option*> others = command->get_options();
   add_lock_and_unknown(*command, arguments->options);
   command->add_option("--count", arguments->count, "Configurations to choose")
       ->check(CLI::Range(1, 10000))
@@ -166,8 +220,11 @@ void add_plan(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Seed of all that is drawn")
       ->capture_default_str();
+  for (CLI::Option* each : command->get_options())
+    if (std::ranges::find(others, each) == others.end()) each->needs(method);
   command->add_option("--out", arguments->out, "CSV file for the configurations");
-  command->add_flag("--json", arguments->json, "Print JSON alone on standard output");
+  command->add_flag("--json", arguments->json, "Print JSON alone on standard output")
+      ->excludes(separate);
   command->callback([arguments, &status] { status = plan_command(*arguments); });
 }
 

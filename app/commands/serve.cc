@@ -11,8 +11,10 @@
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/cell_plan.h"
 #include "app/commands/support/signals.h"
 #include "app/commands/support/simulated_robot.h"
+#include "app/report/progress_line.h"
 #include "app/service/service.h"
 #include "io/clock.h"
 #include "io/dds/messenger.h"
@@ -183,56 +185,18 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   return served;
 }
 
-/// Whether the touches planned can reach the target.
-int show_expected(const Config& config, const TouchPlan& plan) {
-  const ExpectedSigma expected = expected_sigma(*config.robot, values(*config.robot), config.sets,
-                                                config.targets, plan, config.workspace);
-  if (expected.workspace.poses == 0) {
-    std::fprintf(stderr, "selfcal: the robot does not reach the workspace\n");
-    return kAnswerIsNo;
-  }
-  std::printf(
-      "  end position known then to %.3g mm in the workspace (1 sigma; worst %.3g mm), to %.3g mm "
-      "over the whole range of the joints\n",
-      1e3 * expected.workspace.rms, 1e3 * expected.workspace.max, 1e3 * expected.endpoint.rms);
-  const MotionTime time = motion_time(*config.robot, values(*config.robot), plan, config.plan,
-                                      config.speeds.touch, config.touch.repeats);
-  std::printf("  motion %.0f min: %.0f min between touches, %.0f min into contacts and out\n",
-              (time.travel + time.touching) / 60, time.travel / 60, time.touching / 60);
-  const bool reached = known_to(expected.workspace, config.target);
-  std::printf("  target %.3g mm: %s\n", 1e3 * config.target,
-              reached ? "yes"
-                      : "no; plan more touches or surfaces, or give a known length (a step, a ball "
-                        "or sockets a known distance apart)");
-  return reached ? kDone : kAnswerIsNo;
-}
-
 /// What a session would do, for a person.
 int show_plan(const Config& config) {
-  const TouchPlan plan = plan_touches(*config.robot, values(*config.robot), config.sets,
-                                      config.targets, config.obstacles, config.plan);
   std::printf("%s: robot %s, %zu joints, state in %s, DDS domain %d\n", config.id.c_str(),
               config.robot->name().c_str(), config.robot->joints().size(), config.state.c_str(),
               config.domain);
   std::printf("  encoders: %s\n  trigger: %s\n", config.encoders->source().c_str(),
               config.trigger->source().c_str());
-  for (std::size_t s = 0; s < config.sets.size(); ++s) {
-    int touches = 0, check = 0, home = 0;
-    for (const PlannedTouch& touch : plan.touches)
-      if (touch.set == static_cast<int>(s)) {
-        ++touches;
-        check += touch.check;
-        home += touch.via_home;
-      }
-    std::printf("  %-16s %-20s %4d touches, %d to check, %d reached through home\n",
-                config.sets[s].name.c_str(), std::string(config.sets[s].method->name()).c_str(),
-                touches, check, home);
-  }
-  if (!plan.unreached.empty()) {
-    std::fprintf(stderr, "selfcal: %s\n", plan.unreached.c_str());
-    return kAnswerIsNo;
-  }
-  return show_expected(config, plan);
+  ProgressLine line;
+  const CellPlan cell =
+      plan_cell(config, [&](std::string_view stage, double share) { line.show(stage, share); });
+  std::fputs(cell_plan_words(config, cell).c_str(), stdout);
+  return cell.reaches(config) ? kDone : kAnswerIsNo;
 }
 
 int serve_command(const ServeArguments& arguments) {

@@ -234,6 +234,53 @@ TEST_F(Program, RefusesOptionsThatWouldChangeNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+TEST_F(Program, PlansACellAsTheServiceChecksIt) {
+  const std::string config = SELFCAL_SOURCE_DIR "/app/examples/delta_cell.config.yaml";
+  const std::string rows = (folder_ / "rows.csv").string();
+  const Ran plan = run_selfcal("plan " + config + " --out " + rows, true);
+  EXPECT_EQ(plan.status, 0) << plan.out;
+  const Ran check = run_selfcal("serve " + config + " --check", true);
+  EXPECT_NE(check.out.find(plan.out.substr(plan.out.find("\n  bed"))), std::string::npos)
+      << plan.out << check.out;
+  const Ran told = run_selfcal("plan " + config + " --json", true);
+  const auto json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json["reached"], true);
+  ASSERT_EQ(json["configurations"].size(), 72u);
+  EXPECT_EQ(json["configurations"][0]["q"].size(), 3u);
+  const std::string text = text_of(rows);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 73);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "set,part,q1,q2,q3");
+}
+
+TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
+  const std::string file = (folder_ / "diagnosis.json").string();
+  const std::string step =
+      R"({"what": "repeat 2 rows twice at once", "separates": ["backlash@j1", "none"],
+    "probability_after": 0.93, "rows": [{"set": "t", "q": [0, 1], "repeat": "n1"}, {"set": "t", "q": [0, 1], "repeat": "n1"},
+    {"set": "t", "q": [3, 1], "repeat": "n2"}, {"set": "t", "q": [0.5, null], "dq": [1, -1]}]})";
+  std::ofstream(file) << R"({"next": [)" << step << R"(], "next_why": ""})";
+  const std::string rows = (folder_ / "rows.csv").string();
+  const Ran ran = run_selfcal("plan --separate " + file + " --out " + rows, true);
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_EQ(ran.out,
+            "1  repeat 2 rows twice at once: tells backlash@j1 from none, which is then sure to "
+            "0.93\n");
+  const std::string text = text_of(rows);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "set,repeat,q1,q2,dq1,dq2");
+  EXPECT_NE(text.find("t,0,0,1,,\nt,0,0,1,,\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("t,,0.5,,1,-1\n"), std::string::npos) << text;
+  EXPECT_EQ(run_selfcal("plan --separate " + file + " --step 2").status, 2);
+  std::ofstream(file) << R"({"next": [], "next_why": "nothing looks like what is named"})";
+  const Ran nothing = run_selfcal("plan --separate " + file, true);
+  EXPECT_EQ(nothing.status, 1);
+  EXPECT_EQ(nothing.out, "nothing to measure: nothing looks like what is named\n");
+  std::ofstream(file) << "{}";
+  EXPECT_EQ(run_selfcal("plan --separate " + file).status, 3);
+  EXPECT_EQ(run_selfcal("plan --separate " + (folder_ / "not_there.json").string()).status, 3);
+  EXPECT_EQ(run_selfcal("plan").status, 2);
+  EXPECT_EQ(run_selfcal("plan --separate " + file + " --count 3").status, 2);
+}
+
 TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
   const std::string data = simulated();
   const std::filesystem::path other = folder_ / "other";

@@ -1,0 +1,124 @@
+#include "app/commands/support/cell_plan.h"
+
+#include <algorithm>
+
+#include "app/report/format.h"
+#include "io/files/json_parts.h"
+#include "io/files/observations_text.h"
+
+namespace selfcal {
+namespace {
+
+struct SetCount {
+  int touches = 0, check = 0, home = 0;
+};
+
+SetCount count_of(const TouchPlan& plan, int set) {
+  SetCount count;
+  for (const PlannedTouch& touch : plan.touches)
+    if (touch.set == set) {
+      ++count.touches;
+      count.check += touch.check;
+      count.home += touch.via_home;
+    }
+  return count;
+}
+
+/// What is lacking; empty where the plan is whole.
+std::string lacking(const CellPlan& cell) {
+  if (!cell.plan.unreached.empty()) return cell.plan.unreached;
+  return cell.expected.workspace.poses == 0 ? "the robot does not reach the workspace" : "";
+}
+
+}  // namespace
+
+bool CellPlan::reaches(const Config& config) const {
+  return lacking(*this).empty() && known_to(expected.workspace, config.target);
+}
+
+CellPlan plan_cell(const Config& config, const Progress& progress) {
+  const Eigen::VectorXd xi = values(*config.robot);
+  CellPlan cell;
+  cell.plan = plan_touches(*config.robot, xi, config.sets, config.targets, config.obstacles,
+                           config.plan, progress);
+  if (!cell.plan.unreached.empty()) return cell;
+  if (progress) progress("how well the end position is known then", 0);
+  cell.expected =
+      expected_sigma(*config.robot, xi, config.sets, config.targets, cell.plan, config.workspace);
+  cell.time = motion_time(*config.robot, xi, cell.plan, config.plan, config.speeds.touch,
+                          config.touch.repeats);
+  return cell;
+}
+
+std::string cell_plan_words(const Config& config, const CellPlan& cell) {
+  std::string text;
+  for (int s = 0; s < static_cast<int>(config.sets.size()); ++s) {
+    const Set& set = config.sets[static_cast<std::size_t>(s)];
+    const SetCount count = count_of(cell.plan, s);
+    text += printed("  %-16s %-20s %4d touches, %d to check, %d reached through home\n",
+                    set.name.c_str(), std::string(set.method->name()).c_str(), count.touches,
+                    count.check, count.home);
+  }
+  if (const std::string what = lacking(cell); !what.empty())
+    return text + "  no plan: " + what + "\n";
+  text += printed(
+      "  end position known then to %.3g mm in the workspace (1 sigma; worst %.3g mm), to %.3g mm "
+      "over the whole range of the joints\n",
+      1e3 * cell.expected.workspace.rms, 1e3 * cell.expected.workspace.max,
+      1e3 * cell.expected.endpoint.rms);
+  text += printed("  motion %s: %s between touches, %s into contacts and out\n",
+                  duration(cell.time.travel + cell.time.touching).c_str(),
+                  duration(cell.time.travel).c_str(), duration(cell.time.touching).c_str());
+  return text + printed("  target %.3g mm: %s\n", 1e3 * config.target,
+                        cell.reaches(config)
+                            ? "yes"
+                            : "no; plan more touches or surfaces, or give a known length (a step, "
+                              "a ball or sockets a known distance apart)");
+}
+
+nlohmann::ordered_json cell_plan_json(const Config& config, const CellPlan& cell) {
+  using Json = nlohmann::ordered_json;
+  const auto q_of = [](const Eigen::VectorXd& q) { return array_of(q, finite); };
+  const std::string what = lacking(cell);
+  Json json{{"robot", config.robot->name()}, {"problem", what}, {"target", config.target}};
+  const auto sigma = [&](const EndpointSigma& each) {
+    return what.empty() ? Json{{"rms", finite(each.rms)}, {"max", finite(each.max)}}
+                        : Json(nullptr);
+  };
+  json["sigma"] = sigma(cell.expected.workspace);
+  json["sigma_range"] = sigma(cell.expected.endpoint);
+  json["reached"] = cell.reaches(config);
+  json["motion"] = {{"travel", cell.time.travel}, {"touching", cell.time.touching}};
+  json["configurations"] = array_of(cell.plan.touches, [&](const PlannedTouch& touch) {
+    Json each{{"set", config.sets[static_cast<std::size_t>(touch.set)].name},
+              {"part", touch.check ? "check" : "fit"},
+              {"q", q_of(touch.touch)},
+              {"start", q_of(touch.start)},
+              {"end", q_of(touch.end)}};
+    std::vector<Eigen::VectorXd> way = touch.way;
+    if (touch.via_home) way = {config.plan.home};
+    each["way"] = array_of(way, q_of);
+    return each;
+  });
+  return json;
+}
+
+std::string cell_plan_rows(const Config& config, const CellPlan& cell) {
+  DataSet data;
+  data.sets = config.sets;
+  const auto count = static_cast<Eigen::Index>(cell.plan.touches.size());
+  data.rows.q.resize(count, static_cast<Eigen::Index>(config.robot->joints().size()));
+  data.rows.noise_factor.setOnes(count);
+  for (const PlannedTouch& touch : cell.plan.touches) {
+    data.rows.q.row(static_cast<Eigen::Index>(data.rows.set.size())) = touch.touch.transpose();
+    data.rows.set.push_back(touch.set);
+    data.rows.group.push_back(touch.group);
+    data.rows.check.push_back(touch.check ? 1 : 0);
+    std::vector<std::string>& groups = data.sets[static_cast<std::size_t>(touch.set)].groups;
+    while (static_cast<int>(groups.size()) <= touch.group)
+      groups.push_back("g" + std::to_string(groups.size()));
+  }
+  return observations_text(data);
+}
+
+}  // namespace selfcal
