@@ -9,6 +9,8 @@
 namespace selfcal {
 namespace {
 
+constexpr int kKept = 16 << 20;  // bytes
+
 int run(int argc, char** argv) {
   CLI::App app{"Self-calibration of robots from their own joint readings", "selfcal"};
   app.set_version_flag("--version", std::string("selfcal ") + SELFCAL_VERSION);
@@ -46,7 +48,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Blocks of rows come and go by the thousand: what is freed stays with the process, up to 16 MiB,
   // in place of going back to the kernel each time.
-  mallopt(M_TRIM_THRESHOLD, 16 << 20);
+  mallopt(M_TRIM_THRESHOLD, selfcal::kKept);
+  mallopt(M_MMAP_THRESHOLD, selfcal::kKept);
   try {
     const int status = selfcal::run(argc, argv);
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;

@@ -78,6 +78,12 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
   }
 }
 
+std::size_t Equations::items_of_all() const {
+  std::size_t count = 0;
+  for (const SetPlan& plan : plans_) count += plan.items.size();
+  return count;
+}
+
 int Equations::group_freedoms(int set) const {
   size_t groups = 0;
   for (const SetPlan::Cluster& cluster : plans_[set].clusters) groups += cluster.groups.size();
@@ -162,7 +168,7 @@ RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& q
   for (size_t a = 0; a < quantities.size(); ++a) {
     const double value = out.r(lane, static_cast<Eigen::Index>(a));
     const bool angle = quantities[a] == Quantity::angle;
-    r.scalars[a] = value;
+    r.scalars.set(a, value);
     (angle ? r.angle : r.length) += value * value;
     ++(angle ? r.angles : r.lengths);
   }
@@ -189,6 +195,7 @@ Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity
 
 std::vector<RowResidual> Equations::residuals(const State& state) const {
   std::vector<RowResidual> list;
+  list.reserve(items_of_all());
   Block block;
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
     const int items = static_cast<int>(plans_[s].items.size());

@@ -34,6 +34,25 @@ struct Scale {
   double of(Quantity quantity) const { return quantity == Quantity::angle ? angle : length; }
 };
 
+/// The scalars of a residual: few in place, the further ones (of markers) beside them.
+class Scalars {
+ public:
+  double operator[](std::size_t i) const { return i < kFew ? few_[i] : more_[i - kFew]; }
+  void set(std::size_t i, double value) {
+    if (i < kFew) {
+      few_[i] = value;
+      return;
+    }
+    if (more_.size() <= i - kFew) more_.resize(i - kFew + 1);
+    more_[i - kFew] = value;
+  }
+
+ private:
+  static constexpr std::size_t kFew = 6;
+  std::array<double, kFew> few_{};
+  std::vector<double> more_;
+};
+
 /// Residual of one row: the length of its length and angle parts and the scalars of each. Infinite
 /// where the robot, as it is, cannot take the row's configuration.
 struct RowResidual {
@@ -41,8 +60,7 @@ struct RowResidual {
   double length = 0, angle = 0;  ///< norms (m, rad)
   int lengths = 0, angles = 0;   ///< counts of scalars
   double factor = 1;             ///< of its noise over its set's
-  std::array<double, kMostEquations>
-      scalars{};  ///< lengths + angles entries, in the method's order
+  Scalars scalars = {};  ///< lengths + angles entries, in the method's order
   /// World (m), of Equations::residuals alone: where the method's body is, and its shortest way to
   /// where the row's lengths would be met, to first order; zero of rows without lengths.
   Eigen::Vector3d at = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
@@ -161,6 +179,7 @@ class Equations {
   struct GeodesicStep;
   class Gatherer;
 
+  std::size_t items_of_all() const;
   void make_plan(int set, Use use);
   /// By item, why the robot cannot take it with its maker's figures; empty where it can.
   std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;

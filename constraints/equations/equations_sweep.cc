@@ -193,6 +193,7 @@ Linearised Equations::sweep(const State& state, const Weighting& weighting, bool
   StreamingQr qr(global);
   Gatherer gatherer(global, qr);
   Linearised result;
+  result.residuals.reserve(items_of_all());
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s)
     sweep_set(s, state, weighting, beside, geodesic_acceleration, qr, gatherer, result);
   Eigen::MatrixXd rows(0, global);
