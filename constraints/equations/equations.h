@@ -60,7 +60,7 @@ struct RowResidual {
   double length = 0, angle = 0;  ///< norms (m, rad)
   int lengths = 0, angles = 0;   ///< counts of scalars
   double factor = 1;             ///< of its noise over its set's
-  Scalars scalars = {};  ///< lengths + angles entries, in the method's order
+  Scalars scalars = {};          ///< lengths + angles entries, in the method's order
   /// World (m), of Equations::residuals alone: where the method's body is, and its shortest way to
   /// where the row's lengths would be met, to first order; zero of rows without lengths.
   Eigen::Vector3d at = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
