@@ -13,11 +13,20 @@ constexpr double kShown = 0.5;   ///< probability
 constexpr double kApart = 3;     ///< sigmas
 constexpr double kUnsure = 0.5;  ///< probability of structure that no difference explains
 
-/// The parameters of one of the cause's places; all of a cause without.
+/// The parameters of one of the cause's places; all of a cause without. What was found twice of one
+/// parameter adds up.
 std::vector<NamedValue> parameters_at(const CauseResult& cause, const std::string& place) {
   std::vector<NamedValue> list;
-  for (const NamedValue& each : cause.parameters)
-    if (place.empty() || each.name.starts_with(place + ".")) list.push_back(each);
+  for (const NamedValue& each : cause.parameters) {
+    if (!place.empty() && !each.name.starts_with(place + ".")) continue;
+    const auto same = std::ranges::find(list, each.name, &NamedValue::name);
+    if (same == list.end()) {
+      list.push_back(each);
+      continue;
+    }
+    same->value += each.value;
+    same->sigma = std::hypot(same->sigma, each.sigma);
+  }
   return list;
 }
 

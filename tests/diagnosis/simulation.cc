@@ -73,6 +73,20 @@ TEST(Differences, SetsWhatBothHaveSideBySide) {
   EXPECT_THAT(of.sentences[0], HasSubstr("is in both, but j2.c is 3e-06 rad/(N m) in the robot"));
 }
 
+TEST(Differences, AddUpWhatWasFoundTwiceOfOneParameter) {
+  Diagnosis robot = diagnosed("joint_compliance", "j2", 1e-6);
+  ASSERT_EQ(robot.candidates.size(), 1U);
+  robot.candidates[0].parameters.push_back(robot.candidates[0].parameters[0]);
+  robot.candidates[0].parameters[1].value = 2e-6;
+  const Differences of =
+      differences(robot, diagnosed("joint_compliance", "j2", 3e-6), Comparison{});
+  ASSERT_EQ(of.both.size(), 1U);
+  ASSERT_EQ(of.both[0].parameters.size(), 1U);
+  EXPECT_DOUBLE_EQ(of.both[0].parameters[0].robot.value, 3e-6);
+  EXPECT_DOUBLE_EQ(of.both[0].parameters[0].robot.sigma, std::hypot(1e-7, 1e-7));
+  EXPECT_LT(of.both[0].parameters[0].sigmas, 1e-6);
+}
+
 TEST(Differences, TellTheSameEffectAtAnotherPlaceApart) {
   const Differences of = differences(diagnosed("joint_compliance", "j2", 3e-6),
                                      diagnosed("joint_compliance", "j3", 3e-6), Comparison{});
