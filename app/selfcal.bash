@@ -26,7 +26,7 @@ _selfcal() {
     2:data) words="check --help" ;;
     *:data) words="--help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
-    *:monitor) words="--robot --domain --once --wait --json --help" ;;
+    *:monitor) words="--robot --domain --once --wait --json --web --allow-commands --token --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;
     *:command) words="--robot --domain --wait --json --help" ;;
     *:history) words="--newest --events --export --report --json --help" ;;

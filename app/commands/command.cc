@@ -1,12 +1,9 @@
 // selfcal command VERB: asks the service, and says what it answers.
-#include <pwd.h>
-#include <unistd.h>
-
-#include <array>
 #include <cstdio>
 #include <memory>
 
 #include "app/commands/support/find_robot.h"
+#include "app/commands/support/user.h"
 #include "app/report/format.h"
 #include "app/report/message_json.h"
 #include "io/dds/clients/commander.h"
@@ -18,15 +15,6 @@ struct CommandArguments {
   std::string verb;
   Whom whom;
 };
-
-/// "ana@cell": for the service's log, as the system knows us.
-std::string user_at_host() {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  const passwd* user = ::getpwuid(::geteuid());
-  const std::string name = user ? user->pw_name : std::to_string(::geteuid());
-  return name + "@" + host.data();
-}
 
 void print_reply(const CommandReplyMessage& reply, const std::string& robot, bool json) {
   if (json) {

@@ -9,13 +9,15 @@
 
 #include "app/commands/support/find_robot.h"
 #include "app/commands/support/signals.h"
+#include "app/commands/support/user.h"
 #include "app/report/format.h"
+#include "app/report/listener.h"
 #include "app/report/message_json.h"
 #include "app/report/monitor_news.h"
 #include "app/report/monitor_view.h"
 #include "app/report/screen.h"
+#include "app/web/serve_page.h"
 #include "io/clock.h"
-#include "io/dds/clients/monitor.h"
 
 namespace selfcal {
 namespace {
@@ -27,6 +29,8 @@ constexpr Nanoseconds kRest = 1200 * kMillisecond;  // for what follows a first 
 struct MonitorArguments {
   Whom whom;
   bool once = false;
+  std::string web;  // ADDRESS:PORT; empty without the page
+  PageOptions page;
 };
 
 std::int64_t unix_ms() { return realtime_now() / kMillisecond; }
@@ -72,48 +76,6 @@ class Output {
   bool json_;
   News news_;
   std::vector<Entry> lines_;
-};
-
-/// Takes what has come, keeps the last of it, and hands each message to `each`.
-class Listener {
- public:
-  Listener(DdsMonitor& monitor, const std::string& robot) : monitor_(monitor) {
-    watched_.robot = robot;
-  }
-
-  template <class Each>
-  bool take(Each each) {
-    const bool status = take_all<StatusMessage>(each);
-    const bool others =
-        static_cast<int>(take_all<ProgressMessage>(each)) + take_all<ResultMessage>(each) > 0;
-    std::vector<HealthReport> reports;
-    monitor_.take(reports);
-    for (const HealthReport& report : reports) {
-      watched_.health = report.lines;
-      each(report);
-    }
-    const Nanoseconds now = monotonic_now();
-    if (status) heard_ = now;
-    watched_.silent = seconds(now - heard_);
-    return status || others || !reports.empty();
-  }
-  const Watched& watched() const { return watched_; }
-
- private:
-  template <class Message, class Each>
-  bool take_all(Each& each) {
-    std::vector<Message> messages;
-    monitor_.take(messages);
-    for (const Message& message : messages) {
-      note(watched_, message);
-      each(message);
-    }
-    return !messages.empty();
-  }
-
-  DdsMonitor& monitor_;
-  Watched watched_;
-  Nanoseconds heard_ = monotonic_now();
 };
 
 void watch_on_terminal(Listener& listener, Wakeup& wakeup) {
@@ -189,12 +151,24 @@ int show_once(Listener& listener, Wakeup& wakeup, const Whom& whom) {
   return kDone;
 }
 
+int serve_in_browsers(const DdsParticipant& participant, const MonitorArguments& arguments) {
+  const auto address = parse_web_address(arguments.web);
+  if (!address) return tell(address.error());
+  PageOptions options = arguments.page;
+  options.address = *address;
+  options.robot = arguments.whom.robot;
+  options.from = user_at_host();
+  const auto served = serve_page(participant, options, told_to_stop);
+  return served ? kDone : tell(served.error());
+}
+
 int monitor_command(const MonitorArguments& arguments) {
   listen_to_signals();
   const Whom& whom = arguments.whom;
   const auto participant =
       DdsParticipant::open(static_cast<std::uint32_t>(whom.domain), "selfcal monitor");
   if (!participant) return tell(participant.error());
+  if (!arguments.web.empty()) return serve_in_browsers(*participant, arguments);
   const auto robot = find_robot(*participant, whom);
   if (!robot) return tell(robot.error());
   if (!*robot) return kDone;
@@ -216,7 +190,26 @@ void add_monitor(CLI::App& app, int& status) {
   auto arguments = std::make_shared<MonitorArguments>();
   CLI::App* command = app.add_subcommand("monitor", "Show what a service publishes, live");
   add_whom(*command, arguments->whom, "Most seconds to wait for a service to be found");
-  command->add_flag("--once", arguments->once, "Show what there is, and end");
+  CLI::Option* once = command->add_flag("--once", arguments->once, "Show what there is, and end");
+  CLI::Option* web = command->add_option("--web", arguments->web,
+                                         "ADDRESS:PORT: serve a page for browsers, of all robots "
+                                         "of the domain; it only shows");
+  for (CLI::Option* other : {once, command->get_option("--wait"), command->get_option("--json")})
+    web->excludes(other);
+  command
+      ->add_option("CONFIG", arguments->page.configs,
+                   "With --web: configurations of robots that are drawn in space, with their "
+                   "history; the state's folder must be readable")
+      ->needs(web);
+  command
+      ->add_flag("--allow-commands", arguments->page.commands,
+                 "With --web: who reaches the page may command the robots")
+      ->needs(web);
+  command
+      ->add_option("--token", arguments->page.token_file,
+                   "With --web: FILE with the token that the page asks for; without it one is made "
+                   "and printed where ADDRESS is not of this computer alone")
+      ->needs(web);
   command->callback([arguments, &status] { status = monitor_command(*arguments); });
 }
 

@@ -1,18 +1,20 @@
-# Puts the page's template, style, scripts and the libraries that draw into one file, template.html:
-#   cmake -DOUT=FILE -DCHART=FILE -DTHREE=FILE -DORBIT=FILE -P assemble.cmake
-# Their words stand between the page's own brackets, {{style}}; {{data}} stays for the program.
-set(here ${CMAKE_CURRENT_LIST_DIR})
-file(READ ${here}/page.html page)
-file(READ ${here}/page.css style)
-set(script "")
-foreach(part units tables charts view3d identification diagnosis history page)
-  file(READ ${here}/${part}.js text)
-  string(APPEND script "${text}")
+# Puts a page's frame, styles, scripts and the libraries that draw into one file:
+#   cmake -DOUT=FILE -DFRAME=FILE -DSTYLES=FILES -DSCRIPTS=FILES -DCHART=FILE -DTHREE=FILE -DORBIT=FILE -P assemble.cmake
+# Their words stand between the frame's own brackets, {{style}}; {{data}} stays for the program.
+file(READ ${FRAME} page)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/licences.html licences)
+foreach(kind style script)
+  string(TOUPPER ${kind}s files)
+  set(${kind} "")
+  foreach(file IN LISTS ${files})
+    file(READ ${file} text)
+    string(APPEND ${kind} "${text}")
+  endforeach()
 endforeach()
 file(READ ${CHART} chart)
 file(READ ${THREE} three)
 file(READ ${ORBIT} orbit)
-foreach(part style script chart three orbit)
+foreach(part style script chart three orbit licences)
   string(FIND "${${part}}" "</script" end)
   if(NOT end EQUAL -1)
     message(FATAL_ERROR "${part}: </script would end the page's script")

@@ -1,0 +1,69 @@
+#include "app/web/cell_view.h"
+
+#include "app/report/page/robot_picture.h"
+#include "io/files/json_parts.h"
+#include "io/files/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+nlohmann::ordered_json point_json(const Eigen::Vector3d& p) { return array_of(p, finite); }
+
+nlohmann::ordered_json lines_json(const std::vector<RobotLine>& lines) {
+  return array_of(lines, [](const RobotLine& line) { return array_of(line.points, point_json); });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CellView>> CellView::open(const std::string& config,
+                                                 const DdsParticipant& participant,
+                                                 Wakeup& wakeup) {
+  auto loaded = load_config(config);
+  if (!loaded) return tl::unexpected(loaded.error());
+  std::unique_ptr<CellView> view(new CellView(*std::move(loaded)));
+  // A bus would have to be shared with the service; what the robot sends over DDS is for everybody.
+  if (view->config_.encoders->stamped_by() == StampedBy::sender) {
+    auto encoders = view->config_.encoders->open({participant, wakeup});
+    if (!encoders) return tl::unexpected(encoders.error());
+    view->encoders_ = *std::move(encoders);
+  }
+  return view;
+}
+
+nlohmann::ordered_json CellView::cell() const {
+  auto surfaces = nlohmann::ordered_json::array();
+  for (const TouchTarget& target : config_.targets)
+    if (target.plane)
+      surfaces.push_back({{"name", config_.sets[static_cast<std::size_t>(target.set)].name},
+                          {"center", point_json(target.within.centre)},
+                          {"normal", point_json(target.outward)},
+                          {"radius", target.within.radius}});
+  return {{"robot", config_.robot->name()},
+          {"model_hash", model_hash(*config_.robot)},
+          {"live", encoders_ != nullptr},
+          {"home", lines_json(robot_lines(*config_.robot, config_.plan.home))},
+          {"surfaces", std::move(surfaces)}};
+}
+
+nlohmann::ordered_json CellView::pose(const Eigen::VectorXd& q) const {
+  if (q.size() != static_cast<Eigen::Index>(config_.robot->joints().size())) return nullptr;
+  const auto lines = robot_lines(*config_.robot, q);
+  if (lines.empty()) return nullptr;
+  const Location tool = locate(*config_.robot, values(*config_.robot), q, Body::endpoint);
+  return {{"lines", lines_json(lines)}, {"tool", point_json(tool.p)}};
+}
+
+std::optional<Eigen::VectorXd> CellView::heard() {
+  if (!encoders_) return std::nullopt;
+  samples_.clear();
+  if (!encoders_->take(samples_) || samples_.empty()) return std::nullopt;
+  const EncoderSample& last = samples_.back();
+  Eigen::VectorXd q(last.joints);
+  for (int j = 0; j < last.joints; ++j) {
+    const EncoderScale& scale = encoders_->scales()[static_cast<std::size_t>(j)];
+    q[j] = static_cast<double>(last.counts[static_cast<std::size_t>(j)] - scale.zero) * scale.step;
+  }
+  return q;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,53 @@
+// The connections that are open, of which only so many may be.
+//
+// One that comes when all places are taken pushes out the one that has kept us waiting longest: a
+// crowd of slow or silent ones takes no place from those who ask and read.
+#pragma once
+
+#include <chrono>
+#include <list>
+#include <mutex>
+
+namespace selfcal {
+
+class Connections {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// A place, given back with its ticket.
+  class Place {
+   public:
+    Place(Place&& other) noexcept;
+    Place& operator=(Place&&) = delete;
+    ~Place();
+    /// From now on we wait for the peer, or it for us.
+    void waits();
+    void works();
+
+   private:
+    friend class Connections;
+    struct Entry {
+      int socket = -1;
+      bool waiting = true;
+      Clock::time_point since;
+    };
+    Place(Connections& connections, std::list<Entry>::iterator entry)
+        : connections_(&connections), entry_(entry) {}
+    Connections* connections_;
+    std::list<Entry>::iterator entry_;
+  };
+
+  /// Notes `socket`, which must stay open while the place is held.
+  Place enter(int socket);
+  /// Cuts off the connection that has been waited for longest; false when none is waited for.
+  bool push_one_out();
+  /// Cuts off all.
+  void cut_off();
+  std::size_t count() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::list<Place::Entry> entries_;
+};
+
+}  // namespace selfcal
