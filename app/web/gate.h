@@ -21,18 +21,18 @@ inline constexpr const char* kCommandHeader = "X-Selfcal-Command";
 inline constexpr std::size_t kMostTarget = 512;  ///< bytes of path and query
 
 struct GateRules {
-  bool commands = false;           ///< whether any is taken
-  std::string token;               ///< demanded for state and commands; empty: none is
-  std::vector<std::string> names;  ///< of this computer, beside numbers and localhost
+  bool commands = false;                ///< whether any is taken
+  std::string token = {};               ///< demanded for state and commands; empty: none is
+  std::vector<std::string> names = {};  ///< of this computer, beside numbers and localhost
 };
 
 /// What of a request decides; empty where it has no such header.
 struct Asked {
-  std::string method, path;
+  std::string method = {}, path = {};
   std::size_t target_bytes = 0;
-  std::string host, origin, site;  ///< Host, Origin, Sec-Fetch-Site
-  std::string authorization;       ///< "Bearer TOKEN"
-  std::string command;             ///< kCommandHeader
+  std::string host = {}, origin = {}, site = {};  ///< Host, Origin, Sec-Fetch-Site
+  std::string authorization = {};                 ///< "Bearer TOKEN"
+  std::string command = {};                       ///< kCommandHeader
 };
 
 struct Refusal {

@@ -22,6 +22,7 @@ namespace {
 using WebClock = Connections::Clock;
 
 constexpr std::size_t kRequests = 1'000'000;  // of one connection
+constexpr int kLine = 128;                    // of connections not yet taken
 
 WebClock::time_point in_seconds(double seconds) {
   return WebClock::now() +
@@ -115,16 +116,14 @@ class Crew final : public httplib::TaskQueue {
   }
 
   void enqueue(std::function<void()> task) override {
-    {
-      const std::lock_guard lock(mutex_);
-      line_.push_back(std::move(task));
-      // Each of the line gets a place for it; a full one lets no more come in before one is free.
-      if (line_.size() > idle_) connections_.push_one_out();
-    }
-    changed_.notify_one();
     std::unique_lock lock(mutex_);
-    shorter_.wait_for(lock, std::chrono::milliseconds(100),
-                      [&] { return ended_ || line_.size() < threads_.size(); });
+    line_.push_back(std::move(task));
+    changed_.notify_one();
+    // Nobody comes in for a moment where all are at work in earnest.
+    for (int i = 0; i < kPatience && !ended_ && line_.size() > idle_; ++i) {
+      connections_.push_one_out();
+      shorter_.wait_for(lock, std::chrono::milliseconds(10));
+    }
   }
 
   void shutdown() override {
@@ -133,7 +132,6 @@ class Crew final : public httplib::TaskQueue {
       ended_ = true;
     }
     changed_.notify_all();
-    shorter_.notify_all();
     for (std::thread& each : threads_) each.join();
   }
 
@@ -147,12 +145,15 @@ class Crew final : public httplib::TaskQueue {
       if (line_.empty()) return;
       const auto task = std::move(line_.front());
       line_.pop_front();
+      if (line_.size() > idle_) connections_.push_one_out();
       shorter_.notify_one();
       lock.unlock();
       task();
       lock.lock();
     }
   }
+
+  static constexpr int kPatience = 10;
 
   Connections& connections_;
   std::mutex mutex_;
@@ -190,6 +191,11 @@ class HttpServer final : public WebServer, private httplib::Server {
     new_task_queue = [this] { return new Crew(limits_.connections, connections_); };
     set_payload_max_length(limits_.body);
     set_tcp_nodelay(true);
+    // The library's own would let a second server share the port.
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     set_keep_alive_timeout(static_cast<time_t>(limits_.idle_seconds));
     set_keep_alive_max_count(kRequests);
     set_default_headers({{"Cache-Control", "no-store"},
@@ -226,7 +232,8 @@ class HttpServer final : public WebServer, private httplib::Server {
       web_address_.port = bind_to_any_port(web_address_.host);
     else if (!bind_to_port(web_address_.host, web_address_.port))
       return false;
-    if (web_address_.port <= 0) return false;
+    // The library's own line of 5 has browsers that open several at once try again after a second.
+    if (web_address_.port <= 0 || ::listen(svr_sock_, kLine) != 0) return false;
     // A server that is stopped before it runs would run forever.
     listening_ = std::thread([this] { listen_after_bind(); });
     while (!is_running()) std::this_thread::yield();

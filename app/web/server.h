@@ -22,7 +22,7 @@ struct WebRequest {
 struct WebResponse {
   int status = 200;
   std::string type = "application/json";
-  std::string body;
+  std::string body = {};
 };
 
 struct ServerLimits {

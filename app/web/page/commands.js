@@ -23,7 +23,9 @@ function change_table(changes) {
     return [row.name, change + " " + unit, sigma ? "± " + fixed(1.96 * sigma, places) + " " + unit : ""];
   });
   const rest = changes.count - changes.rows.length;
-  return [table([{title: "parameter"}, {title: "change", number: true}, {title: "known to (95 %)", number: true}], rows),
+  const columns = [{title: "parameter"}, {title: "change", number: true}, {title: "known to (95 %)", number: true}];
+  const told = rows.some(row => row[2]) ? 3 : 2;
+  return [table(columns.slice(0, told), rows.map(row => row.slice(0, told))),
           rest > 0 ? paragraph("and " + plural(rest, "smaller change"), "soft") : null];
 }
 
@@ -57,7 +59,7 @@ function accept_words() {
 
 function rollback_words() {
   const {status, slots} = link.parts, back = slots && slots.rollback;
-  const words = status.active + " is given up and never comes back by itself; ";
+  const words = "What " + status.active + " found is given up and never comes back by itself; ";
   if (!back) return [paragraph(words + "the parameters before it become active. Which these are the page knows where the configuration is given.")];
   const since = back.since_ms > 0 ? ", in use before from " + moment(back.since_ms) : "";
   return [paragraph(words + (back.to > 0 ? "the parameters of session " + back.to + since : session_name(0)) + " become active."),
@@ -84,13 +86,13 @@ function ask_first(verb, say) {
   const dialog = document.getElementById("ask"), {title, stop} = VERBS[verb];
   const yes = element("button", {class: stop ? "stop" : "main", id: "yes"}, title), no = element("button", {autofocus: ""}, "Not now");
   dialog.replaceChildren(element("h2", {id: "ask-title"}, title + ": " + link.robot), ...words_for(verb).flat().filter(Boolean),
-    element("div", {class: "buttons"}, yes, no));
+    element("div", {class: "buttons decide"}, yes, no));
   no.addEventListener("click", () => dialog.close());
   yes.addEventListener("click", async () => {
     yes.disabled = no.disabled = true;
     const reply = await send_command(verb);
     dialog.close();
-    say(title, reply);
+    say(verb, reply);
   });
   dialog.showModal();
 }
@@ -98,8 +100,8 @@ function ask_first(verb, say) {
 // {bar, show(status)}
 function command_bar() {
   const said = element("div", {role: "status"}), buttons = element("div", {class: "buttons"});
-  const say = (title, reply) => said.replaceChildren(element("p", {class: "said" + (reply.accepted ? "" : " refused")},
-    title + " " + (reply.accepted ? "accepted" : "refused") + (reply.why && reply.why !== title.toLowerCase() ? ": " + reply.why : "")));
+  const say = (verb, reply) => said.replaceChildren(element("p", {class: "said" + (reply.accepted ? "" : " refused")},
+    "“" + VERBS[verb].title + "” was " + (reply.accepted ? "taken" : "refused") + (reply.why && reply.why !== verb ? ": " + reply.why : "") + "."));
   const made = Object.entries(VERBS).map(([verb, {title, main, stop}]) => {
     const button = element("button", {id: verb, class: stop ? "stop" : main ? "main" : ""}, title);
     button.addEventListener("click", () => ask_first(verb, say));

@@ -6,6 +6,7 @@ function replace(holder, words) { holder.replaceChildren(...words.flat().filter(
 
 const holders = Object.fromEntries(["status", "facts", "result", "health", "history", "log", "token"].map(name => [name, element("div", {id: name})]));
 const commands = command_bar(), view = live_view(), touched = touch_chart(), drifted = drift_chart();
+const none_yet = paragraph("None heard since the page's server was started.", "soft");
 const fleet = fleet_list(name => { choose_robot(name); commands.clear(); show_all(); window.scrollTo({top: 0}); });
 
 function ask_token() {
@@ -34,7 +35,12 @@ const SHOWS = [
   [["status", "progress", "silence", "fleet"], () => replace(holders.status, [status_card(link.parts, line_of_robot())])],
   [["status", "cell"], () => replace(holders.facts, [status_facts(link.parts.status, link.parts.cell)])],
   [["cell", "pose", "touches"], () => view.show(link.parts.cell, link.parts.pose, link.lists.touches || [])],
-  [["touches"], () => touched.show(link.lists.touches || [])],
+  [["touches"], () => {
+    const touches = link.lists.touches || [];
+    touched.figure.hidden = touches.length === 0;
+    none_yet.hidden = touches.length > 0;
+    touched.show(touches);
+  }],
   [["result"], () => replace(holders.result, result_words(link.parts.result))],
   [["health"], () => replace(holders.health, health_words(link.parts.health))],
   [["history"], () => { replace(holders.history, history_words(link.parts.history)); drifted.show(link.parts.history); }],
@@ -65,7 +71,7 @@ function draw_all() {
 
 link.robot = take_from_hash();
 page.replaceChildren(holders.token, fleet.section, holders.status, commands.bar, holders.facts,
-  element("div", {class: "beside"}, block("In its cell", view.figure), block("Touches", touched.figure)),
+  element("div", {class: "beside"}, block("In its cell", view.figure), block("Touches", none_yet, touched.figure)),
   block("Last result", holders.result), block("Health", holders.health), block("Past sessions", drifted.figure, holders.history), block("Log", holders.log));
 draw_all();
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw_all);

@@ -60,7 +60,9 @@ function status_facts(status, cell) {
 // {figure, show(touches)}: residual of each touch against the model and surface as known so far.
 function touch_chart() {
   let touches = [];
-  const numbered = () => touches.map((touch, i) => ({x: i + 1, y: known(touch.residual) ? 1e6 * touch.residual : 0, touch}));
+  // Of the first touches of a surface there is no residual; one that was put aside is marked on the axis.
+  const numbered = () => touches.map((touch, i) => ({x: i + 1, y: known(touch.residual) ? 1e6 * touch.residual : 0, touch}))
+    .filter(({touch}) => known(touch.residual) || !touch.accepted);
   const named = point => Object.assign(point, {name: point.touch.set + " " + point.touch.index});
   const make = () => {
     const points = numbered();
@@ -76,7 +78,8 @@ function touch_chart() {
   const entry = drawn[drawn.length - 1];
   return {figure: made, show(list) {
     touches = list;
-    if (!entry.chart) return;
+    if (!entry.chart || list.length === 0) return;
+    entry.chart.resize();
     entry.chart.data = make().data;
     entry.chart.update("none");
   }};
@@ -101,7 +104,7 @@ function result_words(result) {
 function health_words(health) {
   if (!health) return [paragraph("Nothing heard yet.", "soft")];
   const rows = health.lines.map(line => [line.name.replace("selfcal: ", ""), level_mark(line.level), line.message,
-    Object.entries(line.values).map(([key, value]) => key.replace(/_/g, " ") + " " + value).join(" · ")]);
+    Object.entries(line.values).filter(([key]) => key !== "hardware" && key !== "session").map(([key, value]) => key.replace(/_/g, " ") + " " + value).join(" · ")]);
   return [table([{title: "part"}, {title: "state"}, {title: "says"}, {title: "figures"}], rows)];
 }
 
@@ -115,9 +118,11 @@ function history_words(history) {
       result ? mm(result.check_before) : "", result ? mm(result.check_after) : "", result && full ? mm(result.endpoint_sigma) : "",
       result ? String(result.touches) : ""];
   });
-  const number = title => ({title, number: true});
-  return [table([{title: "session"}, {title: "when"}, {title: "kind"}, {title: "answer"}, {title: "decision"}, number("before, mm"),
-    number("after, mm"), number("end position, mm"), number("touches")], rows) || paragraph("No session yet.", "soft")];
+  const number = title => ({title, number: true}), newest = 8;
+  const listed = some => table([{title: "session"}, {title: "when"}, {title: "kind"}, {title: "answer"}, {title: "decision"}, number("before, mm"),
+    number("after, mm"), number("end position, mm"), number("touches")], some);
+  return [listed(rows.slice(0, newest)) || paragraph("No session yet.", "soft"),
+          rows.length > newest ? folded(plural(rows.length - newest, "earlier session"), listed(rows.slice(newest))) : null];
 }
 
 // {figure, show(history)}: what touches kept aside were missed by, over the sessions.

@@ -1,0 +1,167 @@
+// The board: only what has changed; and the lines of the fleet, worst first.
+#include "app/web/board.h"
+
+#include <gmock/gmock.h>
+
+#include "app/web/changes.h"
+#include "app/web/fleet.h"
+#include "io/files/robot_file.h"
+#include "tests/support/domain.h"
+
+namespace selfcal {
+namespace {
+
+using nlohmann::json;
+
+json since(const Board& board, const std::string& robot, std::uint64_t version,
+           const std::string& epoch = "e") {
+  return json::parse(board.changes(robot, epoch, version));
+}
+
+TEST(Board, TellsEachChangeOnce) {
+  Board board("e");
+  board.put("", "fleet", {1});
+  board.put("rx90", "status", {{"state", "idle"}});
+  const json first = since(board, "rx90", 0);
+  EXPECT_EQ(first["parts"], json({{"status", {{"state", "idle"}}}}));
+  EXPECT_EQ(first["domain"]["fleet"], json({1}));
+
+  board.put("rx90", "status", {{"state", "idle"}});
+  const json same = since(board, "rx90", first["version"]);
+  EXPECT_EQ(same["version"], first["version"]);
+  EXPECT_TRUE(same["parts"].empty());
+  EXPECT_TRUE(same["domain"].empty());
+
+  board.put("rx90", "result", {{"answer", "improved"}});
+  const json next = since(board, "rx90", first["version"]);
+  EXPECT_EQ(next["parts"], json({{"result", {{"answer", "improved"}}}}));
+}
+
+TEST(Board, TellsAllToAPageOfAnotherStart) {
+  Board board("new");
+  board.put("rx90", "status", 1);
+  EXPECT_EQ(since(board, "rx90", 99, "old")["parts"]["status"], 1);
+}
+
+TEST(Board, AppendsRestartsAndBoundsLists) {
+  Board board("e");
+  for (int i = 0; i < 5; ++i) board.append("rx90", "touches", i, 3);
+  const json first = since(board, "rx90", 0);
+  EXPECT_EQ(first["lists"]["touches"]["items"], json({2, 3, 4}));
+  board.append("rx90", "touches", 5, 3);
+  const json next = since(board, "rx90", first["version"]);
+  EXPECT_EQ(next["lists"]["touches"]["items"], json({5}));
+  EXPECT_EQ(next["lists"]["touches"]["restarted"], false);
+  board.restart("rx90", "touches");
+  const json anew = since(board, "rx90", next["version"]);
+  EXPECT_EQ(anew["lists"]["touches"]["restarted"], true);
+  EXPECT_TRUE(anew["lists"]["touches"]["items"].empty());
+}
+
+TEST(Board, KnowsNothingOfARobotThatIsNotThere) {
+  Board board("e");
+  board.put("rx90", "status", 1);
+  board.drop("rx90");
+  EXPECT_EQ(since(board, "rx90", 0)["known"], false);
+  EXPECT_EQ(since(board, "\"}<script>", 0)["robot"], "\"}<script>");
+}
+
+Watched heard(const std::string& robot) {
+  Watched watched;
+  watched.robot = robot;
+  watched.status.emplace();
+  watched.status->state = "idle";
+  watched.status->active = "factory";
+  return watched;
+}
+
+TEST(Fleet, HasTheWorstFirst) {
+  Watched well = heard("a_well"), waits = heard("waits"), warns = heard("warns"),
+          fault = heard("fault"), silent = heard("silent"), sick = heard("sick");
+  waits.status->candidate = true;
+  warns.health = {
+      {.name = "selfcal: store", .level = Health::warn, .message = "nearly full", .values = {}}};
+  fault.status->state = "fault";
+  fault.status->why = "the trigger is silent";
+  sick.health = {{.name = "selfcal: encoders",
+                  .level = Health::error,
+                  .message = "no readings",
+                  .values = {}}};
+  silent.silent = kSilence;
+  std::vector<nlohmann::ordered_json> lines;
+  for (const Watched& each : {well, waits, warns, fault, silent, sick})
+    lines.push_back(fleet_line(each));
+
+  const auto sorted = fleet_json(lines);
+
+  std::vector<std::string> names;
+  for (const auto& line : sorted) names.push_back(line["robot"]);
+  EXPECT_THAT(names, ::testing::ElementsAre("silent", "fault", "sick", "warns", "waits", "a_well"));
+  EXPECT_EQ(sorted[1]["why"], "the trigger is silent");
+  EXPECT_EQ(sorted[2]["why"], "no readings");
+}
+
+TEST(Fleet, SaysHowFarTheActiveParametersAreOff) {
+  Watched watched = heard("rx90");
+  EXPECT_TRUE(fleet_line(watched)["off"].is_null());
+  ResultMessage& result = watched.result.emplace();
+  result.kind = "full";
+  result.answer = "improved";
+  result.decision = "candidate";
+  result.check_before = 2e-3;
+  result.check_after = 1e-4;
+  EXPECT_EQ(fleet_line(watched)["off"], 2e-3);
+  result.decision = "applied";
+  EXPECT_EQ(fleet_line(watched)["off"], 1e-4);
+  result.answer = "failed";
+  EXPECT_TRUE(fleet_line(watched)["off"].is_null());
+}
+
+std::shared_ptr<const Robot> two_links(const std::string& first, const std::string& second) {
+  return must(robot_of("robot: two\nkind: serial\nframes:\n  - {name: j1, joint: revolute, " +
+                           first + "}\n  - {name: j2, joint: revolute, d: 0.4, " + second +
+                           "}\n  - {name: tool, joint: fixed, d: 0.1}\n",
+                       "two.robot.yaml"));
+}
+
+TEST(Changes, AreTheDifferencesOfValuesLargestFirst) {
+  const auto factory = two_links("d: 0.3", "alpha: 0.2");
+  const auto found =
+      two_links("d: 0.302, nominal: {d: 0.3}", "alpha: 0.195, nominal: {alpha: 0.2}");
+  const char* result = R"({"parameters": [{"name": "d0", "sigma": 1e-5}]})";
+
+  const auto changes = changes_between(factory, found, result);
+
+  ASSERT_EQ(changes["count"], 2);
+  EXPECT_EQ(changes["rows"][0]["name"], "alpha1 j2.alpha");
+  EXPECT_EQ(changes["rows"][0]["unit"], "rad");
+  EXPECT_NEAR(changes["rows"][0]["change"].get<double>(), -5e-3, 1e-15);
+  EXPECT_TRUE(changes["rows"][0]["sigma"].is_null());
+  EXPECT_EQ(changes["rows"][1]["name"], "d0 j1.d");
+  EXPECT_NEAR(changes["rows"][1]["change"].get<double>(), 2e-3, 1e-15);
+  EXPECT_EQ(changes["rows"][1]["sigma"], 1e-5);
+  EXPECT_EQ(changes_between(found, factory, "")["rows"][1]["change"].get<double>(),
+            -changes["rows"][1]["change"].get<double>());
+}
+
+TEST(Changes, AreUnknownBetweenDifferentModels) {
+  EXPECT_TRUE(
+      changes_between(two_links("d: 0.3", "alpha: 0.2"), two_links("d: 0.4", "alpha: 0.2"), "")
+          .is_null());
+}
+
+TEST(Changes, OfAResultAreFromTheMakersFigures) {
+  const auto changes = changes_of_result(
+      R"({"parameters": [{"name": "d0", "frame": "j1", "unit": "m", "nominal": 0.5, "value": 0.5, "sigma": null},
+                         {"name": "theta2", "frame": "j2", "unit": "rad", "nominal": 0, "value": -0.001, "sigma": 1e-6}]})");
+  ASSERT_EQ(changes["count"], 1);
+  EXPECT_EQ(changes["rows"][0]["name"], "theta2 j2.theta");
+  EXPECT_EQ(changes["rows"][0]["change"], -0.001);
+  EXPECT_EQ(changes["rows"][0]["sigma"], 1e-6);
+  EXPECT_TRUE(changes_of_result("").is_null());
+  EXPECT_TRUE(changes_of_result("[]").is_null());
+  EXPECT_TRUE(changes_of_result(R"({"parameters": 3})").is_null());
+}
+
+}  // namespace
+}  // namespace selfcal
