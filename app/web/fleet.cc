@@ -11,7 +11,7 @@
 namespace selfcal {
 namespace {
 
-constexpr std::array<std::string_view, 5> kConcerns = {"none", "waits", "warning", "error",
+constexpr std::array<std::string_view, 5> kConcerns = {"none", "warning", "waits", "error",
                                                        "silent"};
 
 const HealthMessage* worst_of(const std::vector<HealthMessage>& health) {

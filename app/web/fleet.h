@@ -9,7 +9,7 @@
 namespace selfcal {
 
 /// How much a robot needs a person.
-enum class Concern : std::uint8_t { none, waits, warning, error, silent };
+enum class Concern : std::uint8_t { none, warning, waits, error, silent };
 
 Concern concern_of(const Watched& watched);
 std::string_view to_string(Concern concern);

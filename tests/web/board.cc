@@ -96,7 +96,7 @@ TEST(Fleet, HasTheWorstFirst) {
 
   std::vector<std::string> names;
   for (const auto& line : sorted) names.push_back(line["robot"]);
-  EXPECT_THAT(names, ::testing::ElementsAre("silent", "fault", "sick", "warns", "waits", "a_well"));
+  EXPECT_THAT(names, ::testing::ElementsAre("silent", "fault", "sick", "waits", "warns", "a_well"));
   EXPECT_EQ(sorted[1]["why"], "the trigger is silent");
   EXPECT_EQ(sorted[2]["why"], "no readings");
 }

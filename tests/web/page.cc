@@ -187,6 +187,60 @@ TEST_F(LivePage, CommandsTheServiceThatThePersonHasSeen) {
   EXPECT_EQ(heard.size(), 1) << "what was refused before never came here";
 }
 
+TEST_F(LivePage, WatchesFiftyRobots) {
+  constexpr int kRobots = 50, kSeconds = 4;
+  std::vector<std::unique_ptr<DdsMessenger>> services;
+  for (int i = 0; i < kRobots; ++i) services.push_back(service("robot_" + std::to_string(i)));
+  serve();
+  const std::vector<HealthMessage> health(
+      5, {.name = "selfcal: part", .level = Health::ok, .message = "well", .values = {{"a", "1"}}});
+  std::size_t asked = 0, bytes = 0;
+  json domain_part;
+  const auto tell_all = [&](int turn) {
+    for (int i = 0; i < kRobots; ++i) {
+      StatusMessage status = waiting();
+      status.robot = "robot_" + std::to_string(i);
+      status.unix_ms += turn;
+      status.state = i == 7 ? "fault" : "collecting";
+      status.candidate = false;
+      services[i]->publish(status);
+      services[i]->publish(health, status.robot);
+      services[i]->publish(ProgressMessage{.unix_ms = turn,
+                                           .robot = status.robot,
+                                           .session = 4,
+                                           .kind = "full",
+                                           .done = static_cast<std::uint32_t>(turn),
+                                           .planned = 240,
+                                           .set = "table",
+                                           .residual = 1e-6,
+                                           .accepted = true,
+                                           .note = {}});
+    }
+  };
+  // As services do once a second, while a page asks four times.
+  const Nanoseconds began = monotonic_now();
+  double cpu = cpu_seconds(monitor->pid());
+  std::uint64_t version = 0;
+  std::string epoch;
+  for (Nanoseconds next = began; next < began + kSeconds * kSecond; next += kSecond / 4) {
+    while (monotonic_now() < next) wakeup.wait(next - monotonic_now());
+    if (asked++ % 4 == 0) tell_all(static_cast<int>(asked));
+    const std::string answer = ask(
+        port, get("/state?robot=robot_3&epoch=" + epoch + "&version=" + std::to_string(version)));
+    bytes += answer.size();
+    const json got = json::parse(body_of(answer));
+    version = got["version"];
+    epoch = got["epoch"];
+    if (got["domain"].contains("fleet")) domain_part = got["domain"]["fleet"];
+  }
+  cpu = cpu_seconds(monitor->pid()) - cpu;
+  std::printf("%d robots: %.1f %% of a core, a page is told %.1f kB/s\n", kRobots,
+              100 * cpu / kSeconds, static_cast<double>(bytes) / 1000 / kSeconds);
+  ASSERT_EQ(domain_part.size(), kRobots);
+  EXPECT_EQ(domain_part[0]["robot"], "robot_7");
+  EXPECT_LT(cpu, 0.5 * kSeconds);
+}
+
 TEST_F(LivePage, EndsWithinASecond) {
   serve({"--allow-commands"});
   Caller idle(port);

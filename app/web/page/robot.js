@@ -104,7 +104,7 @@ function result_words(result) {
 function health_words(health) {
   if (!health) return [paragraph("Nothing heard yet.", "soft")];
   const rows = health.lines.map(line => [line.name.replace("selfcal: ", ""), level_mark(line.level), line.message,
-    Object.entries(line.values).filter(([key]) => key !== "hardware" && key !== "session").map(([key, value]) => key.replace(/_/g, " ") + " " + value).join(" · ")]);
+    Object.entries(line.values).filter(([key, value]) => !["hardware", "session"].includes(key) && value !== "nan").map(([key, value]) => key.replace(/_/g, " ") + " " + value).join(" · ")]);
   return [table([{title: "part"}, {title: "state"}, {title: "says"}, {title: "figures"}], rows)];
 }
 
