@@ -156,6 +156,7 @@ int serve_in_browsers(const DdsParticipant& participant, const MonitorArguments&
   if (!address) return tell(address.error());
   PageOptions options = arguments.page;
   options.address = *address;
+  options.domain = arguments.whom.domain;
   options.robot = arguments.whom.robot;
   options.from = user_at_host();
   const auto served = serve_page(participant, options, told_to_stop);

@@ -8,7 +8,6 @@
 namespace selfcal {
 namespace {
 
-constexpr int kMisused = 2;  // exit status: wrong usage
 constexpr int kMostPort = 65535;
 
 bool is_loopback(const std::string& host) {

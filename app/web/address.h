@@ -7,6 +7,8 @@
 
 namespace selfcal {
 
+inline constexpr int kMisused = 2;  ///< exit status: wrong usage
+
 struct WebAddress {
   std::string host;       ///< numeric: "127.0.0.1", "::1"
   int port = 0;           ///< 0: any that is free
@@ -17,7 +19,7 @@ struct WebAddress {
 };
 
 /// "127.0.0.1:8080", "[::1]:8080" or "localhost:8080"; names other than localhost are refused, as
-/// what they lead to may change. Fails with kWrongUsage.
+/// what they lead to may change. Fails with kMisused.
 Result<WebAddress> parse_web_address(const std::string& text);
 
 /// Whether `host` is a number, of IPv4 or, without brackets, of IPv6.

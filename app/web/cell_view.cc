@@ -31,6 +31,7 @@ Result<std::unique_ptr<CellView>> CellView::open(const std::string& config,
 }
 
 nlohmann::ordered_json CellView::cell() const {
+  const nlohmann::ordered_json home = pose(config_.plan.home);
   auto surfaces = nlohmann::ordered_json::array();
   for (const TouchTarget& target : config_.targets)
     if (target.plane)
@@ -41,16 +42,20 @@ nlohmann::ordered_json CellView::cell() const {
   return {{"robot", config_.robot->name()},
           {"model_hash", model_hash(*config_.robot)},
           {"live", encoders_ != nullptr},
-          {"home", lines_json(robot_lines(*config_.robot, config_.plan.home))},
+          {"home", home.is_object() ? home["lines"] : nlohmann::ordered_json::array()},
           {"surfaces", std::move(surfaces)}};
 }
 
 nlohmann::ordered_json CellView::pose(const Eigen::VectorXd& q) const {
-  if (q.size() != static_cast<Eigen::Index>(config_.robot->joints().size())) return nullptr;
-  const auto lines = robot_lines(*config_.robot, q);
-  if (lines.empty()) return nullptr;
-  const Location tool = locate(*config_.robot, values(*config_.robot), q, Body::endpoint);
-  return {{"lines", lines_json(lines)}, {"tool", point_json(tool.p)}};
+  const Robot& robot = *config_.robot;
+  if (q.size() != static_cast<Eigen::Index>(robot.joints().size())) return nullptr;
+  Locations tool;
+  if (!robot.locate(block_of(q), values(robot), Body::endpoint, tool, nullptr).closes())
+    return nullptr;
+  const Eigen::Vector3d at = locate(robot, values(robot), q, Body::endpoint).p;
+  auto lines = robot_lines(robot, q);
+  if (lines.empty()) lines.push_back({"tool", {at}});
+  return {{"lines", lines_json(lines)}, {"tool", point_json(at)}};
 }
 
 std::optional<Eigen::VectorXd> CellView::heard() {

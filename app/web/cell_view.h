@@ -22,8 +22,8 @@ class CellView {
   /// {"robot", "model_hash", "live", "home": LINES, "surfaces": [{"name", "center", "normal",
   /// "radius"}, …]}: `live` says whether joint states are listened to.
   nlohmann::ordered_json cell() const;
-  /// {"lines": LINES, "tool": [x, y, z]} at readings `q`; null where the kind does not say where
-  /// its links are.
+  /// {"lines": LINES, "tool": [x, y, z]} at readings `q`, the tool alone where the kind does not
+  /// say where its links are; null where no position of the tool has these readings.
   nlohmann::ordered_json pose(const Eigen::VectorXd& q) const;
   /// The readings that came last since the last call.
   std::optional<Eigen::VectorXd> heard();

@@ -75,6 +75,11 @@ Result<void> serve_page(const DdsParticipant& participant, const PageOptions& op
   for (const std::string& config : options.configs) {
     auto cell = CellView::open(config, participant, wakeup);
     if (!cell) return tl::unexpected(cell.error());
+    if (const Config& of = (*cell)->config(); of.domain != options.domain)
+      return tl::unexpected<Failure>(
+          {kMisused, printed("%s: robot %s is in DDS domain %d, and the page watches domain %d; "
+                             "--domain %d",
+                             config.c_str(), of.id.c_str(), of.domain, options.domain, of.domain)});
     cells.push_back(*std::move(cell));
   }
   const auto watch = DomainWatch::open(participant, options.robot, std::move(cells), wakeup, board);

@@ -14,6 +14,7 @@ namespace selfcal {
 
 struct PageOptions {
   WebAddress address;
+  int domain = 0;                    ///< of DDS, that of `participant`
   std::string robot;                 ///< the only one to show; empty: all of the domain
   std::vector<std::string> configs;  ///< CONFIG.yaml of robots, for the 3D view and the history
   bool commands = false;

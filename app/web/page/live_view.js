@@ -62,7 +62,8 @@ function live_view() {
     turning.update();
   }
   function build(cell) {
-    const points = cell.home.flat().concat(cell.surfaces.map(surface => surface.center));
+    const points = cell.home.flat().concat(cell.surfaces.flatMap(({center, radius}) =>
+      [-radius, radius].map(way => center.map(each => each + 0.7 * way))));
     const box = bounds_of(points);
     if (box.isEmpty()) return empty("It is not known where this kind of robot has its links.");
     if (!renderer) {

@@ -61,9 +61,9 @@ function status_facts(status, cell) {
 function touch_chart() {
   let touches = [];
   // Of the first touches of a surface there is no residual; one that was put aside is marked on the axis.
-  const numbered = () => touches.map((touch, i) => ({x: i + 1, y: known(touch.residual) ? 1e6 * touch.residual : 0, touch}))
+  const numbered = () => touches.map(touch => ({x: touch.index + 1, y: known(touch.residual) ? 1e6 * touch.residual : 0, touch}))
     .filter(({touch}) => known(touch.residual) || !touch.accepted);
-  const named = point => Object.assign(point, {name: point.touch.set + " " + point.touch.index});
+  const named = point => Object.assign(point, {name: point.touch.set});
   const make = () => {
     const points = numbered();
     const configured = scatter([
