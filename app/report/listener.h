@@ -25,14 +25,19 @@ class Listener {
         static_cast<int>(take_all<ProgressMessage>(each)) + take_all<ResultMessage>(each) > 0;
     std::vector<HealthReport> reports;
     monitor_.take(reports);
-    for (const HealthReport& report : reports) {
-      watched_.health = report.lines;
-      each(report);
-    }
+    hear(reports, each);
     const Nanoseconds now = monotonic_now();
     if (status) heard_ = now;
     watched_.silent = seconds(now - heard_);
     return status || others || !reports.empty();
+  }
+  /// Health that came another way.
+  template <class Each>
+  void hear(const std::vector<HealthReport>& reports, Each each) {
+    for (const HealthReport& report : reports) {
+      watched_.health = report.lines;
+      each(report);
+    }
   }
   const Watched& watched() const { return watched_; }
 

@@ -20,6 +20,9 @@ Result<std::unique_ptr<DomainWatch>> DomainWatch::open(const DdsParticipant& par
   auto discovery = DdsRobots::open(participant, wakeup);
   if (!discovery) return tl::unexpected(discovery.error());
   watch->discovery_ = *std::move(discovery);
+  auto diagnostics = DdsDiagnostics::open(participant, wakeup);
+  if (!diagnostics) return tl::unexpected(diagnostics.error());
+  watch->diagnostics_ = *std::move(diagnostics);
   for (std::unique_ptr<CellView>& cell : cells) {
     const std::string name = ros_name(cell->config().id);
     if (!watch->cells_.emplace(name, std::move(cell)).second)
@@ -57,7 +60,12 @@ void DomainWatch::forget() {
 Result<void> DomainWatch::take() {
   if (auto found = find(); !found) return found;
   bool news = false;
-  for (const auto& [name, watch] : robots_) news = watch->take() || news;
+  const auto health = diagnostics_->take();
+  for (const auto& [name, watch] : robots_) {
+    const auto of_robot = health.find(name);
+    news = watch->take(of_robot == health.end() ? std::vector<HealthReport>() : of_robot->second) ||
+           news;
+  }
   const Nanoseconds now = monotonic_now();
   if (now - told_ < (news ? kFleetEvery : kFleetAtLeast)) return {};
   told_ = now;

@@ -8,6 +8,7 @@
 
 #include "app/web/board.h"
 #include "app/web/robot_watch.h"
+#include "io/dds/clients/diagnostics.h"
 #include "io/dds/clients/discovery.h"
 
 namespace selfcal {
@@ -39,6 +40,7 @@ class DomainWatch {
   Wakeup& wakeup_;
   Board& board_;
   std::unique_ptr<DdsRobots> discovery_;
+  std::unique_ptr<DdsDiagnostics> diagnostics_;
   std::map<std::string, std::unique_ptr<CellView>> cells_;  // of robots not yet heard, by name
   std::map<std::string, std::unique_ptr<RobotWatch>> robots_;
   Nanoseconds told_ = 0;  // of the fleet

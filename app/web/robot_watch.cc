@@ -34,7 +34,7 @@ WatchJson sets_of_result(const WatchJson& result) {
 Result<std::unique_ptr<RobotWatch>> RobotWatch::open(const DdsParticipant& participant,
                                                      const std::string& robot, Wakeup& wakeup,
                                                      std::unique_ptr<CellView> cell, Board& board) {
-  auto monitor = DdsMonitor::open(participant, robot, wakeup);
+  auto monitor = DdsMonitor::open(participant, robot, wakeup, false);
   if (!monitor) return tl::unexpected(monitor.error());
   return std::unique_ptr<RobotWatch>(
       new RobotWatch(robot, *std::move(monitor), std::move(cell), board));
@@ -54,8 +54,10 @@ RobotWatch::RobotWatch(std::string robot, std::unique_ptr<DdsMonitor> monitor,
   board_.put(robot_, "cell", cell_->cell());
 }
 
-bool RobotWatch::take() {
-  const bool news = listener_.take([&](const auto& message) { note(message); });
+bool RobotWatch::take(const std::vector<HealthReport>& health) {
+  const auto noted = [&](const auto& message) { note(message); };
+  listener_.hear(health, noted);
+  const bool news = listener_.take(noted) || !health.empty();
   const double silent = watched().silent >= kSilence ? std::floor(watched().silent) : 0;
   board_.put(robot_, "silence", {{"silent", silent}});
   tell(unix_now_ms(), news_.of_silence(watched()));

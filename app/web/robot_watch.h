@@ -28,8 +28,9 @@ class RobotWatch {
                                                   const std::string& robot, Wakeup& wakeup,
                                                   std::unique_ptr<CellView> cell, Board& board);
 
-  /// Takes what has come. Whether its line of the fleet may have changed.
-  bool take();
+  /// Takes what has come, and its part of what came for all robots. Whether its line of the fleet
+  /// may have changed.
+  bool take(const std::vector<HealthReport>& health);
   const Watched& watched() const { return listener_.watched(); }
   bool connected() const { return monitor_->connected(); }
   std::unique_ptr<CellView> give_back_cell() { return std::move(cell_); }

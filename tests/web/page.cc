@@ -90,7 +90,17 @@ TEST_F(LivePage, ShowsWhatTheServiceTells) {
   const std::vector<HealthMessage> health = {
       {.name = "selfcal: store", .level = Health::warn, .message = "nearly full", .values = {}}};
   told->publish(health, "serial");
+  const auto other = service("irb1600");
+  other->publish(
+      {{.name = "selfcal: store", .level = Health::error, .message = "full", .values = {}}},
+      "serial");
   EXPECT_TRUE(eventually_shows("rx90", "status", json::parse(line_of(to_json(waiting())))));
+
+  ASSERT_TRUE(eventually([&] { return state("rx90")["parts"].contains("health"); }));
+  const json lines = state("rx90")["parts"]["health"]["lines"];
+  ASSERT_EQ(lines.size(), 1) << "and not the other robot's";
+  EXPECT_EQ(lines[0]["level"], "warn");
+  EXPECT_EQ(lines[0]["message"], "nearly full");
 
   for (std::uint32_t i = 0; i < 3; ++i) {
     const ProgressMessage touch{.unix_ms = 5,
@@ -133,7 +143,7 @@ TEST_F(LivePage, ShowsWhatTheServiceTells) {
   EXPECT_FALSE(result.contains("result")) << "the covariance is for nobody's eyes";
   EXPECT_TRUE(eventually([&] {
     const json fleet = state("rx90")["domain"]["fleet"];
-    return fleet.size() == 1 && fleet[0]["robot"] == "rx90" && fleet[0]["off"] == 2e-3;
+    return fleet.size() == 2 && fleet[1]["robot"] == "rx90" && fleet[1]["off"] == 2e-3;
   }));
 }
 
@@ -238,6 +248,7 @@ TEST_F(LivePage, WatchesFiftyRobots) {
               100 * cpu / kSeconds, static_cast<double>(bytes) / 1000 / kSeconds);
   ASSERT_EQ(domain_part.size(), kRobots);
   EXPECT_EQ(domain_part[0]["robot"], "robot_7");
+  for (const json& line : domain_part) EXPECT_EQ(line["health"], "ok") << line["robot"];
   EXPECT_LT(cpu, 0.5 * kSeconds);
 }
 

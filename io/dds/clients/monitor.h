@@ -20,9 +20,11 @@ struct HealthReport {
 class DdsMonitor {
  public:
   /// Watches the service of `robot`; its last status and result come at once. `wakeup` hears of
-  /// everything that comes and of services that come and go.
+  /// everything that comes and of services that come and go. Without `health` that is left to a
+  /// DdsDiagnostics, which hears all robots by one reader.
   static Result<std::unique_ptr<DdsMonitor>> open(const DdsParticipant& participant,
-                                                  const std::string& robot, Wakeup& wakeup);
+                                                  const std::string& robot, Wakeup& wakeup,
+                                                  bool health = true);
 
   /// Each appends what came since its last call, oldest first.
   void take(std::vector<StatusMessage>& out);
@@ -40,11 +42,12 @@ class DdsMonitor {
     DdsReader<dds::Result> result;
     DdsReader<dds::DiagnosticArray> diagnostics;
   };
-  DdsMonitor(std::string robot, Endpoints endpoints)
-      : robot_(std::move(robot)), dds_(std::move(endpoints)) {}
+  DdsMonitor(std::string robot, Endpoints endpoints, bool health)
+      : robot_(std::move(robot)), dds_(std::move(endpoints)), health_(health) {}
 
   std::string robot_;
   Endpoints dds_;
+  bool health_;  // whether the reader of diagnostics is open
 };
 
 }  // namespace selfcal
