@@ -57,7 +57,8 @@ function live_view() {
     size = Math.max(1e-3, box.getSize(new THREE.Vector3()).length());
     camera.near = size / 100;
     camera.far = 20 * size;
-    camera.position.copy(center).add(new THREE.Vector3(0.75, -1, 0.55).normalize().multiplyScalar(1.25 * size));
+    const narrow = Math.max(1, 1.4 * holder.clientHeight / Math.max(1, holder.clientWidth));  // a phone, upright
+    camera.position.copy(center).add(new THREE.Vector3(0.75, -1, 0.55).normalize().multiplyScalar(1.25 * narrow * size));
     turning.target.copy(center);
     turning.update();
   }
