@@ -56,6 +56,15 @@ struct Outlier {
   double residual = 0;  ///< m; infinite of a row that the robot cannot take
   bool check = false;
   std::string why;
+  bool angle_alone = false;  ///< the residual is of angles (rad)
+};
+
+/// A lock that turned between two rows of its set, which are counted from 0.
+struct LockSlip {
+  std::string set, lock;  ///< lock: the joint, in words
+  int before = 0, after = 0;
+  double angle = 0;      ///< rad
+  double statistic = 0;  ///< how clear it is (change_point.h)
 };
 
 /// Figures of the angles beside the residuals of rows (rad), of the rows that have any.
@@ -230,6 +239,8 @@ struct Solution {
   double prior_dof = 0;
   double prior_widening = 1;
   Observability observability;
+  std::vector<LockSlip> slips;               ///< of locked joints, in the order of the rows
+  std::vector<std::string> locks_put_aside;  ///< sets of which nothing was used, for their slips
   std::vector<std::string> warnings;
   Eigen::VectorXd values;  ///< of every parameter, in the robot's order
 };

@@ -95,6 +95,7 @@ class Machine {
   void pass_lock(Nanoseconds until);
   void engage(int set);
   int set_of_lock(const std::string& lock) const;
+  void slip();
   Eigen::VectorXd give_way(const MotionRequest& request);
 
   // sim/machine_contact.cc
@@ -134,7 +135,7 @@ class Machine {
   };
   std::optional<LockTurn> turn_;
   int locked_ = -1;  // set of the lock that is engaged
-  bool slipped_ = false;
+  int lock_visits_ = 0;
   bool closed_ = false, stuck_ = false;
   std::deque<EncoderSample> samples_;
   std::deque<Edge> edges_;

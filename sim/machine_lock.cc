@@ -1,5 +1,6 @@
 // A passive joint of the true platform is locked: from then on the leg keeps the direction that it
 // had, but for the lock's own play, and every move gives way to it.
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/methods/unit_normal.h"
@@ -42,8 +43,11 @@ void Machine::pass_lock(Nanoseconds until) {
     locked_ = -1;
     return put_edge(until, false);
   }
-  if (slipped_ || !broken(What::lock_slip, until)) return;
-  slipped_ = true;
+}
+
+/// Where the scenario says so.
+void Machine::slip() {
+  if (std::ranges::count(settings_.lock_slips, ++lock_visits_) == 0) return;
   const Eigen::VectorXd step = Eigen::Vector2d(settings_.lock_slip, 0);
   sets_[locked_].method->retract(truth_.nuisance[locked_], step);
 }
@@ -62,6 +66,7 @@ Eigen::VectorXd Machine::give_way(const MotionRequest& request) {
   Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(
       request.q.data(), static_cast<Eigen::Index>(request.q.size()));
   if (locked_ < 0) return q;
+  slip();
   DataSet data;
   data.sets = sets_;
   data.rows.set = {locked_};

@@ -1,6 +1,7 @@
 #include "sim/machine_scenario.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "sim/scenario_fields.h"
@@ -9,15 +10,14 @@ namespace selfcal {
 namespace {
 
 using What = MachineFault::What;
-constexpr std::array<std::pair<std::string_view, What>, 8> kFaults = {
+constexpr std::array<std::pair<std::string_view, What>, 7> kFaults = {
     {{"encoders", What::encoders},
      {"stuck", What::stuck},
      {"refuse", What::refuse},
      {"silent", What::silent},
      {"lock_refuse", What::lock_refuse},
      {"lock_late", What::lock_late},
-     {"lock_open", What::lock_open},
-     {"lock_slip", What::lock_slip}}};
+     {"lock_open", What::lock_open}}};
 
 MachineFault read_fault(const Node& node, Problems& problems) {
   Fields fields(node, "machine fault", problems);
@@ -30,12 +30,26 @@ MachineFault read_fault(const Node& node, Problems& problems) {
       known = true;
     }
   if (!known)
-    fields.fail("what",
-                "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or lock_slip");
+    fields.fail("what", "encoders, stuck, refuse, silent, lock_refuse, lock_late or lock_open");
   fault.at = fields.number("at", 0, 0, 1e9);
   fault.duration = fields.number("for", 1e9, 0, 1e9);
   fields.refuse_unknown();
   return fault;
+}
+
+std::vector<int> read_visits(Fields& fields) {
+  std::vector<int> visits;
+  const Node* list = fields.node("lock_slips");
+  if (!list) return visits;
+  const auto numbers = fields.numbers("lock_slips", static_cast<int>(list->items.size()));
+  if (!numbers) return visits;
+  for (const double each : *numbers) {
+    if (each < 1 || each > 1e6 || each != std::floor(each))
+      fields.fail("lock_slips", "whole numbers from 1");
+    else
+      visits.push_back(static_cast<int>(each));
+  }
+  return visits;
 }
 
 }  // namespace
@@ -54,6 +68,7 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   within("missed", machine.missed, 0, 0.5);
   within("lock_time", machine.lock_time, 0, 10);
   within("lock_slip", machine.lock_slip, 0, 0.1);
+  machine.lock_slips = read_visits(fields);
   within("temperature", machine.temperature, -40, 80);
   within("warming", machine.warming, -20, 20);
   machine.trigger_pull = fields.text("trigger_pull", "");

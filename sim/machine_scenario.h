@@ -9,6 +9,8 @@
 //   missed          0         0 to 0.5       share of the touches that trigger nothing
 //   lock_time       0.2       0 to 10 s      from the request to the lock's engaging or opening
 //   lock_slip       1e-3      0 to 0.1 rad   by which a slipping lock turns
+//   lock_slips      none      from 1         configurations under locks, counted from the first, on
+//                                            the way to which the lock slips
 //   temperature     20        -40 to 80      °C at the start
 //   warming         0         -20 to 20      °C per hour
 //   trigger_pull    none                     played in a process of its own with a trigger of
@@ -23,7 +25,6 @@
 //     lock_refuse     no lock is engaged
 //     lock_late       locks neither engage nor open
 //     lock_open       an engaged lock opens by itself
-//     lock_slip       an engaged lock turns by `lock_slip`, once
 #pragma once
 
 #include <string>
@@ -34,7 +35,7 @@
 namespace selfcal {
 
 struct MachineFault {
-  enum class What { encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open, lock_slip };
+  enum class What { encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open };
   What what = What::encoders;
   double at = 0, duration = 0;  ///< s
 };
@@ -46,6 +47,7 @@ struct MachineScenario {
   int bounce = 0;
   double missed = 0;
   double lock_time = 0.2, lock_slip = 1e-3;
+  std::vector<int> lock_slips;
   double temperature = 20, warming = 0;
   std::string trigger_pull;
   std::vector<MachineFault> faults;

@@ -12,7 +12,7 @@
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
 #include "app/report/summary.h"
-#include "constraints/estimation/identification.h"
+#include "constraints/estimation/engagements.h"
 #include "constraints/site.h"
 #include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/search/shapes.h"
@@ -106,8 +106,11 @@ int identify_command(const IdentifyArguments& arguments) {
   Solution solution;
   {
     ProgressLine line;
-    solution = identify(robot, loaded->data, options,
-                        [&](std::string_view stage, double share) { line.show(stage, share); });
+    Engagements found = identify_engagements(
+        robot, loaded->data, options,
+        [&](std::string_view stage, double share) { line.show(stage, share); });
+    solution = std::move(found.solution);
+    loaded->data = std::move(found.data);
   }
   if (circles) compare_with_file(*circles, solution);
   const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);

@@ -8,7 +8,7 @@
 #include "app/report/format.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
-#include "constraints/estimation/identification.h"
+#include "constraints/estimation/engagements.h"
 #include "io/files/file.h"
 
 namespace selfcal {
@@ -40,15 +40,16 @@ Result<void> write_page(const ReportArguments& arguments) {
   if (!rows) return tl::unexpected(rows.error());
   const auto session = session_json(**store, rows->record);
   if (!session) return tl::unexpected(session.error());
-  Solution solution;
+  Engagements found;
   {
     ProgressLine line;
-    solution = identify(*rows->robot, rows->data, {},
-                        [&](std::string_view stage, double share) { line.show(stage, share); });
+    found = identify_engagements(
+        *rows->robot, rows->data, {},
+        [&](std::string_view stage, double share) { line.show(stage, share); });
   }
-  const PageSubject subject{*rows->robot, rows->data,
+  const PageSubject subject{*rows->robot, found.data,
                             "session " + std::to_string(arguments.session), unix_now_ms()};
-  nlohmann::ordered_json data = identification_data(subject, solution);
+  nlohmann::ordered_json data = identification_data(subject, found.solution);
   data["session"] = *session;
   return write_file_atomically(arguments.out, page_of(data));
 }

@@ -208,8 +208,8 @@ std::string summary(const DataSet& data, const Solution& solution) {
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Rows beyond the noise", solution.rejected, [](const Outlier& r) {
     const std::string of_row = phrase("row %d (%s): ", r.row, r.set.c_str());
-    return std::isfinite(r.residual) ? of_row + phrase("%.3g mm, ", 1e3 * r.residual) + r.why
-                                     : of_row + r.why;
+    if (!std::isfinite(r.residual)) return of_row + r.why;
+    return of_row + phrase("%.3g %s, ", 1e3 * r.residual, r.angle_alone ? "mrad" : "mm") + r.why;
   });
   list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
   list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });

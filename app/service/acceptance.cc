@@ -73,10 +73,11 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
     ruling.why = candidate.verdict.why;
     return ruling;
   }
+  const char* const unit_of_rows = candidate.residual.check.angle_alone ? "mrad" : "mm";
   if (!(ruling.check_after < (1 - accept.margin) * ruling.check_before)) {
     ruling.why =
-        sentence("the active parameters explain the check rows as well: %.4g mm against %.4g",
-                 1e3 * ruling.check_before, 1e3 * ruling.check_after);
+        sentence("the active parameters explain the check rows as well: %.4g %s against %.4g",
+                 1e3 * ruling.check_before, unit_of_rows, 1e3 * ruling.check_after);
     return ruling;
   }
   const auto [limit, sigma] = largest_changes(accept.largest_change, active, candidate);
@@ -91,13 +92,17 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
     }
   }
   ruling.acceptable = true;
-  ruling.why = sentence("check residual %.4g to %.4g mm", 1e3 * ruling.check_before,
-                        1e3 * ruling.check_after);
+  ruling.why = sentence("check residual %.4g to %.4g %s", 1e3 * ruling.check_before,
+                        1e3 * ruling.check_after, unit_of_rows);
   if (sigma.parameter)
     ruling.why += sentence("; surest change: %s by %.3g m%s (%.0f sigma)",
                            sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
                            std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
                            std::abs(sigma.change) / sigma.parameter->sigma);
+  for (const std::string& set : candidate.locks_put_aside) {
+    ruling.asks = true;
+    ruling.why += "; not applied by itself: the lock of set " + set + " slipped again and again";
+  }
   return ruling;
 }
 

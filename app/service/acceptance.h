@@ -10,9 +10,10 @@ namespace selfcal {
 
 struct AcceptanceDecision {
   bool acceptable = false;
+  bool asks = false;  ///< acceptable, but by a person alone: a lock was put aside
   Answer answer = Answer::not_determined;  ///< the verdict's
   std::string why;
-  double check_before = 0;  ///< m, rms of the check rows with the active parameters
+  double check_before = 0;  ///< m (rad of angles alone), rms of the check rows, active
   double check_after = 0;   ///< m, with the candidate's
 };
 

@@ -14,6 +14,7 @@
 #include "app/service/models.h"
 #include "app/service/sensor_front_end.h"
 #include "app/service/session.h"
+#include "constraints/estimation/engagements.h"
 #include "io/messages.h"
 #include "io/supervisor.h"
 
@@ -93,6 +94,7 @@ class Service {
   void analyse();
   void join_base();
   void identify();
+  void keep_solution(Engagements found);
   void give_up();
   void judge();
   ResultRecord new_result() const;

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include "app/service/service.h"
-#include "constraints/estimation/identification.h"
 #include "constraints/site.h"
 #include "io/files/robot_file.h"
 #include "io/files/solution_json.h"
@@ -18,7 +17,9 @@ std::string too_few(const DataSet& data) {
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const auto rows = std::ranges::count(data.rows.set, static_cast<int>(s));
     if (rows < kFewestRows)
-      return "set " + data.sets[s].name + " has only " + std::to_string(rows) + " good touches";
+      return "set " + data.sets[s].name + " has only " + std::to_string(rows) +
+             (data.sets[s].method->planned() == Planned::lock ? " good configurations"
+                                                              : " good touches");
   }
   return {};
 }
@@ -75,15 +76,33 @@ void Service::join_base() {
 }
 
 void Service::identify() {
-  solution_ = std::make_shared<Solution>();
+  auto found = std::make_shared<Engagements>();
   computation_.start(
-      [out = solution_, robot = models_.active(), data = data_](const Computation::Tell& tell) {
-        *out = selfcal::identify(*on_site(robot, *data), *data, {}, tell);
+      [found, robot = models_.active(), data = data_](const Computation::Tell& tell) {
+        *found = identify_engagements(*on_site(robot, *data), *data, {}, tell);
         return std::string();
       });
-  when_computed_ = [this](const std::string& failure) {
+  when_computed_ = [this, found](const std::string& failure) {
+    if (failure.empty()) keep_solution(std::move(*found));
     put(Event::What::computed, failure.empty(), failure);
   };
+}
+
+/// What is judged then are the rows that were used, as they were used.
+void Service::keep_solution(Engagements found) {
+  const std::vector<int> steps = steps_of_rows(session_, meaning_);
+  const auto configuration = [&](int row) { return std::to_string(steps[row] + 1); };
+  for (const LockSlip& slip : found.solution.slips)
+    tell("warning", slip.lock + " (set " + slip.set + "): the lock slipped by " +
+                        format_number(std::round(slip.angle * 1e5) / 100) +
+                        " mrad between configurations " + configuration(slip.before) + " and " +
+                        configuration(slip.after) + " of " + std::to_string(session_.plan.size()) +
+                        "; those after it have a direction of their own");
+  for (const std::string& name : found.solution.locks_put_aside)
+    tell("warning", "set " + name + ": its lock slipped again and again; all of it is put aside");
+  solution_ = std::make_shared<Solution>(std::move(found.solution));
+  found.data.rows = taken(found.data.rows, found.kept);
+  data_ = std::make_shared<DataSet>(std::move(found.data));
 }
 
 void Service::give_up() {
@@ -145,9 +164,9 @@ ResultRecord Service::result_of_candidate() const {
       rule_on_result(config_.accept, *models_.active(), *solution_, *unchanged_);
   ResultRecord result = new_result();
   result.answer = stored_answer(ruling.answer);
-  result.decision = !ruling.acceptable         ? ResultDecision::rejected
-                    : config_.accept.automatic ? ResultDecision::applying
-                                               : ResultDecision::candidate;
+  result.decision = !ruling.acceptable                         ? ResultDecision::rejected
+                    : ruling.asks || !config_.accept.automatic ? ResultDecision::candidate
+                                                               : ResultDecision::applying;
   result.why = ruling.why;
   result.p_value = solution_->verdict.p_value;
   result.check_before = ruling.check_before;

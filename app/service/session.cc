@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "constraints/equations/equations.h"
+#include "constraints/estimation/engagements.h"
 #include "constraints/planning/d_optimal.h"
 #include "io/files/file.h"
 #include "io/files/yaml.h"
@@ -211,15 +213,10 @@ std::vector<int> sets_of_touches(const std::vector<const TouchRecord*>& touches,
   for (auto& [set, engagements] : locks) {
     const auto telling =
         std::ranges::count_if(engagements, [](const auto& each) { return each.second.tells(); });
-    int number = 0;
+    bool first = true;
     for (auto& [edge, engagement] : engagements) {
       if (telling > 0 && !engagement.tells()) continue;
-      engagement.set = set;
-      if (++number == 1) continue;
-      engagement.set = static_cast<int>(sets.size());
-      Set again = sets[set];
-      again.name += "-" + std::to_string(number);
-      sets.push_back(std::move(again));
+      engagement.set = std::exchange(first, false) ? set : add_engagement(sets, set);
     }
   }
   for (std::size_t i = 0; i < touches.size(); ++i)
@@ -228,27 +225,48 @@ std::vector<int> sets_of_touches(const std::vector<const TouchRecord*>& touches,
   return list;
 }
 
+/// The touches that make rows, in the order of the plan.
+struct RowTouches {
+  std::vector<const TouchRecord*> touches;
+  std::vector<int> repeat, set;
+};
+
+RowTouches touches_of_rows(const Session& session, const Decoding& meaning,
+                           std::vector<Set>& sets) {
+  std::vector<const TouchRecord*> good;
+  std::vector<int> repeat;
+  for (const StepRecord& step : session.plan) {
+    const auto of_step = good_touches(session, step.index);
+    good.insert(good.end(), of_step.begin(), of_step.end());
+    repeat.insert(repeat.end(), of_step.size(), of_step.size() > 1 ? step.index : -1);
+  }
+  const std::vector<int> set = sets_of_touches(good, session.plan, meaning, sets);
+  RowTouches rows;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    if (set[i] < 0) continue;
+    rows.touches.push_back(good[i]);
+    rows.repeat.push_back(repeat[i]);
+    rows.set.push_back(set[i]);
+  }
+  return rows;
+}
+
 }  // namespace
+
+std::vector<int> steps_of_rows(const Session& session, const Decoding& meaning) {
+  std::vector<Set> sets = meaning.sets;
+  std::vector<int> steps;
+  for (const TouchRecord* touch : touches_of_rows(session, meaning, sets).touches)
+    steps.push_back(touch->step);
+  return steps;
+}
 
 DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning, Parts parts) {
   DataSet data;
   data.sets = meaning.sets;
   data.target = meaning.target;
   data.workspace = meaning.workspace;
-  std::vector<const TouchRecord*> rows;
-  std::vector<int> repeat;
-  for (const StepRecord& step : session.plan) {
-    const auto good = good_touches(session, step.index);
-    rows.insert(rows.end(), good.begin(), good.end());
-    repeat.insert(repeat.end(), good.size(), good.size() > 1 ? step.index : -1);
-  }
-  std::vector<int> sets = sets_of_touches(rows, session.plan, meaning, data.sets);
-  for (std::size_t i = rows.size(); i-- > 0;)
-    if (sets[i] < 0) {
-      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(i));
-      repeat.erase(repeat.begin() + static_cast<std::ptrdiff_t>(i));
-      sets.erase(sets.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+  auto [rows, repeat, sets] = touches_of_rows(session, meaning, data.sets);
   Observations& out = data.rows;
   size_rows(out, static_cast<Eigen::Index>(rows.size()),
             static_cast<Eigen::Index>(meaning.scales.size()));

@@ -79,7 +79,8 @@ void TransitionStep::fault(const std::string& why) {
 }
 
 std::string TransitionStep::touch_name() const {
-  return "touch " + std::to_string(s_.step + 1) + " of " + std::to_string(s_.steps);
+  return (s_.lock != 0 ? "configuration " : "touch ") + std::to_string(s_.step + 1) + " of " +
+         std::to_string(s_.steps);
 }
 
 }  // namespace selfcal

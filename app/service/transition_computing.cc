@@ -6,7 +6,7 @@
 namespace selfcal {
 
 void TransitionStep::analyse() {
-  enter(ServiceState::analysing, "all touches are in");
+  enter(ServiceState::analysing, "all is collected");
   act(Do::analyse);
 }
 

@@ -10,6 +10,7 @@
 #include "constraints/estimation/angles.h"
 #include "constraints/estimation/covariance_sources.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/estimation/lock_slip.h"
 #include "constraints/estimation/results.h"
 #include "constraints/estimation/robot_scale.h"
 #include "constraints/estimation/uncertainty.h"
@@ -157,10 +158,12 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.residual = residual_figures(data, before, after, fitted.noise.outlier);
   solution.rejected = outlier_rows(data, after, fitted.noise.outlier);
   solution.sets = set_results(equations, fitted, C, after);
+  solution.slips = lock_slips(data, after);
   const std::vector<std::string> turned = gross_angles(robot, data, before, after);
   add_warnings(equations, adjusted, solution);
   std::ranges::copy(scale.scale.contradictions, std::back_inserter(solution.warnings));
   std::ranges::copy(turned, std::back_inserter(solution.warnings));
+  std::ranges::transform(solution.slips, std::back_inserter(solution.warnings), slip_words);
   if (progress) progress("done", 1);
   if (nothing) {  // certain of what was given, not of what is true
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";

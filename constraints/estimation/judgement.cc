@@ -165,7 +165,8 @@ std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
   std::vector<Outlier> list;
   const auto add = [&](const RowResidual& r, bool check) {
     list.push_back({r.row + 1, data.sets[r.set].name, r.size(), check,
-                    check ? "outlier among the check rows: counted all the same" : "outlier"});
+                    check ? "outlier among the check rows: counted all the same" : "outlier",
+                    r.lengths == 0});
   };
   for (const RowResidual& r : after.fit)
     if (outlier[r.row]) add(r, false);

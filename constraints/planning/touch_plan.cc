@@ -279,6 +279,8 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   question.xi = xi;
   question.covariance = covariance_after(robot, xi, sets, touches);
   question.unseen = Eigen::MatrixXd::Identity(6, 6);
+  question.point_unknown = std::ranges::none_of(
+      targets, [&](const TouchTarget& each) { return sets[each.set].method->sees_point(); });
   question.poses = random_poses(robot, nullptr, kPoses, kSeed);
   ExpectedSigma expected;
   expected.endpoint = endpoint_sigma(question);

@@ -57,7 +57,8 @@ TEST_F(DdsMotionTest, CarriesRequestsStopsAndReplies) {
 }
 
 TEST_F(DdsMotionTest, CarriesEveryKindAndOutcome) {
-  for (const auto kind : {MoveKind::travel, MoveKind::touch, MoveKind::seat, MoveKind::retract})
+  for (const auto kind : {MoveKind::travel, MoveKind::touch, MoveKind::seat, MoveKind::retract,
+                          MoveKind::lock, MoveKind::visit, MoveKind::release})
     must(motion->request({.id = 1, .kind = kind, .label = "", .q = {}, .speed = 1}));
   for (const auto outcome : {MotionReply::Outcome::accepted, MotionReply::Outcome::done,
                              MotionReply::Outcome::stopped, MotionReply::Outcome::refused})
@@ -67,12 +68,10 @@ TEST_F(DdsMotionTest, CarriesEveryKindAndOutcome) {
   must(robot->take(requests));
   must(motion->take(replies));
 
-  ASSERT_EQ(requests.size(), 4);
+  ASSERT_EQ(requests.size(), 7);
   ASSERT_EQ(replies.size(), 4);
-  for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(static_cast<int>(requests[i].move.kind), i);
-    EXPECT_EQ(static_cast<int>(replies[i].outcome), i);
-  }
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(static_cast<int>(requests[i].move.kind), i);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(static_cast<int>(replies[i].outcome), i);
 }
 
 TEST_F(DdsMotionTest, RefusesAKindOfMotionThatIsNone) {

@@ -65,7 +65,7 @@ TEST(TransitionLocks, ReleasesBetweenTwoLocksAndAfterTheLast) {
 TEST(TransitionLocks, StopsThenReleasesWhenTheLockOpensByItself) {
   Script script = engaged_script();
   EXPECT_EQ(script.on(What::opened).done(), "stop, release, give_up, tell");
-  EXPECT_THAT(script.s.why, HasSubstr("the lock opened by itself at touch 1 of 3"));
+  EXPECT_THAT(script.s.why, HasSubstr("the lock opened by itself at configuration 1 of 3"));
   EXPECT_TRUE(script.s.unfinished);
 }
 
@@ -79,7 +79,8 @@ TEST(TransitionLocks, StopsThenReleasesWhenTheConfirmationDoesNotCome) {
 TEST(TransitionLocks, NamesALockThatIsRefused) {
   Script script = script_of_locks();
   script.on(What::moved).on(What::refused, false, "no such lock");
-  EXPECT_THAT(script.s.why, HasSubstr("the lock for touch 1 of 3 was refused: no such lock"));
+  EXPECT_THAT(script.s.why,
+              HasSubstr("the lock for configuration 1 of 3 was refused: no such lock"));
 }
 
 TEST(TransitionLocks, NamesALockThatIsNotReleased) {

@@ -70,8 +70,7 @@ TEST(MachineFault, IsRefusedWhenNobodyKnowsIt) {
   EXPECT_THAT(
       problem_of("robot: r\nmachine: {faults: [{what: rust, at: 0}]}\n"
                  "sets: {a: {method: plane}}\n"),
-      testing::HasSubstr(
-          "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or lock_slip"));
+      testing::HasSubstr("encoders, stuck, refuse, silent, lock_refuse, lock_late or lock_open"));
 }
 
 TEST(Machine, WarmsUpAsItIsTold) {

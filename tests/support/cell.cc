@@ -56,8 +56,8 @@ Cell::~Cell() {
 
 void Cell::write_files() const {
   const std::filesystem::path examples = SELFCAL_SOURCE_DIR "/app/examples";
-  std::filesystem::copy_file(examples / (options.robot + ".robot.yaml"),
-                             folder / (options.robot + ".robot.yaml"));
+  const std::string model = options.robot.substr(0, options.robot.find('_')) + ".robot.yaml";
+  std::filesystem::copy_file(examples / model, folder / model);
   std::string config = text_of(examples / (options.robot + "_cell.config.yaml"));
   std::string scenario = text_of(examples / (options.robot + "_cell.scenario.yaml"));
   set_line(scenario, "seed", std::to_string(options.seed));

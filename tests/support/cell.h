@@ -19,7 +19,7 @@
 namespace selfcal {
 
 struct CellOptions {
-  std::string robot = "rx90";  ///< of app/examples/ROBOT_cell.*
+  std::string robot = "rx90";  ///< of app/examples/ROBOT_cell.*; the model's name to its first _
   std::string id = "cell";
   int seed = 2;
   double false_triggers = 0, missed = 0;  ///< shares

@@ -2,6 +2,7 @@
 // dataset.yaml is the former. It is written last: a folder without it is no data set.
 #include "app/commands/support/session_export.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include "app/report/format.h"
@@ -43,15 +44,26 @@ Result<std::string> nominal_text(Store& store, const SessionRecord& record,
   return robot_text(**robot, nominal_values(**robot));
 }
 
+/// With entries of the later engagements of locks, which share the method of their first.
+Node with_engagements(Node entries, const std::vector<Set>& sets) {
+  for (const Set& set : sets) {
+    if (entries.find(set.name)) continue;
+    const Node* first = entries.find(std::ranges::find(sets, set.method, &Set::method)->name);
+    if (first) entries.set(set.name, Node(*first));
+  }
+  return entries;
+}
+
 /// dataset.yaml of a stored description.
-Result<std::string> description_text(const SessionRecord& record) {
+Result<std::string> description_text(const SessionRecord& record, const std::vector<Set>& sets) {
   const Result<Node> stored = parse_yaml(record.config, session_name(record.id));
   if (!stored) return tl::unexpected(stored.error());
   Node node = Node::map();
   node.set("robot", Node::of(std::string("robot.yaml")));
   node.set("observations", Node::of(std::string("observations.csv")));
   for (const char* key : {"target", "workspace", "sets"})
-    if (const Node* value = stored->find(key)) node.set(key, *value);
+    if (const Node* value = stored->find(key))
+      node.set(key, key == std::string("sets") ? with_engagements(*value, sets) : *value);
   return "# Session " + std::to_string(record.id) + " (" + record.kind + "), begun " +
          date_time(record.started_ms) + ".\n" + write_yaml(node);
 }
@@ -90,7 +102,7 @@ Result<int> export_session(Store& store, std::int64_t session, const std::string
                            const fs::path& folder) {
   const auto rows = session_rows(store, session, robot_text);
   if (!rows) return tl::unexpected(rows.error());
-  const auto description = description_text(rows->record);
+  const auto description = description_text(rows->record, rows->data.sets);
   if (!description) return tl::unexpected(description.error());
   if (auto made = make_empty_folder(folder); !made) return tl::unexpected(made.error());
   const std::pair<const char*, std::string> files[] = {

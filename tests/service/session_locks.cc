@@ -1,0 +1,98 @@
+// Configurations visited under a lock: which are put aside, and what each engagement makes.
+#include <gmock/gmock.h>
+
+#include "app/service/session.h"
+#include "tests/service/cell.h"
+
+namespace selfcal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<EncoderScale> kLegScales(6, EncoderScale{1e-6, 0});
+
+Config lock_config() {
+  const auto config = load_text(
+      "robot: " + example("stewart.robot.yaml").string() +
+      "\nmotion: {home: [0.8, 0.8, 0.8, 0.8, 0.8, 0.8]}\nsets:\n"
+      "  a: {method: locked-joint, lock: {leg: 1, joint: universal}, noise: 2.0e-5, touches: 6}\n");
+  EXPECT_TRUE(config) << config.error().what;
+  return *config;
+}
+
+Reading legs(std::initializer_list<double> lengths) {
+  Reading reading;
+  reading.q = Eigen::Map<const Eigen::VectorXd>(lengths.begin(), 6);
+  reading.dq = Eigen::VectorXd::Zero(6);
+  return reading;
+}
+
+TEST(RuleOnVisit, TakesLegsThatMeetWithinTheirRanges) {
+  EXPECT_EQ(rule_on_visit(*lock_config().robot, legs({0.8, 0.8, 0.8, 0.8, 0.8, 0.8})).outcome,
+            TouchOutcome::taken);
+}
+
+TEST(RuleOnVisit, PutsALegOutOfItsRangeAsideByName) {
+  const TouchRuling ruling =
+      rule_on_visit(*lock_config().robot, legs({0.8, 0.8, 1.2, 0.8, 0.8, 0.8}));
+  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(ruling.why, HasSubstr("reads 1.2, out of its range under the lock"));
+}
+
+TEST(RuleOnVisit, PutsLegsThatDoNotMeetAside) {
+  // Neighbours on one end of the platform half a metre apart in length: it has no such position.
+  const TouchRuling ruling =
+      rule_on_visit(*lock_config().robot, legs({0.56, 1.14, 0.56, 1.14, 0.56, 1.14}));
+  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(ruling.why, HasSubstr("the assembly mode is lost"));
+}
+
+/// Visits of one lock; `engaged`: the moment of the engagement of each (s).
+Session visits(const std::vector<int>& engaged) {
+  Session session;
+  session.record.kind = "full";
+  for (int i = 0; i < static_cast<int>(engaged.size()); ++i) {
+    StepRecord step;
+    step.index = i;
+    step.set = "a";
+    step.touch.assign(6, 0.8);
+    session.plan.push_back(step);
+    TouchRecord visit;
+    visit.step = i;
+    visit.outcome = TouchOutcome::taken;
+    visit.edge = engaged[i] * kSecond;
+    visit.before.time = visit.after.time = (100 + i) * kSecond;
+    visit.before.joints = visit.after.joints = 6;
+    visit.before.counts.fill(800000);
+    visit.after.counts = visit.before.counts;
+    session.touches.push_back(visit);
+  }
+  return session;
+}
+
+DataSet rows_of_visits(const Session& session) {
+  const Config config = lock_config();
+  const auto meaning = read_meaning(meaning_text(config, kLegScales));
+  EXPECT_TRUE(meaning) << meaning.error().what;
+  EXPECT_EQ(steps_of_rows(session, *meaning).size(),
+            static_cast<std::size_t>(rows_of(*config.robot, session, *meaning).rows.rows()));
+  return rows_of(*config.robot, session, *meaning);
+}
+
+TEST(RowsOfVisits, GiveEachEngagementASetOfItsOwn) {
+  const DataSet data = rows_of_visits(visits({1, 1, 1, 1, 50, 50, 50, 50}));
+  ASSERT_EQ(data.sets.size(), 2u);
+  EXPECT_EQ(data.sets[1].name, "a-2");
+  EXPECT_THAT(data.rows.set, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
+  EXPECT_EQ(data.rows.time[7] - data.rows.time[0], 7);
+}
+
+TEST(RowsOfVisits, LeaveOutAnEngagementThatTellsNothing) {
+  const DataSet data = rows_of_visits(visits({1, 50, 50, 50, 50}));
+  EXPECT_EQ(data.sets.size(), 1u);
+  EXPECT_THAT(data.rows.set, ElementsAre(0, 0, 0, 0));
+}
+
+}  // namespace
+}  // namespace selfcal
