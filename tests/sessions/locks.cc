@@ -15,7 +15,7 @@ using testing::Not;
 ResultMessage lock_session(Cell& cell) {
   cell.start_service();
   if (!cell.start_session()) return {};
-  cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); });
+  cell.until([&] { return !cell.results.empty(); });
   return cell.results.empty() ? ResultMessage{} : cell.results.back();
 }
 
@@ -67,7 +67,7 @@ TEST(LockSession, AsksAPersonWhenALockSlipsAgainAndAgain) {
   Cell cell(lock_cell("8, 15, 22"));
   const ResultMessage result = lock_session(cell);
   EXPECT_THAT(cell.log(), HasSubstr("its lock slipped again and again; all of it is put aside"));
-  EXPECT_NE(result.decision, "applied") << result.why;
+  EXPECT_EQ(result.decision, "candidate") << result.why;
 }
 
 }  // namespace
