@@ -10,21 +10,35 @@ namespace {
 struct Known {
   std::string_view name;
   CellKind kind;
+  Dimension dimension = Dimension::none;
 };
 
-constexpr Known kKnown[] = {{"set", CellKind::text},           {"group", CellKind::text},
-                            {"repeat", CellKind::text},        {"part", CellKind::text},
-                            {"x", CellKind::metres},           {"y", CellKind::metres},
-                            {"z", CellKind::metres},           {"qw", CellKind::number},
-                            {"qx", CellKind::number},          {"qy", CellKind::number},
-                            {"qz", CellKind::number},          {"distance", CellKind::distance},
-                            {"alpha", CellKind::number},       {"beta", CellKind::number},
-                            {"phi", CellKind::number},         {"fx", CellKind::number},
-                            {"fy", CellKind::number},          {"fz", CellKind::number},
-                            {"tx", CellKind::number},          {"ty", CellKind::number},
-                            {"tz", CellKind::number},          {"nx", CellKind::number},
-                            {"ny", CellKind::number},          {"nz", CellKind::number},
-                            {"temperature", CellKind::number}, {"time", CellKind::number},
+constexpr Known kKnown[] = {{"set", CellKind::text},
+                            {"group", CellKind::text},
+                            {"repeat", CellKind::text},
+                            {"part", CellKind::text},
+                            {"x", CellKind::metres, Dimension::length},
+                            {"y", CellKind::metres, Dimension::length},
+                            {"z", CellKind::metres, Dimension::length},
+                            {"qw", CellKind::number},
+                            {"qx", CellKind::number},
+                            {"qy", CellKind::number},
+                            {"qz", CellKind::number},
+                            {"distance", CellKind::distance, Dimension::length},
+                            {"alpha", CellKind::number, Dimension::angle},
+                            {"beta", CellKind::number, Dimension::angle},
+                            {"phi", CellKind::number, Dimension::angle},
+                            {"fx", CellKind::number, Dimension::force},
+                            {"fy", CellKind::number, Dimension::force},
+                            {"fz", CellKind::number, Dimension::force},
+                            {"tx", CellKind::number, Dimension::torque},
+                            {"ty", CellKind::number, Dimension::torque},
+                            {"tz", CellKind::number, Dimension::torque},
+                            {"nx", CellKind::number},
+                            {"ny", CellKind::number},
+                            {"nz", CellKind::number},
+                            {"temperature", CellKind::number, Dimension::temperature},
+                            {"time", CellKind::number, Dimension::time},
                             {"noise_factor", CellKind::number}};
 
 /// The whole of `text` as a count without leading zeros, else nothing.
@@ -61,6 +75,109 @@ CellKind kind_of(std::string_view name, const std::vector<MeasuredColumn>& measu
   if (joint_of(name, "q") || joint_of(name, "dq")) return CellKind::number;
   return is_marker(name) ? CellKind::metres : CellKind::ignored;
 }
+
+/// What the numbers of a column measure.
+Dimension dimension_of(std::string_view name, const std::vector<Joint>& joints,
+                       const std::vector<MeasuredColumn>& measured) {
+  for (const MeasuredColumn& column : measured)
+    if (column.name == name)
+      return column.quantity == Quantity::angle ? Dimension::angle : Dimension::length;
+  for (const Known& known : kKnown)
+    if (known.name == name) return known.dimension;
+  const std::optional<int> reading = joint_of(name, "q"), speed = joint_of(name, "dq");
+  const int joint = reading.value_or(speed.value_or(0));
+  if (joint < 1 || joint > static_cast<int>(joints.size()))
+    return is_marker(name) ? Dimension::length : Dimension::none;
+  const bool angle = joints[static_cast<std::size_t>(joint) - 1].quantity == Quantity::angle;
+  if (reading) return angle ? Dimension::angle : Dimension::length;
+  return angle ? Dimension::angular_speed : Dimension::speed;
+}
+
+/// Gives the columns of a file the names and units that dataset.yaml says.
+class Naming {
+ public:
+  Naming(Cells names, const std::vector<Joint>& joints, const std::vector<MeasuredColumn>& measured)
+      : names_(names), joints_(joints), measured_(measured), taken_(names.size(), 0) {
+    for (const std::string_view name : names) columns_.push_back({std::string(name)});
+  }
+
+  /// The place of a mapped header, now called `column`.
+  tl::expected<std::size_t, RowFault> take(const NamedHeader& from, const std::string& column,
+                                           Dimension dimension) {
+    const auto fault = [&](const std::string& what) {
+      return tl::unexpected(RowFault{to_string(from.place) + ": " + what});
+    };
+    const auto whole = std::ranges::find(names_, std::string_view(from.whole));
+    const auto plain = std::ranges::find(names_, std::string_view(from.header));
+    if (whole == names_.end() && plain == names_.end())
+      return fault("no column is called '" + from.header + "'");
+    if (whole != names_.end() && plain != names_.end() && whole != plain)
+      return fault("both '" + from.whole + "' and '" + from.header + "' are columns");
+    const auto place =
+        static_cast<std::size_t>((whole != names_.end() ? whole : plain) - names_.begin());
+    if (taken_[place]) return fault("'" + from.header + "' is taken twice");
+    taken_[place] = 1;
+    columns_[place].name = column;
+    if (from.unit.empty()) return place;
+    const auto unit = unit_of(from.unit, dimension);
+    if (!unit)
+      return fault(dimension == Dimension::none
+                       ? "'" + column + "' has no unit, got [" + from.unit + "]"
+                       : "expected a unit of " + units_in_words(dimension) + ", got [" + from.unit +
+                             "]");
+    columns_[place].unit = *unit;
+    return place;
+  }
+
+  std::optional<RowFault> apply(const ColumnMap& map) {
+    for (const MappedColumn& each : map.columns) {
+      if (kind_of(each.column, measured_) == CellKind::ignored)
+        return RowFault{to_string(each.from.place) + ": data sets have no column '" + each.column +
+                        "'"};
+      const auto place =
+          take(each.from, each.column, dimension_of(each.column, joints_, measured_));
+      if (!place) return place.error();
+    }
+    for (std::size_t i = 0; map.turn && i < turn_.size(); ++i) {
+      const auto place =
+          take(map.turn->from[i], "orientation " + std::to_string(i + 1), Dimension::angle);
+      if (!place) return place.error();
+      turn_[i] = *place;
+    }
+    for (const MappedColumn& each : map.columns)
+      for (std::size_t i = 0; i < names_.size(); ++i)
+        if (!taken_[i] && names_[i] == each.column)
+          return RowFault{to_string(each.from.place) + ": the file has a column '" + each.column +
+                          "' of its own"};
+    name_joints();
+    for (Column& column : columns_) column.kind = kind_of(column.name, measured_);
+    for (std::size_t i = 0; map.turn && i < turn_.size(); ++i)
+      columns_[turn_[i]].kind = CellKind::number;
+    return std::nullopt;
+  }
+
+  std::vector<Column>& columns() { return columns_; }
+  const std::array<std::size_t, 3>& turn() const { return turn_; }
+
+ private:
+  /// A column with a joint's name holds its readings, unless another one does.
+  void name_joints() {
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      const std::string reading = "q" + std::to_string(joint + 1);
+      if (std::ranges::find(columns_, reading, &Column::name) != columns_.end()) continue;
+      if (kind_of(joints_[joint].name, measured_) != CellKind::ignored) continue;
+      for (std::size_t i = 0; i < columns_.size(); ++i)
+        if (!taken_[i] && columns_[i].name == joints_[joint].name) columns_[i].name = reading;
+    }
+  }
+
+  Cells names_;
+  const std::vector<Joint>& joints_;
+  const std::vector<MeasuredColumn>& measured_;
+  std::vector<char> taken_;  // by the map
+  std::vector<Column> columns_;
+  std::array<std::size_t, 3> turn_{};
+};
 
 std::optional<RowFault> check_joint_columns(const Layout& layout, int joints) {
   const std::string robot_has = "the robot has " + std::to_string(joints) + " joints";
@@ -111,16 +228,27 @@ std::vector<std::string> Layout::ignored() const {
   return names;
 }
 
-tl::expected<Layout, RowFault> read_header(Cells names, int joints,
-                                           const std::vector<MeasuredColumn>& measured) {
+std::optional<std::size_t> Layout::filled_by(std::string_view name) const {
+  const bool of_turn = turn && (name == "qw" || name == "qx" || name == "qy" || name == "qz");
+  return of_turn ? turn->front() : find(name);
+}
+
+tl::expected<Layout, RowFault> read_header(Cells names, const std::vector<Joint>& all_joints,
+                                           const std::vector<MeasuredColumn>& measured,
+                                           const ColumnMap& map) {
+  const auto joints = static_cast<int>(all_joints.size());
+  Naming naming(names, all_joints, measured);
+  if (auto fault = naming.apply(map)) return tl::unexpected(std::move(*fault));
   Layout layout;
-  for (const std::string_view name : names) {
-    layout.columns.push_back({std::string(name), kind_of(name, measured)});
+  layout.columns = std::move(naming.columns());
+  if (map.turn) {
+    layout.turn = naming.turn();
+    layout.turn_axes = map.turn->axes;
   }
   const std::optional<std::size_t> set = layout.find("set");
-  if (!set) return tl::unexpected(RowFault{"column 'set' is missing"});
+  if (!set && !map.sole_set) return tl::unexpected(RowFault{"column 'set' is missing"});
   if (auto fault = check_joint_columns(layout, joints)) return tl::unexpected(std::move(*fault));
-  layout.set = *set;
+  layout.set = set;
   for (int joint = 1; joint <= joints; ++joint) {
     layout.q.push_back(*layout.find("q" + std::to_string(joint)));
   }
@@ -140,6 +268,9 @@ tl::expected<Layout, RowFault> read_header(Cells names, int joints,
   if (!normal) return tl::unexpected(normal.error());
   const auto orientation = find_all<4>(layout, {"qw", "qx", "qy", "qz"});
   if (!orientation) return tl::unexpected(orientation.error());
+  if (*orientation && layout.turn)
+    return tl::unexpected(RowFault{
+        "is a quaternion, and dataset.yaml gives the orientation otherwise", (**orientation)[0]});
   const auto wrench = find_all<6>(layout, {"fx", "fy", "fz", "tx", "ty", "tz"});
   if (!wrench) return tl::unexpected(wrench.error());
   layout.wrench = *wrench;

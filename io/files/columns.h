@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "constraints/methods/method.h"
+#include "io/files/column_map.h"
 #include "io/files/csv.h"
+#include "io/files/units.h"
 
 namespace selfcal {
 
@@ -22,8 +24,9 @@ enum class CellKind {
 };
 
 struct Column {
-  std::string name;
+  std::string name;  ///< as data sets have it
   CellKind kind = CellKind::ignored;
+  Unit unit = {};
 };
 
 /// Places, from 0, of columns that belong together: all of them or none.
@@ -33,7 +36,7 @@ using Columns = std::optional<std::array<std::size_t, N>>;
 /// The columns of one file. A column that the file lacks is nothing; `q` has one place a joint.
 struct Layout {
   std::vector<Column> columns;
-  std::size_t set = 0;
+  std::optional<std::size_t> set;  ///< nothing: all rows are of the only one
   std::vector<std::size_t> q;
   std::vector<std::size_t> dq;  ///< one place a joint, or none at all
   std::optional<std::size_t> group, repeat, part, temperature, time;
@@ -41,17 +44,24 @@ struct Layout {
   Columns<3> position, normal;
   Columns<6> wrench;
   Columns<4> orientation;
+  Columns<3> turn;                    ///< in place of the orientation
+  std::string turn_axes;              ///< as TurnColumns has them
+  bool semicolons = false;            ///< between the cells: a comma in a number is a decimal one
   std::vector<std::size_t> measured;  ///< places of the columns that methods bring along
 
   std::optional<std::size_t> find(std::string_view name) const;
+  /// The same, or the first of the columns that stand for a quaternion's.
+  std::optional<std::size_t> filled_by(std::string_view name) const;
   /// Names of the columns that no format knows, in the order of the file.
   std::vector<std::string> ignored() const;
 };
 
-/// Reads the header of a file for a robot of `joints` joints. `measured` are the columns that the
-/// methods of its sets bring along. Refuses a file without `set` or a joint's reading, with
+/// Reads the header of a file for a robot's `joints`, which are found by their names, too.
+/// `measured` are the columns that the methods of its sets bring along. Refuses what `map` names
+/// and the file lacks or has twice, a file without `set` or a joint's reading, with
 /// readings of more joints, or with part of a vector.
-tl::expected<Layout, RowFault> read_header(Cells names, int joints,
-                                           const std::vector<MeasuredColumn>& measured);
+tl::expected<Layout, RowFault> read_header(Cells names, const std::vector<Joint>& joints,
+                                           const std::vector<MeasuredColumn>& measured,
+                                           const ColumnMap& map);
 
 }  // namespace selfcal

@@ -24,11 +24,25 @@ std::string count_of_cells(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " cell" : " cells");
 }
 
+/// Cuts off the beginning of `text` as far as the ends of `lines` lines, and counts them down.
+void pass_over(std::string_view& text, int& lines) {
+  for (; lines > 0 && !text.empty(); --lines) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) {
+      text = {};
+      return;
+    }
+    text.remove_prefix(end + 1);
+  }
+}
+
 class CsvReader {
  public:
-  CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row)
-      : path_(path), take_header_(header), take_row_(row) {
+  CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row,
+            const CsvForm& form)
+      : path_(path), take_header_(header), take_row_(row), lines_above_(form.header - 1) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
+    csv_set_delim(&parser_, static_cast<unsigned char>(form.separator));
     csv_set_blk_size(&parser_, kBlock);
   }
   CsvReader(const CsvReader&) = delete;
@@ -45,6 +59,7 @@ class CsvReader {
       if (*got == 0) break;
       std::string_view text(block.data(), *got);
       if (first && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+      pass_over(text, lines_above_);
       parse(text);
     }
     if (!fault_) finish();
@@ -121,7 +136,8 @@ class CsvReader {
       }
       names_.emplace_back(cells_[i]);
     }
-    if (names_.size() == 1 && names_.front().find(';') != std::string::npos) {
+    if (parser_.delim_char == CSV_COMMA && names_.size() == 1 &&
+        names_.front().find(';') != std::string::npos) {
       return complain({"expected commas between the columns, got semicolons"});
     }
     if (const auto fault = take_header_(cells_)) return complain(*fault);
@@ -137,6 +153,7 @@ class CsvReader {
   const std::filesystem::path& path_;
   const TakeHeader& take_header_;
   const TakeRow& take_row_;
+  int lines_above_ = 0;  // the header, to be passed over
   csv_parser parser_{};
   std::string buffer_;             // the row's cells, end to end
   std::vector<std::size_t> ends_;  // where each of them ends
@@ -152,8 +169,33 @@ class CsvReader {
 }  // namespace
 
 Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
-                      const TakeRow& row) {
-  return CsvReader(path, header, row).read();
+                      const TakeRow& row, const CsvForm& form) {
+  return CsvReader(path, header, row, form).read();
+}
+
+Result<std::optional<char>> separator_of(const std::filesystem::path& path, int header) {
+  Result<InputFile> file = InputFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  std::array<char, kBlock> block;
+  std::string line;
+  for (int above = header - 1; line.find('\n') == std::string::npos;) {
+    const Result<std::size_t> got = file->read(block);
+    if (!got) return tl::unexpected(got.error());
+    if (*got == 0 || line.size() > kMostBytesInRow) break;
+    std::string_view text(block.data(), *got);
+    pass_over(text, above);
+    line += text;
+  }
+  bool quoted = false, commas = false, semicolons = false;
+  for (const char each : line) {
+    if (each == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (each == '\n' || each == '\r') break;
+    commas = commas || each == ',';
+    semicolons = semicolons || each == ';';
+  }
+  if (commas && semicolons) return std::optional<char>();
+  return std::optional(semicolons ? ';' : ',');
 }
 
 }  // namespace selfcal

@@ -19,6 +19,7 @@ constexpr double kCoarsest = 1;            // m: no target is that coarse
 /// What dataset.yaml says beside the sets.
 struct Description {
   std::filesystem::path robot, observations;
+  ColumnMap map = {};
 };
 
 Description read_description(const Node& node, DataSet& data, Problems& problems) {
@@ -35,10 +36,12 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   const std::string dq = fields.text("dq", "velocity");
   if (dq != "velocity" && dq != "sign") fields.fail("dq", "velocity or sign");
   data.speeds = dq == "velocity";
+  description.map = read_column_map(fields, problems);
   const Node* sets = fields.node("sets");
   if (sets == nullptr) fields.fail("sets", "a mapping of sets");
   fields.refuse_unknown();
   if (sets != nullptr) data.sets = read_sets(*sets, problems);
+  description.map.sole_set = description.map.any() && data.sets.size() == 1;
   return description;
 }
 
@@ -88,7 +91,7 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   if (const std::string why = lacking_body(*loaded.robot, loaded.data.sets); !why.empty())
     return bad_input(file.string() + ": " + why);
   const Result<void> read = read_observations(folder / description.observations, *loaded.robot,
-                                              loaded.data, loaded.notices);
+                                              description.map, loaded.data, loaded.notices);
   if (!read) return tl::unexpected(read.error());
   if (const auto checked = check_references(loaded.data, file.string()); !checked)
     return tl::unexpected(checked.error());

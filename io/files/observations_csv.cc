@@ -40,25 +40,32 @@ Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
 class RowReader {
  public:
   /// `configurations`: rows need no measurement.
-  RowReader(const Robot& robot, DataSet& data, bool configurations)
+  RowReader(const Robot& robot, const ColumnMap& map, DataSet& data, bool configurations)
       : data_(data),
+        map_(map),
         configurations_(configurations),
-        joints_(static_cast<int>(robot.joints().size())),
+        joints_(robot.joints()),
         labels_(data.sets),
         numbers_(robot) {}
 
+  const ColumnMap& map() const { return map_; }
+  /// Of the file, before its header.
+  void begin(bool semicolons) { semicolons_ = semicolons; }
+
   std::optional<RowFault> take_header(Cells names) {
-    auto layout =
-        read_header(names, joints_,
-                    configurations_ ? std::vector<MeasuredColumn>() : measured_columns(data_.sets));
+    auto layout = read_header(
+        names, joints_,
+        configurations_ ? std::vector<MeasuredColumn>() : measured_columns(data_.sets), map_);
     if (!layout) return layout.error();
     layout_ = std::move(*layout);
+    layout_.semicolons = semicolons_;
     labels_.begin(layout_);
     numbers_.begin(layout_);
     for (const Set& set : data_.sets) {
       std::vector<Need>& needs = needs_.emplace_back();
       for (const std::string& column : set.method->columns())
-        if (!configurations_ || column == "group") needs.push_back({column, layout_.find(column)});
+        if (!configurations_ || column == "group")
+          needs.push_back({column, layout_.filled_by(column)});
       if (configurations_) continue;
       for (const MeasuredColumn& column : set.method->measures())
         needs.push_back({column.name, layout_.find(column.name), set.method->paired()});
@@ -144,7 +151,7 @@ class RowReader {
     };
     for (const std::size_t column : layout_.q) q_.push_back(numbers_.value(column));
     if (layout_.position) extend(position_, numbers_.position());
-    if (layout_.orientation) extend(orientation_, numbers_.orientation());
+    if (layout_.orientation || layout_.turn) extend(orientation_, numbers_.orientation());
     if (layout_.normal) extend(normal_, numbers_.normal());
     for (const std::size_t column : layout_.dq) velocity_.push_back(numbers_.value(column));
     if (layout_.wrench) extend(wrench_, numbers_.wrench());
@@ -163,8 +170,10 @@ class RowReader {
   }
 
   DataSet& data_;
+  const ColumnMap& map_;
   const bool configurations_;
-  const int joints_;
+  const std::vector<Joint>& joints_;
+  bool semicolons_ = false;
   Layout layout_;
   LabelReader labels_;
   NumberReader numbers_;
@@ -177,9 +186,17 @@ class RowReader {
 };
 
 Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
+  const ColumnMap& map = reader.map();
+  const auto separator = separator_of(path, map.header);
+  if (!separator) return tl::unexpected(separator.error());
+  if (!*separator && map.any())
+    return bad_input(path.string() + ": line " + std::to_string(map.header) +
+                     ": both commas and semicolons: put names with one of them between quotes");
+  const CsvForm form{map.header, separator->value_or(',')};
+  reader.begin(form.separator == ';');
   Result<void> read = read_csv(
       path, [&](Cells names) { return reader.take_header(names); },
-      [&](Cells cells, int row) { return reader.take_row(cells, row); });
+      [&](Cells cells, int row) { return reader.take_row(cells, row); }, form);
   if (!read) return read;
   if (const auto fault = reader.fault()) return bad_input(path.string() + ": " + *fault);
   return {};
@@ -187,9 +204,10 @@ Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
 
 }  // namespace
 
-Result<void> read_observations(const std::filesystem::path& path, const Robot& robot, DataSet& data,
+Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
+                               const ColumnMap& map, DataSet& data,
                                std::vector<std::string>& notices) {
-  RowReader reader(robot, data, false);
+  RowReader reader(robot, map, data, false);
   if (Result<void> done = read_rows(path, reader); !done) return done;
   for (const std::string& notice : reader.notices()) {
     notices.push_back(path.string() + ": " + notice);
@@ -200,7 +218,8 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
 
 Result<void> read_configurations(const std::filesystem::path& path, const Robot& robot,
                                  DataSet& data) {
-  RowReader reader(robot, data, true);
+  const ColumnMap map;
+  RowReader reader(robot, map, data, true);
   if (Result<void> done = read_rows(path, reader); !done) return done;
   reader.hand_over();
   return {};

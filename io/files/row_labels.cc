@@ -26,7 +26,8 @@ tl::expected<Labels, RowFault> LabelReader::read(Cells cells, int row) {
 }
 
 std::optional<RowFault> LabelReader::read_set(Cells cells, Labels& labels) const {
-  const std::string_view name = cells[layout_->set];
+  if (!layout_->set) return std::nullopt;
+  const std::string_view name = cells[*layout_->set];
   const auto found = set_index_.find(name);
   if (found != set_index_.end()) {
     labels.set = found->second;

@@ -24,15 +24,32 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
     const CellKind kind = layout_->columns[i].kind;
     values_[i] = std::numeric_limits<double>::quiet_NaN();
     if (kind == CellKind::ignored || kind == CellKind::text || cells[i].empty()) continue;
-    const std::optional<double> number = parse_number(cells[i]);
+    const std::optional<double> number =
+        layout_->semicolons ? number_in(cells[i]) : parse_number(cells[i]);
     if (!number) return RowFault{"expected a number, got '" + std::string(cells[i]) + "'", i};
-    values_[i] = *number;
+    if (commas_ && points_)
+      return RowFault{"decimal commas and decimal points in one file: '" + std::string(cells[i]) +
+                          "' may be thousands",
+                      i};
+    const Unit& unit = layout_->columns[i].unit;
+    values_[i] = *number * unit.factor + unit.offset;
     if (kind == CellKind::number) continue;
-    if (auto fault = metres_fault(*number)) return RowFault{std::move(*fault), i};
-    if (kind == CellKind::distance && *number < 0)
+    if (auto fault = metres_fault(values_[i])) return RowFault{std::move(*fault), i};
+    if (kind == CellKind::distance && values_[i] < 0)
       return RowFault{"a distance is never negative", i};
   }
   return std::nullopt;
+}
+
+/// Between semicolons the comma of a number is a decimal one.
+std::optional<double> NumberReader::number_in(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  points_ = points_ || cell.find('.') != std::string_view::npos;
+  if (comma == std::string_view::npos) return parse_number(cell);
+  commas_ = true;
+  with_point_ = cell;
+  with_point_[comma] = '.';
+  return parse_number(with_point_);
 }
 
 std::optional<RowFault> NumberReader::check_joints(int row) {
@@ -55,6 +72,7 @@ std::optional<RowFault> NumberReader::read_vectors() {
   if (auto fault = read_vector(layout_->position, position_)) return fault;
   if (auto fault = read_vector(layout_->normal, normal_)) return fault;
   if (auto fault = read_vector(layout_->orientation, orientation_)) return fault;
+  if (auto fault = read_turn()) return fault;
   if (auto fault = read_vector(layout_->wrench, wrench_)) return fault;
   std::optional<std::string> fault;
   if (layout_->normal && !std::isnan(normal_[0])) {
@@ -64,6 +82,17 @@ std::optional<RowFault> NumberReader::read_vectors() {
     fault = make_unit(orientation_, kQuaternionTolerance, "the quaternion qw qx qy qz");
   }
   if (fault) return RowFault{std::move(*fault)};
+  return std::nullopt;
+}
+
+std::optional<RowFault> NumberReader::read_turn() {
+  if (!layout_->turn) return std::nullopt;
+  std::array<double, 3> angles{};
+  if (auto fault = read_vector(layout_->turn, angles)) return fault;
+  orientation_.fill(angles[0]);
+  if (std::isnan(angles[0])) return std::nullopt;
+  const Eigen::Quaterniond turn(rotation_of(layout_->turn_axes, {angles[0], angles[1], angles[2]}));
+  orientation_ = {turn.w(), turn.x(), turn.y(), turn.z()};
   return std::nullopt;
 }
 

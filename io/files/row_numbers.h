@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/files/columns.h"
@@ -33,8 +34,10 @@ class NumberReader {
 
  private:
   std::optional<RowFault> read_cells(Cells cells);
+  std::optional<double> number_in(std::string_view cell);
   std::optional<RowFault> check_joints(int row);
   std::optional<RowFault> read_vectors();
+  std::optional<RowFault> read_turn();
   template <std::size_t N>
   std::optional<RowFault> read_vector(const Columns<N>& places, std::array<double, N>& vector);
 
@@ -44,6 +47,8 @@ class NumberReader {
   std::array<double, 3> position_{}, normal_{};
   std::array<double, 4> orientation_{};
   std::array<double, 6> wrench_{};
+  std::string with_point_;                // a number with a decimal comma, rewritten
+  bool commas_ = false, points_ = false;  // seen in numbers between semicolons
   int outside_ = 0;
   std::string first_outside_;
 };
