@@ -57,9 +57,32 @@ Result<std::string> from_mjcf(const ConvertArguments& arguments) {
                     arguments);
 }
 
-/// The robot file that `text`, a URDF, a model for MuJoCo or a robot file, comes to.
+/// The kinematics file of Universal Robots' driver, which one key tells.
+bool is_ur_kinematics(const std::string& text, const ConvertArguments& arguments) {
+  const auto node = parse_yaml(text, arguments.file);
+  return node && node->find("kinematics") && !node->find("frames");
+}
+
+/// Its joints have the names that the driver's readings have.
+Result<std::string> from_ur(const std::string& text, const ConvertArguments& arguments) {
+  static constexpr const char* kReadings[] = {"shoulder_pan_joint", "shoulder_lift_joint",
+                                              "elbow_joint",        "wrist_1_joint",
+                                              "wrist_2_joint",      "wrist_3_joint"};
+  auto read = read_ur_kinematics(text, arguments.file);
+  if (!read) return tl::unexpected(read.error());
+  for (std::size_t j = 0; j < read->chain.joints.size(); ++j)
+    read->chain.joints[j].name = kReadings[j];
+  note(
+      "the world is base_link_inertia of the driver, the end the flange wrist_3; the file has no "
+      "limits, masses and tool");
+  return chain_file(read->chain, "Universal Robots' kinematics " + read->hash, arguments);
+}
+
+/// The robot file that `text` comes to: a URDF, a model for MuJoCo, Universal Robots' kinematics or
+/// a robot file.
 Result<std::string> as_robot_file(const std::string& text, const ConvertArguments& arguments) {
   if (!looks_like_xml(text)) {
+    if (is_ur_kinematics(text, arguments)) return from_ur(text, arguments);
     const auto robot = robot_of(text, arguments.file);
     if (!robot) return tl::unexpected(robot.error());
     return robot_text(**robot, values(**robot));
@@ -238,10 +261,13 @@ int convert(const ConvertArguments& arguments) {
 
 void add_robot_convert(CLI::App& robot, int& status) {
   auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = robot.add_subcommand(
-      "convert",
-      "A robot file from a URDF or a model for MuJoCo, or a calibrated robot for another program");
-  command->add_option("FILE", arguments->file, "URDF, model for MuJoCo or NAME.robot.yaml")
+  CLI::App* command = robot.add_subcommand("convert",
+                                           "A robot file from a URDF, a model for MuJoCo or UR "
+                                           "kinematics, or a calibrated robot for another program");
+  command
+      ->add_option("FILE", arguments->file,
+                   "URDF, model for MuJoCo, kinematics of Universal Robots' driver or "
+                   "NAME.robot.yaml")
       ->required();
   command->add_option("--base", arguments->ends.base,
                       "Link of the URDF that the chain begins at (default: the root)");

@@ -179,6 +179,21 @@ frames:
   - {name: j6, joint: revolute, alpha: -1.5702, r: 0.1168, nominal: {alpha: -pi/2, r: 0.11655}}
 )";
 
+/// The product of the poses of a kinematics file, each turned about its z.
+Eigen::Isometry3d ur_pose(const YAML::Node& file, const Eigen::VectorXd& q) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  int j = 0;
+  for (const char* name : {"shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"}) {
+    const auto at = [&](const char* key) { return file[name][key].as<double>(); };
+    X.translate(Eigen::Vector3d(at("x"), at("y"), at("z")));
+    X.rotate(Eigen::AngleAxisd(at("yaw"), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(at("pitch"), Eigen::Vector3d::UnitY()) *
+             Eigen::AngleAxisd(at("roll"), Eigen::Vector3d::UnitX()));
+    X.rotate(Eigen::AngleAxisd(q[j++], Eigen::Vector3d::UnitZ()));
+  }
+  return X;
+}
+
 TEST(UrKinematics, PutsWrist3WhereTheCalibratedRobotHasItAndKeepsTheHash) {
   const auto original = read_ur_kinematics(kUr, "ur.yaml");
   ASSERT_TRUE(original) << original.error().what;
@@ -192,21 +207,41 @@ TEST(UrKinematics, PutsWrist3WhereTheCalibratedRobotHasItAndKeepsTheHash) {
   PoseGap gap;
   for (int i = 0; i < 50; ++i) {
     Eigen::VectorXd q(6);
-    Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-    int j = 0;
-    for (const char* name : {"shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"}) {
-      const auto at = [&](const char* key) { return file[name][key].as<double>(); };
-      q[j] = uniform(random);
-      X.translate(Eigen::Vector3d(at("x"), at("y"), at("z")));
-      X.rotate(Eigen::AngleAxisd(at("yaw"), Eigen::Vector3d::UnitZ()) *
-               Eigen::AngleAxisd(at("pitch"), Eigen::Vector3d::UnitY()) *
-               Eigen::AngleAxisd(at("roll"), Eigen::Vector3d::UnitX()));
-      X.rotate(Eigen::AngleAxisd(q[j++], Eigen::Vector3d::UnitZ()));
-    }
-    gap.add(X, pose_of(locate(**robot, values(**robot), q)));
+    for (double& each : q) each = uniform(random);
+    gap.add(ur_pose(file, q), pose_of(locate(**robot, values(**robot), q)));
   }
   EXPECT_LT(gap.length, kAsGood);
   EXPECT_LT(gap.angle, kAsGood);
+}
+
+TEST(UrKinematics, AsARobotFileHasWrist3WhereItsPosesHaveIt) {
+  // As a controller's calibration is: elbow and shoulder parallel to a few mrad only.
+  const std::string calibrated = R"(kinematics:
+  shoulder: {x: 0, y: 0, z: 0.1809, roll: 0, pitch: 0, yaw: 2.1e-05}
+  upper_arm: {x: 0.0002, y: 0, z: 0, roll: 1.5712, pitch: 0, yaw: -3.0e-05}
+  forearm: {x: -0.6131, y: 0, z: 0, roll: 3.13854, pitch: 3.14008, yaw: 3.14148}
+  wrist_1: {x: -0.5717, y: 0.00042, z: 0.1739, roll: 0.00241, pitch: 0.00107, yaw: 1.1e-05}
+  wrist_2: {x: 4.4e-05, y: -0.1199, z: 0.00011, roll: 1.5699, pitch: 0, yaw: 2.3e-05}
+  wrist_3: {x: -7.9e-05, y: 0.1164, z: -0.00023, roll: -1.5705, pitch: -3.14159, yaw: 3.14155}
+  hash: calib_1
+)";
+  for (const std::string& text : {std::string(kUr), calibrated}) {
+    const auto read = read_ur_kinematics(text, "ur.yaml");
+    ASSERT_TRUE(read) << read.error().what;
+    const auto robot = robot_of(write_yaml(serial::write(frames_of(read->chain))), "ur.robot.yaml");
+    ASSERT_TRUE(robot) << robot.error().what;
+    const YAML::Node file = YAML::Load(text)["kinematics"];
+    std::mt19937_64 random(14);
+    std::uniform_real_distribution<double> uniform(-3, 3);
+    PoseGap gap;
+    for (int i = 0; i < 50; ++i) {
+      Eigen::VectorXd q(6);
+      for (double& each : q) each = uniform(random);
+      gap.add(ur_pose(file, q), pose_of(locate(**robot, values(**robot), q)));
+    }
+    EXPECT_LT(gap.length, kAsGood);
+    EXPECT_LT(gap.angle, kAsGood);
+  }
 }
 
 TEST(UrKinematics, IsRefusedWithTheLine) {
