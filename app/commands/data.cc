@@ -3,59 +3,13 @@
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/file_slips.h"
 #include "app/report/format.h"
-#include "constraints/estimation/first_look.h"
-#include "io/files/data_set_file.h"
-#include "io/files/robot_file.h"
-#include "io/files/yaml.h"
 
 namespace selfcal {
 namespace {
 
 constexpr std::size_t kShown = 3;
-
-/// The file's robot with `change` made to its tree; null where that is no robot.
-std::shared_ptr<const Robot> changed_robot(const Node& file, const auto& change) {
-  Node node = file;
-  change(node);
-  auto robot = robot_of(write_yaml(node), "robot");
-  return robot ? std::shared_ptr<const Robot>(*std::move(robot)) : nullptr;
-}
-
-/// Its table of numbers may be meant by the other convention; its tool may be missing.
-std::vector<Slip> slips_of_robot(const Node& file) {
-  std::vector<Slip> slips;
-  const Node* kind = file.find("kind");
-  if (!kind || kind->text != "serial") return slips;
-  const Node* convention = file.find("convention");
-  const bool standard = convention && convention->text == "standard";
-  const auto other = changed_robot(file, [&](Node& node) {
-    node = node.without({"convention"});
-    if (!standard) node.set("convention", Node::of(std::string("standard")));
-  });
-  if (other)
-    slips.push_back({standard
-                         ? "the table is modified DH and no standard one (convention: modified)"
-                         : "the table is standard DH (convention: standard)",
-                     other,
-                     {}});
-  const Node* frames = file.find("frames");
-  const Node* last =
-      frames && !frames->items.empty() ? frames->items.back().find("joint") : nullptr;
-  if (!last || last->text == "fixed") return slips;
-  const auto with_tool = changed_robot(file, [](Node& node) {
-    Node tool = Node::map();
-    tool.set("name", Node::of(std::string("tool_frame")))
-        .set("joint", Node::of(std::string("fixed")))
-        .set("xyz", Node::of(std::vector<double>{0, 0, 0}));
-    for (std::size_t i = 0; i < node.keys.size(); ++i)
-      if (node.keys[i] == "frames") node.items[i].items.push_back(tool);
-  });
-  if (with_tool)
-    slips.push_back(
-        {"the robot file lacks a tool frame (a fixed one at its end, xyz)", with_tool, {}});
-  return slips;
-}
 
 std::string size_of_misfit(const FirstLook& look, double left) {
   return look.lengths ? mm(left) + " mm" : mm(left) + " mrad";
@@ -84,12 +38,8 @@ int data_check(const std::string& folder) {
   const auto loaded = load_data_set(folder);
   if (!loaded) return tell(loaded.error());
   print_notices(*loaded);
-  const std::filesystem::path given = folder;
-  const std::filesystem::path base =
-      std::filesystem::is_directory(given) ? given : given.parent_path();
-  const auto file = read_yaml(base / loaded->files[1]);
-  if (!file) return tell(file.error());
-  return print_first_look(first_look(loaded->robot, loaded->data, slips_of_robot(*file)));
+  const auto look = look_at_files(folder, *loaded, loaded->robot);
+  return look ? print_first_look(*look) : tell(look.error());
 }
 
 }  // namespace

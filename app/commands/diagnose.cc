@@ -2,10 +2,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/file_slips.h"
 #include "app/commands/support/simulator.h"
 #include "app/report/diagnosis_json.h"
 #include "app/report/diagnosis_summary.h"
@@ -78,12 +80,26 @@ Result<Inputs> load(const DiagnoseArguments& arguments) {
   return inputs;
 }
 
+/// Where the maker's robot is far from the rows, says first what is likely wrong with the files.
+void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosis& diagnosis) {
+  const std::string wrong =
+      likely_wrong(path, inputs.measured, inputs.robot,
+                   {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values});
+  if (wrong.empty()) return;
+  diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong);
+  NextStep step;
+  step.what = wrong;
+  step.probability_after = std::numeric_limits<double>::quiet_NaN();
+  diagnosis.next.insert(diagnosis.next.begin(), std::move(step));
+}
+
 Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) {
   const DataSet& data = inputs.measured.data;
   ProgressLine line;
   Findings found{inputs.measured.name, diagnose(inputs.robot, data, {}, shown_on(line)), {}, {}};
   if (!found.diagnosis.problem.empty())
     return bad_input(arguments.data_set + ": " + found.diagnosis.problem);
+  look_at_files_first(arguments.data_set, inputs, found.diagnosis);
   if (inputs.before)
     found.since = {inputs.before->name, compare(inputs.robot, inputs.before->data, data,
                                                 Between::sessions, {}, shown_on(line))};

@@ -8,6 +8,7 @@
 
 #include "app/commands/subcommand.h"
 #include "app/commands/support/circle_robot.h"
+#include "app/commands/support/file_slips.h"
 #include "app/report/format.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
@@ -80,6 +81,17 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   return corrected;
 }
 
+/// Where the maker's robot is far from the rows, says first what is likely wrong with the files.
+void look_first(const std::string& path, const LoadedDataSet& loaded,
+                const std::shared_ptr<const Robot>& as_filed, const Robot& robot,
+                Solution& solution) {
+  if (solution.sets.empty()) return;
+  const Figures& before = solution.residual.fit;
+  const std::string wrong = likely_wrong(
+      path, loaded, as_filed, {before.rms_before, !before.angle_alone, robot, solution.values});
+  if (!wrong.empty()) solution.warnings.insert(solution.warnings.begin(), wrong);
+}
+
 int identify_command(const IdentifyArguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
   if (!loaded) return tell(loaded.error());
@@ -91,7 +103,8 @@ int identify_command(const IdentifyArguments& arguments) {
     circles = std::move(*found);
     loaded->robot = circles->robot;
   }
-  const auto model = with_effects(std::move(loaded->robot), loaded->data, arguments);
+  const std::shared_ptr<const Robot> as_filed = loaded->robot;
+  const auto model = with_effects(as_filed, loaded->data, arguments);
   if (!model) return wrong_usage(model.error());
   const Robot& robot = **model;
   Options options = arguments.options;
@@ -112,7 +125,10 @@ int identify_command(const IdentifyArguments& arguments) {
     solution = std::move(found.solution);
     loaded->data = std::move(found.data);
   }
-  if (circles) compare_with_file(*circles, solution);
+  if (circles)
+    compare_with_file(*circles, solution);
+  else
+    look_first(arguments.data_set, *loaded, as_filed, robot, solution);
   const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
   if (arguments.json)
     std::printf("%s\n", json.c_str());

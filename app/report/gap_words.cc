@@ -89,6 +89,7 @@ std::string next_in_words(const NextStep& step) {
   std::string list;
   for (const std::string& each : step.separates)
     if (each != kUnknown) list += (list.empty() ? "" : " or ") + each;
+  if (list.empty()) return "";
   if (std::isnan(step.probability_after)) return " (tells " + list + ")";
   return printed(" (then %.0f %% sure, of ", 100 * step.probability_after) + list + ")";
 }

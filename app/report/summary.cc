@@ -151,6 +151,8 @@ std::string scale_line(const ScaleLength& each, bool alone) {
 }  // namespace
 
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
+  for (const std::string& warning : solution.warnings)
+    if (warning.starts_with(kFilesFirst)) return {warning};
   std::vector<std::string> steps;
   if (!solution.converged)
     steps.push_back("Not converged: " + solution.stop_reason +

@@ -25,6 +25,7 @@ constexpr double kWithin = 0.1;       // of what tolerances leave: less is not l
 constexpr double kLeastGross = 2e-3;  // m or rad: less is no slip
 constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
 constexpr int kFitSteps = 60;
+constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
 
 struct Misfit {
   double left = 0, tool_moved = 0;
@@ -60,11 +61,7 @@ Misfit misfit(const Robot& robot, const DataSet& data, bool tool_moves) {
   result.lengths = !lengths.empty();
   if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
   if (tool_moves) result.angles = gross_angles(robot, data, judged, judged);
-  double squares = 0;
-  for (size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].part == Part::tool && parameters[i].quantity == Quantity::length)
-      squares += std::pow(placed.state.xi[static_cast<Eigen::Index>(i)] - parameters[i].nominal, 2);
-  result.tool_moved = std::sqrt(squares);
+  result.tool_moved = tool_moved(robot, placed.state.xi);
   return result;
 }
 
@@ -104,11 +101,31 @@ std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
       if (joints[j].quantity == Quantity::angle) o.q.col(j) *= std::numbers::pi / 180;
   });
   if (rows.position.rows() == 0) return list;
-  add("the measured positions are millimetres", [](Observations& o) { o.position *= 1e-3; });
+  static constexpr std::pair<const char*, double> kUnits[] = {
+      {"micrometres", 1e-6}, {"millimetres", 1e-3}, {"centimetres", 1e-2}, {"inches", 0.0254}};
+  for (const auto& [unit, metres] : kUnits)
+    add(std::string("the measured positions are ") + unit,
+        [metres](Observations& o) { o.position *= metres; });
   // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
   add("two of the columns x, y and z are exchanged, or one has the other sign",
       [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
   return list;
+}
+
+/// The data set without most rows of a large set: every so manieth one, or where rows belong to
+/// groups, and each may be measured from the one before, the first ones.
+DataSet part_of(const DataSet& data) {
+  std::vector<int> count(data.sets.size(), 0), seen = count, kept;
+  for (const int set : data.rows.set) ++count[set];
+  for (int row = 0; row < data.rows.rows(); ++row) {
+    const int set = data.rows.set[row], place = seen[set]++;
+    const int stride = (count[set] + kMostLookedAt - 1) / kMostLookedAt;
+    if (data.rows.group[row] >= 0 ? place < kMostLookedAt : place % stride == 0)
+      kept.push_back(row);
+  }
+  DataSet few = data;
+  if (static_cast<int>(kept.size()) < data.rows.rows()) few.rows = taken(data.rows, kept);
+  return few;
 }
 
 /// What each slip leaves, best first.
@@ -129,9 +146,23 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
 
 }  // namespace
 
-FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+double gross_misfit(const Robot& robot, bool lengths) {
+  return kGross * expected_misfit(robot, lengths);
+}
+
+double tool_moved(const Robot& robot, const Eigen::VectorXd& values) {
+  const auto& parameters = robot.parameters();
+  double squares = 0;
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].part == Part::tool && parameters[i].quantity == Quantity::length)
+      squares += std::pow(values[static_cast<Eigen::Index>(i)] - parameters[i].nominal, 2);
+  return std::sqrt(squares);
+}
+
+FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& whole,
                      const std::vector<Slip>& others) {
   FirstLook look;
+  const DataSet data = part_of(whole);
   const Misfit given = misfit(*robot, data, true);
   if (!given.any) return look;
   look.lengths = given.lengths;
@@ -141,7 +172,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& d
   look.tool_held = misfit(*robot, data, false).left;
   if (!given.angles.empty()) look.found = given.angles.front();
   const double least = std::max(kLeastGross, kWithin * look.expected);
-  const double gross = kGross * look.expected;
+  const double gross = gross_misfit(*robot, given.lengths);
   if (look.left < least && look.tool_held < gross) return look;
   look.tried = tried(*robot, data, others);
   const double best = look.tried.empty() ? look.left : look.tried.front().left;

@@ -1,0 +1,91 @@
+#include "app/commands/support/file_slips.h"
+
+#include <filesystem>
+
+#include "app/report/format.h"
+#include "app/report/summary.h"
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+
+namespace selfcal {
+namespace {
+
+/// The file's robot with `change` made to its tree; null where that is no robot.
+std::shared_ptr<const Robot> changed_robot(const Node& file, const auto& change) {
+  Node node = file;
+  change(node);
+  auto robot = robot_of(write_yaml(node), "robot");
+  return robot ? std::shared_ptr<const Robot>(*std::move(robot)) : nullptr;
+}
+
+/// Its table of numbers may be meant by the other convention; its tool may be missing.
+std::vector<Slip> slips_of_robot(const Node& file) {
+  std::vector<Slip> slips;
+  const Node* kind = file.find("kind");
+  if (!kind || kind->text != "serial") return slips;
+  const Node* convention = file.find("convention");
+  const bool standard = convention && convention->text == "standard";
+  const auto other = changed_robot(file, [&](Node& node) {
+    node = node.without({"convention"});
+    if (!standard) node.set("convention", Node::of(std::string("standard")));
+  });
+  if (other)
+    slips.push_back({standard
+                         ? "the table is modified DH and no standard one (convention: modified)"
+                         : "the table is standard DH (convention: standard)",
+                     other,
+                     {}});
+  const Node* frames = file.find("frames");
+  const Node* last =
+      frames && !frames->items.empty() ? frames->items.back().find("joint") : nullptr;
+  if (!last || last->text == "fixed") return slips;
+  const auto with_tool = changed_robot(file, [](Node& node) {
+    Node tool = Node::map();
+    tool.set("name", Node::of(std::string("tool_frame")))
+        .set("joint", Node::of(std::string("fixed")))
+        .set("xyz", Node::of(std::vector<double>{0, 0, 0}));
+    for (std::size_t i = 0; i < node.keys.size(); ++i)
+      if (node.keys[i] == "frames") node.items[i].items.push_back(tool);
+  });
+  if (with_tool)
+    slips.push_back(
+        {"the robot file lacks a tool frame (a fixed one at its end, xyz)", with_tool, {}});
+  return slips;
+}
+
+}  // namespace
+
+Result<FirstLook> look_at_files(const std::string& path, const LoadedDataSet& loaded,
+                                const std::shared_ptr<const Robot>& robot) {
+  const std::filesystem::path given = path;
+  const std::filesystem::path folder =
+      std::filesystem::is_directory(given) ? given : given.parent_path();
+  const auto file = read_yaml(folder / loaded.files[1]);
+  if (!file) return tl::unexpected(file.error());
+  return first_look(robot, loaded.data, slips_of_robot(*file));
+}
+
+std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
+                         const std::shared_ptr<const Robot>& robot, const NominalFit& nominal) {
+  const double gross = gross_misfit(*robot, nominal.lengths);
+  const double tool = nominal.lengths ? tool_moved(nominal.model, nominal.values) : 0;
+  if (nominal.rms <= gross && tool <= gross) return {};
+  const auto look = look_at_files(path, loaded, robot);
+  if (!look || look->found.empty()) return {};
+  const char* unit = look->lengths ? "mm" : "mrad";
+  std::string text = std::string(kFilesFirst) + look->found;
+  if (look->explained)
+    text += printed(" (half the rows are off by more than %.3g %s, without this by %.3g %s)",
+                    1e3 * look->left, unit, 1e3 * look->tried.front().left, unit);
+  else if (look->tool)
+    text += printed(" (the rows put the tool %.3g mm from where its file has it)",
+                    1e3 * look->tool_moved);
+  else
+    text += printed(
+        " (half the rows are off by more than %.3g %s, the maker's tolerances leave "
+        "about %.3g %s)",
+        1e3 * look->left, unit, 1e3 * look->expected, unit);
+  return text + ".";
+}
+
+}  // namespace selfcal

@@ -1,0 +1,32 @@
+// What is likely wrong with the files of a data set, when the maker's robot is far from its rows.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <string>
+
+#include "constraints/estimation/first_look.h"
+#include "io/files/data_set_file.h"
+
+namespace selfcal {
+
+/// A first look at the data set that was loaded from `path`, with the slips of its robot's file
+/// (the other convention, a tool frame that is missing) beside those of its rows. `robot` is the
+/// one that its file has. Fails when the file cannot be read again.
+Result<FirstLook> look_at_files(const std::string& path, const LoadedDataSet& loaded,
+                                const std::shared_ptr<const Robot>& robot);
+
+/// What a fit to all rows found: of the maker's robot, and of the tool.
+struct NominalFit {
+  double rms = 0;       ///< of the robot as its maker says, base and tool placed (m or rad)
+  bool lengths = true;  ///< it is one of lengths
+  const Robot& model;   ///< whose parameters `values` are
+  const Eigen::VectorXd& values;
+};
+
+/// The same look as a sentence for somebody who asked for something else: empty where nothing is
+/// likely wrong. It costs nothing where `nominal` is not gross.
+std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
+                         const std::shared_ptr<const Robot>& robot, const NominalFit& nominal);
+
+}  // namespace selfcal
