@@ -17,6 +17,7 @@ namespace selfcal {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kTable = R"(robot: arm
 kind: serial
@@ -187,6 +188,58 @@ TEST_F(DataCheck, SaysThatTheRowsAreOfAnotherRobot) {
   change_robot("-0.6127", "-0.425");
   change_robot("-0.57155", "-0.39225");
   expect_likely_wrong("none of the usual slips explains the rows");
+}
+
+struct MadeSlip {
+  const char* name;
+  std::function<void()> make;
+  const char* said;
+};
+
+TEST_F(DataCheck, IsTheFirstAdviceOfAnIdentification) {
+  const auto scaled = [this](const Cells& columns, double factor) {
+    change_rows(columns, [factor](auto& cells) {
+      for (double& each : cells) each *= factor;
+    });
+  };
+  const MadeSlip slips[] = {
+      {"sign", [&] { scaled({"q3"}, -1); }, "j3 is read with the other sign"},
+      {"gear", [&] { change_robot("r: 0.17415", "gear: -1, r: 0.17415"); },
+       "j4 is read with the other sign (or its gear turns the other way)"},
+      {"joints",
+       [&] {
+         change_rows({"q2", "q3"}, [](auto& q) { std::swap(q[0], q[1]); });
+       },
+       "the columns of j2 and j3 are exchanged"},
+      {"places",
+       [&] {
+         change_rows({"x", "y"}, [](auto& p) { std::swap(p[0], p[1]); });
+       },
+       "two of the columns x, y and z are exchanged"},
+      {"inches",
+       [&] {
+         scaled({"x", "y", "z"}, 1 / 0.0254);
+       },
+       "the measured positions are inches"},
+      {"convention", [&] { change_robot("convention: standard\n", ""); },
+       "the table is standard DH"},
+      {"tool", [&] { change_robot("xyz: [0.03, 0.02, 0.15]", "xyz: [0, 0, 0]"); },
+       "the tool's frame is missing"},
+      {"robot", [&] { change_robot("-0.6127", "-0.425"); },
+       "none of the usual slips explains the rows"},
+  };
+  for (const MadeSlip& slip : slips) {
+    ASSERT_NO_FATAL_FAILURE(simulate(kTable));
+    slip.make();
+    const Ran ran = run_selfcal("identify " + (folder_ / "data").string());
+    EXPECT_THAT(ran.out, HasSubstr(std::string("\nNext\n  Look at the files first: ") + slip.said))
+        << slip.name;
+  }
+}
+
+TEST_F(DataCheck, IsNoAdviceWhereNothingIsWrong) {
+  const Ran ran = run_selfcal("identify " + (folder_ / "data").string());
+  EXPECT_THAT(ran.out, Not(HasSubstr("Look at the files")));
 }
 
 TEST(DataCheckOfRealRobots, AccusesNoSoundSet) {

@@ -76,7 +76,8 @@ TEST_F(DataSetFile, RefusesImpossibleNoise) {
 TEST_F(DataSetFile, RefusesUnknownKeysEverywhere) {
   head += "observation: x.csv\n";
   EXPECT_EQ(error(kRow),
-            "dataset.yaml:3: data set: unknown key 'observation'; known: dq, observations, robot, "
+            "dataset.yaml:3: data set: unknown key 'observation'; known: columns, dq, header, "
+            "observations, orientation, robot, "
             "sets, target, workspace");
   head = "robot: arm.robot.yaml\nobservations: observations.csv\n";
   sets = only("tracker: {method: position, nois: 2.0e-5}");
