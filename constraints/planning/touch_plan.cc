@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
 constexpr int kPostures = 4;        // of the robot at one point of a surface
-constexpr int kTries = 2;           // blocks of starts before a point of a surface is given up
+constexpr int kPointTries = 2;      // blocks of starts before a point of a surface is given up
 constexpr int kPoses = 500;         // at which the end position is judged
 constexpr unsigned long long kSeed = 1;
 constexpr double kEdge = 0.02;     // of a patch, kept free at its edge
@@ -54,7 +54,7 @@ class Candidates {
     request.together = target.places.empty();
     if (target.plane) {
       request.rows = request.rows_per_group = kPostures;
-      request.tries = kTries;
+      request.tries = kPointTries;
       for (int point = 0; point < rows; point += kPostures) {
         request.places = {{Eigen::Matrix3d::Identity(), point_of(target, random)}};
         take(target, obstacle, shared_point(), request, random, usable);
