@@ -53,9 +53,8 @@ void reflect_four(const double* a, double first, double scale, size_t rows, doub
     s2 = hn::MulAdd(v, hn::LoadU(d, A[2] + i), s2);
     s3 = hn::MulAdd(v, hn::LoadU(d, A[3] + i), s3);
   }
-  double w[4] = {
-      hn::GetLane(hn::SumOfLanes(d, s0)), hn::GetLane(hn::SumOfLanes(d, s1)),
-      hn::GetLane(hn::SumOfLanes(d, s2)), hn::GetLane(hn::SumOfLanes(d, s3))};
+  double w[4] = {hn::GetLane(hn::SumOfLanes(d, s0)), hn::GetLane(hn::SumOfLanes(d, s1)),
+                 hn::GetLane(hn::SumOfLanes(d, s2)), hn::GetLane(hn::SumOfLanes(d, s3))};
   for (int k = 0; k < 4; ++k) {
     w[k] = scale * (w[k] + first * *R[k]);
     *R[k] -= w[k] * first;
