@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kinematics/kernels/kernels.cc"
@@ -92,7 +93,9 @@ void append_rows(double* R, size_t columns, double* A, size_t rows, size_t strid
       squares = hn::MulAdd(v, v, squares);
     }
     const double below = hn::GetLane(hn::SumOfLanes(d, squares));
-    if (below == 0) continue;
+    // Columns that depend on each other leave what is left of what is left: beyond the normal
+    // numbers the reflection would be infinite.
+    if (below < std::numeric_limits<double>::min()) continue;
     double& diagonal = R[j * columns + j];
     const double reflected = -std::copysign(std::sqrt(diagonal * diagonal + below), diagonal);
     const double first = diagonal - reflected;

@@ -27,8 +27,8 @@ void add_products(const LaneProduct* products, std::size_t terms, std::size_t la
 
 /// R of [R; A] by Householder reflections (Golub and Van Loan 5.2), R upper triangular before and
 /// after, `columns` x `columns`, by columns; A of `rows` rows (a multiple of kMultiple), by columns
-/// that begin `stride` numbers apart, is lost. The diagonal of a column that A has no part of stays
-/// as it is.
+/// that begin `stride` numbers apart, is lost. The diagonal of a column that A has no part of (or
+/// of less than 1e-154) stays as it is.
 void append_rows(double* R, std::size_t columns, double* A, std::size_t rows, std::size_t stride);
 
 }  // namespace selfcal::kernels

@@ -96,6 +96,27 @@ TEST(Kernels, AppendRowsAsAHouseholderDecompositionOfAllDoes) {
   });
 }
 
+TEST(Kernels, StayFiniteWhereColumnsDependOnEachOther) {
+  on_every_width([] {
+    // Each elimination leaves a rounding of the one before: 24 of them end below the normal
+    // numbers.
+    const Eigen::Index columns = 24;
+    Eigen::MatrixXd R = Eigen::MatrixXd::Zero(columns, columns);
+    Eigen::MatrixXd A = random_numbers(64, 1, 7).replicate(1, columns);
+    for (Eigen::Index c = 1; c < columns; ++c) A.col(c) *= 1 / (3.0 + static_cast<double>(c));
+    for (int block = 0; block < 20; ++block) {
+      Eigen::MatrixXd rows = A * (1 + 0.1 * block);
+      kernels::append_rows(R.data(), 24, rows.data(), 64, 64);
+      ASSERT_TRUE(R.allFinite()) << block;
+    }
+    for (const double tiny : {1e-150, 1e-158, 1e-161, 1e-163, 1e-300}) {
+      Eigen::MatrixXd small = tiny * random_numbers(64, 3, 8), factor = Eigen::MatrixXd::Zero(3, 3);
+      kernels::append_rows(factor.data(), 3, small.data(), 64, 64);
+      EXPECT_TRUE(factor.allFinite()) << tiny;
+    }
+  });
+}
+
 TEST(Kernels, LeaveTheFactorAsItIsWhereThereAreNoRows) {
   Eigen::MatrixXd R = Eigen::MatrixXd::Identity(3, 3), A = Eigen::MatrixXd::Zero(8, 3);
   kernels::append_rows(R.data(), 3, A.data(), 8, 8);
