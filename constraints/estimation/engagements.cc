@@ -86,9 +86,8 @@ class Splitter {
       solution.warnings.push_back(slip_words(slip) +
                                   ": the rows after it have a direction of their own");
     for (const std::string& name : solution.locks_put_aside)
-      solution.warnings.push_back("set " + name + ": its lock slipped more than " +
-                                  std::to_string(kMostSlips) +
-                                  " times: all its rows are put aside");
+      solution.warnings.push_back("set " + name +
+                                  ": its lock slipped again and again: all its rows are put aside");
   }
 
   /// Between the two directions that were fitted in the end; the step in the residuals falls short

@@ -6,7 +6,7 @@
 namespace selfcal {
 
 /// Slips of one engagement that are believed; beyond them its rows are put aside.
-inline constexpr int kMostSlips = 2;
+inline constexpr int kMostSlips = 1;
 
 struct Engagements {
   Solution solution;  ///< of the rows kept, with all slips; rows counted as in `data`
