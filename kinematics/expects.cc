@@ -5,10 +5,9 @@
 
 namespace selfcal {
 
-void broken(std::string_view what, const std::source_location& where) {
-  std::fprintf(stderr, "selfcal: a bug: expected that %.*s (%s:%u, %s)\n",
-               static_cast<int>(what.size()), what.data(), where.file_name(), where.line(),
-               where.function_name());
+void broken(std::string_view what, const SourcePlace& where) {
+  std::fprintf(stderr, "selfcal: a bug: expected that %.*s (%s:%d, %s)\n",
+               static_cast<int>(what.size()), what.data(), where.file, where.line, where.function);
   std::abort();
 }
 

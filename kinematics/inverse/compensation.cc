@@ -41,7 +41,7 @@ std::string_view to_string(Reach reach) {
     case Reach::singular:
       return "singular";
   }
-  broken("a known status", std::source_location::current());
+  broken("a known status");
 }
 
 Compensation::Compensation(std::shared_ptr<const Robot> nominal,
