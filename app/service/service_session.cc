@@ -63,8 +63,10 @@ void Service::begin_plan(const std::string& why) {
           : config_.targets;
   auto plan = std::make_shared<TouchPlan>();
   computation_.start([plan, robot = models_.active(), sets = config_.sets, targets, options,
-                      obstacles = config_.obstacles](const Computation::Tell& tell) {
-    *plan = plan_touches(*robot, values(*robot), sets, targets, obstacles, options, tell);
+                      obstacles = config_.obstacles,
+                      workspace = config_.workspace](const Computation::Tell& tell) {
+    *plan =
+        plan_touches(*robot, values(*robot), sets, targets, obstacles, workspace, options, tell);
     return std::string();
   });
   when_computed_ = [this, plan, record](const std::string& failure) {

@@ -7,7 +7,7 @@
 
 #include "constraints/equations/equations.h"
 #include "constraints/estimation/engagements.h"
-#include "constraints/planning/d_optimal.h"
+#include "constraints/planning/touch_choice.h"
 #include "io/files/file.h"
 #include "io/files/yaml.h"
 

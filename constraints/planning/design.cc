@@ -109,9 +109,12 @@ std::vector<std::string_view> criterion_names() {
   return names;
 }
 
-Design::Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective)
-    : objective_(std::move(objective)), in_(candidates.size(), 0) {
+Design::Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective,
+               std::vector<int> kinds)
+    : objective_(std::move(objective)), in_(candidates.size(), 0), kinds_(std::move(kinds)) {
   expects(!candidates.empty(), "there are candidates");
+  if (kinds_.empty()) kinds_.assign(in_.size(), 0);
+  expects(kinds_.size() == in_.size(), "every candidate has a kind");
   const Eigen::Index m = candidates.front().cols();
   Eigen::Index rows = 0;
   for (const Eigen::MatrixXd& w : candidates) {
@@ -236,11 +239,11 @@ double Design::merit_after(std::size_t i, int sign) const {
                                  : factor;
 }
 
-std::pair<int, double> Design::best(int sign) const {
-  if (is_spectral(objective_.criterion)) return best_by_spectrum(sign);
+std::pair<int, double> Design::best(int sign, int kind) const {
+  if (is_spectral(objective_.criterion)) return best_by_spectrum(sign, kind);
   std::pair<int, double> best{-1, kNever};
   for (std::size_t i = 0; i < in_.size(); ++i) {
-    if ((in_[i] != 0) == (sign > 0)) continue;
+    if (!may(i, sign, kind)) continue;
     const double merit = merit_after(i, sign);
     if (best.first < 0 || merit > best.second) best = {static_cast<int>(i), merit};
   }
@@ -249,7 +252,7 @@ std::pair<int, double> Design::best(int sign) const {
   return best;
 }
 
-std::pair<int, double> Design::best_by_spectrum(int sign) const {
+std::pair<int, double> Design::best_by_spectrum(int sign, int kind) const {
   const Eigen::Index a = interest();
   const Eigen::VectorXd unit = scale_.head(a).cwiseInverse();
   const Symmetric eigen =
@@ -259,7 +262,7 @@ std::pair<int, double> Design::best_by_spectrum(int sign) const {
   const Eigen::MatrixXd turned = W_ * (all_.C.leftCols(a) * (unit.asDiagonal() * eigen.vectors));
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < in_.size(); ++i) {
-    if ((in_[i] != 0) == (sign > 0)) continue;
+    if (!may(i, sign, kind)) continue;
     const Small S = raised(all_.seen, at_[i], k_[i], sign);
     if (!(determinant(S) > 0)) continue;
     const auto t = turned.middleRows(at_[i], k_[i]);
@@ -330,7 +333,7 @@ std::pair<int, double> Design::best_instead_of(int candidate) {
   const bool rounds = !(determinant(raised(all_.seen, at_[which], k_[which], -1)) > kLeastRemoved);
   change(candidate, -1);
   if (rounds) refresh();
-  std::pair<int, double> found = best(+1);
+  std::pair<int, double> found = best(+1, kinds_[which]);
   all_ = all;
   nuisance_ = nuisance;
   CAC_ = CAC;

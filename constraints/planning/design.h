@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,10 @@ namespace selfcal {
 class Design {
  public:
   /// A candidate is what one measurement adds to W: k x m, k up to kMostEquations (may differ),
-  /// whitened.
-  Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective);
+  /// whitened. One is exchanged for one of its own kind only (one of kinds 0, 1, … each; all of
+  /// one kind where there are none).
+  Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objective,
+         std::vector<int> kinds = {});
 
   /// Chooses these and no others.
   void choose(const std::vector<int>& chosen);
@@ -29,6 +32,9 @@ class Design {
   std::vector<int> chosen() const;
   bool has(int candidate) const { return in_[static_cast<std::size_t>(candidate)] != 0; }
   int candidates() const { return static_cast<int>(in_.size()); }
+  int kind(int candidate) const { return kinds_[static_cast<std::size_t>(candidate)]; }
+  /// How many kinds there are.
+  int kinds() const { return 1 + *std::max_element(kinds_.begin(), kinds_.end()); }
   /// How many rows a candidate has.
   Eigen::Index rows(int candidate) const { return k_[static_cast<std::size_t>(candidate)]; }
 
@@ -36,12 +42,12 @@ class Design {
   /// that of the determinant).
   double merit() const;
   /// The candidate outside whose addition (+1), or inside whose removal (-1), leaves the largest
-  /// merit, and that merit; -1 without one.
-  std::pair<int, double> best(int sign) const;
+  /// merit, of one kind or of any (-1), and that merit; -1 without one.
+  std::pair<int, double> best(int sign, int kind = -1) const;
   /// Adds (+1) or removes (-1) a candidate.
   void change(int candidate, int sign);
-  /// The one that is the best in place of `candidate`, itself where no other is better, and the
-  /// merit then.
+  /// The one of its kind that is the best in place of `candidate`, itself where no other is better,
+  /// and the merit then.
   std::pair<int, double> best_instead_of(int candidate);
   /// Makes anew what changes have rounded.
   void refresh();
@@ -68,7 +74,11 @@ class Design {
   void update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const;
   static Rise rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w, int sign);
   double merit_of_spectrum(const Eigen::MatrixXd& C) const;
-  std::pair<int, double> best_by_spectrum(int sign) const;
+  std::pair<int, double> best_by_spectrum(int sign, int kind) const;
+  /// May be added (+1) or removed (-1), and is of the kind.
+  bool may(std::size_t candidate, int sign, int kind) const {
+    return (in_[candidate] != 0) != (sign > 0) && (kind < 0 || kinds_[candidate] == kind);
+  }
   double merit_after(std::size_t candidate, int sign) const;
   Eigen::Index interest() const { return W_.cols() - objective_.nuisance; }
   Eigen::MatrixXd rows_of(std::size_t candidate) const;
@@ -79,6 +89,7 @@ class Design {
   Eigen::Index widest_ = 0;           ///< most rows of one
   Eigen::VectorXd scale_;             ///< a column is that of its parameter over this
   std::vector<char> in_;
+  std::vector<int> kinds_;  ///< by candidate
   Moments all_, nuisance_;  ///< of all columns, of the last ones alone
   // Of `sigma`: C A C with its blocks, and trace(A C).
   Eigen::MatrixXd CAC_, spread_;

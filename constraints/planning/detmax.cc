@@ -41,11 +41,17 @@ class Search {
   }
 
   bool add_one_drop_one() {
+    for (int kind = 0; kind < design_.kinds(); ++kind)
+      if (add_one_drop_one(kind)) return true;
+    return false;
+  }
+
+  bool add_one_drop_one(int kind) {
     const double before = design_.merit();
-    const int added = design_.best(+1).first;
+    const int added = design_.best(+1, kind).first;
     if (added < 0) return false;
     design_.change(added, +1);
-    const auto [removed, merit] = design_.best(-1);
+    const auto [removed, merit] = design_.best(-1, kind);
     const bool better = removed >= 0 && gains(merit, before);
     design_.change(better ? removed : added, -1);
     return better;

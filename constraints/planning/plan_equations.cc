@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "constraints/planning/d_optimal.h"
+#include "constraints/planning/touch_choice.h"
 
 namespace selfcal {
 PlanEquations::PlanEquations(const Robot& robot, const std::vector<Set>& sets, State state)

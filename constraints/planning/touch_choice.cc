@@ -1,15 +1,24 @@
-#include "constraints/planning/d_optimal.h"
+#include "constraints/planning/touch_choice.h"
 
 #include <algorithm>
+#include <climits>
 #include <map>
+#include <numeric>
+#include <set>
 
+#include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/methods/unit_normal.h"
+#include "constraints/planning/detmax.h"
+#include "constraints/sampling/random_poses.h"
+#include "constraints/sampling/workspace_poses.h"
 
 namespace selfcal {
 namespace {
 
 constexpr double kNoise = 2e-5;       // m, where a set does not say its own
 constexpr double kAngleNoise = 2e-5;  // rad, as well
+constexpr int kJudgedPoses = 300;     // at which the end position is judged
+constexpr unsigned long long kJudgedSeed = 1;
 
 /// What is unknown of a surface or a socket.
 struct PlaceUnknowns {
@@ -103,13 +112,101 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
   return rows;
 }
 
-Eigen::MatrixXd prior(const Robot& robot, int columns) {
+/// Variance of each column before any touch; 0 of what is known.
+Eigen::VectorXd prior_variance(const Robot& robot, int columns) {
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(columns, kPlaceVariance);
   for (std::size_t i = 0; i < robot.parameters().size(); ++i) {
     const Parameter& each = robot.parameters()[i];
     variance[static_cast<Eigen::Index>(i)] = each.free ? each.tolerance * each.tolerance : 0;
   }
-  return variance.asDiagonal();
+  return variance;
+}
+
+/// Poses where the end position counts: in the workspace's box, else over all that the joints can
+/// do, for the region of the touches is what is chosen.
+Eigen::MatrixXd judged_poses(const Robot& robot, const Eigen::VectorXd& xi,
+                             const Workspace& workspace) {
+  if (workspace.box) {
+    const Eigen::MatrixXd poses =
+        workspace_poses(robot, xi, workspace, {}, kJudgedPoses, kJudgedSeed);
+    if (poses.rows() > 0) return poses;
+  }
+  return closing_poses(robot, xi, random_poses(robot, nullptr, kJudgedPoses, kJudgedSeed));
+}
+
+/// The touches of a surface, or of one socket or nest of a set, which are exchanged for each other.
+struct Kinds {
+  std::vector<int> of;     ///< by candidate
+  std::vector<int> set;    ///< by kind
+  std::vector<int> share;  ///< by kind: of the touches of its set
+};
+
+/// Every socket of a set has as many touches as the others.
+Kinds kinds_of(const std::vector<PossibleTouch>& candidates, const std::vector<int>& counts) {
+  Kinds kinds;
+  std::map<std::pair<int, int>, int> number;
+  std::vector<int> of_set(counts.size(), 0);
+  for (const PossibleTouch& each : candidates) {
+    const auto [found, added] =
+        number.try_emplace({each.set, each.group}, static_cast<int>(kinds.set.size()));
+    if (added) {
+      kinds.set.push_back(each.set);
+      ++of_set[each.set];
+    }
+    kinds.of.push_back(found->second);
+  }
+  for (const int set : kinds.set)
+    kinds.share.push_back((counts[set] + of_set[set] - 1) / of_set[set]);
+  return kinds;
+}
+
+/// The touches as candidates of a design for the end position, in the columns that are not known.
+Design design_of(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+                 const std::vector<PossibleTouch>& candidates, const Workspace& workspace,
+                 const Kinds& kinds) {
+  Columns columns(static_cast<int>(robot.parameters().size()), sets);
+  std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
+  const Eigen::VectorXd variance = prior_variance(robot, columns.end());
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index c = 0; c < variance.size(); ++c)
+    if (variance[c] > 0) open.push_back(c);
+  for (Eigen::MatrixXd& each : rows) each = each(Eigen::all, open).eval();
+
+  EndpointQuestion question;
+  question.robot = &robot;
+  question.xi = xi;
+  question.unseen = Eigen::MatrixXd::Identity(6, 6);
+  question.point_unknown = std::ranges::none_of(
+      candidates, [&](const PossibleTouch& each) { return sets[each.set].method->sees_point(); });
+  question.poses = judged_poses(robot, xi, workspace);
+  const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
+  Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(variance.size(), variance.size());
+  weight.topLeftCorner(parameters, parameters) = endpoint_weight(question);
+
+  Objective objective;
+  objective.criterion = Criterion::sigma;
+  objective.prior = variance(open).cwiseInverse().asDiagonal();
+  objective.weight = weight(open, open);
+  objective.nuisance = columns.end() - parameters;
+  return {rows, std::move(objective), kinds.of};
+}
+
+/// The best one after the other, `left` of each set and no more of a kind than `share`.
+void choose_one_by_one(Design& design, const Kinds& kinds, std::vector<int>& left,
+                       std::vector<int> share) {
+  for (;;) {
+    std::pair<int, double> best{-1, 0};
+    for (std::size_t kind = 0; kind < kinds.set.size(); ++kind) {
+      if (left[kinds.set[kind]] <= 0 || share[kind] <= 0) continue;
+      const std::pair<int, double> each = design.best(+1, static_cast<int>(kind));
+      if (each.first >= 0 && (best.first < 0 || each.second > best.second)) best = each;
+    }
+    if (best.first < 0) return;
+    design.change(best.first, +1);
+    const int kind = design.kind(best.first);
+    --left[kinds.set[kind]];
+    --share[kind];
+  }
 }
 
 }  // namespace
@@ -118,41 +215,31 @@ double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; 
 
 double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angle : kAngleNoise; }
 
-std::vector<int> d_optimal_touches(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const std::vector<Set>& sets,
-                                   const std::vector<PossibleTouch>& candidates,
-                                   std::vector<int> counts) {
-  Columns columns(static_cast<int>(robot.parameters().size()), sets);
-  const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
-  Eigen::MatrixXd C = prior(robot, columns.end());
-  // C w of every row, kept up to date: a candidate then costs one product of vectors.
-  std::vector<Eigen::MatrixXd> Cw;
-  for (const Eigen::MatrixXd& W : rows) Cw.push_back(C * W.transpose());
-  std::vector<char> used(rows.size(), 0);
-  std::vector<int> chosen;
-  for (;;) {
-    int best = -1;
-    double most = -1;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (used[i] || counts[candidates[i].set] <= 0) continue;
-      const double variance = rows[i].cwiseProduct(Cw[i].transpose()).sum();
-      if (variance <= most) continue;
-      most = variance;
-      best = static_cast<int>(i);
-    }
-    if (best < 0) return chosen;
-    chosen.push_back(best);
-    used[best] = 1;
-    --counts[candidates[best].set];
-    for (Eigen::Index a = 0; a < rows[best].rows(); ++a) {
-      const Eigen::VectorXd w = rows[best].row(a).transpose();
-      const Eigen::VectorXd gain = Cw[best].col(a);
-      const double scale = 1 / (1 + w.dot(gain));
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        if (!used[i] || static_cast<int>(i) == best)
-          Cw[i] -= gain * (scale * (rows[i] * gain).transpose());
-    }
-  }
+TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
+                           const std::vector<Set>& sets,
+                           const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
+                           const Workspace& workspace, Random& random) {
+  TouchChoice choice;
+  if (candidates.empty()) return choice;
+  const Kinds kinds = kinds_of(candidates, counts.fit);
+  Design design = design_of(robot, xi, sets, candidates, workspace, kinds);
+  std::vector<int> wanted = counts.fit;
+  choose_one_by_one(design, kinds, wanted, kinds.share);
+  // What a socket out of reach leaves goes to the others.
+  choose_one_by_one(design, kinds, wanted, std::vector<int>(kinds.set.size(), INT_MAX));
+  add_and_drop(design);
+  choice.fit = design.chosen();
+  // A socket or nest that nothing identifies judges nothing.
+  std::set<std::pair<int, int>> identified;
+  for (const int i : choice.fit) identified.emplace(candidates[i].set, candidates[i].group);
+  std::vector<int> order(candidates.size()), left = counts.check;
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), random);
+  for (const int i : order)
+    if (!design.has(i) && identified.contains({candidates[i].set, candidates[i].group}) &&
+        left[candidates[i].set]-- > 0)
+      choice.check.push_back(i);
+  return choice;
 }
 
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
@@ -160,7 +247,7 @@ Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<PossibleTouch>& touches) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, touches, columns);
-  Eigen::MatrixXd C = prior(robot, columns.end());
+  Eigen::MatrixXd C = prior_variance(robot, columns.end()).asDiagonal();
   for (const Eigen::MatrixXd& W : rows)
     for (Eigen::Index a = 0; a < W.rows(); ++a) {
       const Eigen::VectorXd gain = C * W.row(a).transpose();

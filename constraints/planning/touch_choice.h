@@ -1,14 +1,17 @@
-// Which of many possible touches tell most together: each next one is the one that the parameters,
-// as far as they are known from those before it and from the priors, predict worst.
+// Which of many possible touches tell most together of where the end position is in the workspace,
+// and which of the rest judge the result.
 //
-// With C the covariance of the parameters and the surfaces, the variance that a touch w would show
-// is w C wᵀ / sigma²; taking the largest raises det(C⁻¹) most (Fedorov 1972), and C is updated by
-//   C -= C wᵀ w C / (sigma² + w C wᵀ).
+// The choice is a Design (design.h): from the best one after the other, the best touch of a set is
+// taken in and the worst of the same set left out, as long as the expected variance of the end
+// position falls. The touches that judge are drawn from the rest by chance, so that they are as any
+// touch of the cell is.
 #pragma once
 
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "constraints/methods/method.h"
+#include "constraints/workspace.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -28,12 +31,23 @@ double touch_noise(const Set& set);
 /// The same of an angle (rad).
 double angle_noise(const Set& set);
 
-/// Indices of the chosen candidates in the order of choice, as many of each set as `counts` says or
-/// as there are. `xi` are the parameters that are believed.
-std::vector<int> d_optimal_touches(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const std::vector<Set>& sets,
-                                   const std::vector<PossibleTouch>& candidates,
-                                   std::vector<int> counts);
+/// How many touches of each set are wanted, to identify and to judge.
+struct TouchCounts {
+  std::vector<int> fit, check;
+};
+
+/// Indices of candidates.
+struct TouchChoice {
+  std::vector<int> fit, check;
+};
+
+/// As many of each set as are wanted or as there are, those to identify first. `xi` are the
+/// parameters that are believed; the end position counts in the box of `workspace`, without one
+/// over all that the joints can do.
+TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
+                           const std::vector<Set>& sets,
+                           const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
+                           const Workspace& workspace, Random& random);
 
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.

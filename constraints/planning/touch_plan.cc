@@ -8,7 +8,7 @@
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/methods/shared_point.h"
 #include "constraints/methods/unit_normal.h"
-#include "constraints/planning/d_optimal.h"
+#include "constraints/planning/touch_choice.h"
 #include "constraints/planning/tour.h"
 #include "constraints/sampling/contact.h"
 #include "constraints/sampling/random_poses.h"
@@ -149,34 +149,33 @@ class Candidates {
   const TouchPlanOptions& options_;
 };
 
-/// Those of the usable touches that tell most together, as many of each set as are asked for.
+/// Those of the usable touches that tell most together, as many of each set as are asked for; a
+/// share of them, drawn from the rest, is kept aside to judge.
 std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
                                  const std::vector<TouchTarget>& targets,
-                                 const std::vector<std::vector<PlannedTouch>>& usable) {
+                                 const std::vector<std::vector<PlannedTouch>>& usable,
+                                 const Workspace& workspace, double share, Random& random) {
   std::vector<PossibleTouch> candidates;
-  std::vector<const PlannedTouch*> touches;
-  std::vector<int> counts(sets.size(), 0);
+  std::vector<PlannedTouch> touches;
+  TouchCounts counts{std::vector<int>(sets.size(), 0), std::vector<int>(sets.size(), 0)};
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    counts[targets[t].set] = targets[t].touches;
+    const int set = targets[t].set, kept = static_cast<int>(share * targets[t].touches);
+    counts.check[set] = kept;
+    counts.fit[set] = targets[t].touches - kept;
     for (const PlannedTouch& each : usable[t]) {
       candidates.push_back({each.touch, each.set, each.group, targets[t].outward});
-      touches.push_back(&each);
+      touches.push_back(each);
     }
   }
+  const TouchChoice choice = choose_touches(robot, xi, sets, candidates, counts, workspace, random);
   std::vector<PlannedTouch> chosen;
-  for (const int i : d_optimal_touches(robot, xi, sets, candidates, std::move(counts)))
-    chosen.push_back(*touches[i]);
-  return chosen;
-}
-
-/// Every third or so of each set, evenly over the order of choice.
-void mark_check(std::vector<PlannedTouch>& touches, std::size_t sets, double share) {
-  std::vector<int> seen(sets, 0);
-  for (PlannedTouch& touch : touches) {
-    const int i = seen[touch.set]++;
-    touch.check = std::floor(share * (i + 1)) > std::floor(share * i);
+  for (const int i : choice.fit) chosen.push_back(touches[i]);
+  for (const int i : choice.check) {
+    chosen.push_back(touches[i]);
+    chosen.back().check = true;
   }
+  return chosen;
 }
 
 /// Time (s) from each of home and the touches to each other: of a free way where they are near,
@@ -237,8 +236,8 @@ std::vector<PlannedTouch> order(const Surroundings& cell, const std::vector<Set>
 
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
-                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
-                       const Progress& progress) {
+                       const std::vector<Obstacle>& obstacles, const Workspace& workspace,
+                       const TouchPlanOptions& options, const Progress& progress) {
   const auto tell = [&](const char* stage, double share) {
     if (progress) progress(stage, share);
   };
@@ -258,8 +257,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
                        " touches are within the joint limits, the tilt and reach of home";
   }
   tell("choosing touches", 0);
-  std::vector<PlannedTouch> chosen = choose(robot, xi, sets, targets, usable);
-  mark_check(chosen, sets.size(), options.check);
+  const std::vector<PlannedTouch> chosen =
+      choose(robot, xi, sets, targets, usable, workspace, options.check, random);
   tell("ordering touches", 0);
   plan.touches =
       order({robot, xi, obstacles, options.apart, options.home, options.speed}, sets, chosen);

@@ -1,8 +1,8 @@
 // Which configurations a session visits, and how it gets into each contact and out again.
 //
 // Many random configurations touch each surface or sit in each socket of the model; of these the
-// ones are taken that tell most together (d_optimal.h). Each is entered along a straight joint path
-// from a free configuration, and no way between them may cross another surface (free_way.h).
+// ones are taken that tell most together (touch_choice.h). Each is entered along a straight joint
+// path from a free configuration, and no way between them may cross another surface (free_way.h).
 #pragma once
 
 #include <string>
@@ -54,12 +54,13 @@ struct TouchPlan {
   std::string unreached;  ///< which set has no or too few reachable places; empty when all has
 };
 
-/// `xi` are the parameters that are believed; `sets` have their methods (touched ones). Tells its
-/// progress between its stages and rounds of sampling, where it can be given up.
+/// `xi` are the parameters that are believed; `sets` have their methods (touched ones); the end
+/// position counts in the box of `workspace`, without one over all that the joints can do. Tells
+/// its progress between its stages and rounds of sampling, where it can be given up.
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
-                       const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options,
-                       const Progress& progress = {});
+                       const std::vector<Obstacle>& obstacles, const Workspace& workspace,
+                       const TouchPlanOptions& options, const Progress& progress = {});
 
 /// How sure the end position will be, a rigid motion removed.
 struct ExpectedSigma {

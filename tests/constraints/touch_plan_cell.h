@@ -60,7 +60,7 @@ struct PlannedCell {
     return *this;
   }
   TouchPlan plan() const {
-    return plan_touches(rx90(), values(rx90()), sets, targets, obstacles, options);
+    return plan_touches(rx90(), values(rx90()), sets, targets, obstacles, {}, options);
   }
 };
 

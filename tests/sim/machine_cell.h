@@ -47,7 +47,7 @@ inline const std::vector<PlannedTouch>& planned_touches() {
     options.search = 0.03;
     options.home = home();
     return plan_touches(rx90(), values(rx90()), {make_set("table", entry, none)}, {target},
-                        {{{0.75, 0, 0.15}, Eigen::Vector3d::UnitZ(), target.within}}, options);
+                        {{{0.75, 0, 0.15}, Eigen::Vector3d::UnitZ(), target.within}}, {}, options);
   }();
   EXPECT_EQ(plan.unreached, "");
   return plan.touches;

@@ -40,7 +40,7 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
   const Eigen::VectorXd xi = values(*config.robot);
   CellPlan cell;
   cell.plan = plan_touches(*config.robot, xi, config.sets, config.targets, config.obstacles,
-                           config.plan, progress);
+                           config.workspace, config.plan, progress);
   if (!cell.plan.unreached.empty()) return cell;
   if (progress) progress("how well the end position is known then", 0);
   cell.expected =
