@@ -1,9 +1,31 @@
-// Decompositions by Eigen.
+// Decompositions by Eigen; large triangles by OpenBLAS, which knows the processor that it runs on.
 #include "kinematics/linear_algebra.h"
+
+#include <cblas.h>
 
 #include <cmath>
 
+extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
+                        int* info);
+
 namespace selfcal {
+namespace {
+
+constexpr Eigen::Index kLarge = 64;  ///< rows from which a call of OpenBLAS is worth its start
+
+int width(Eigen::Index n) { return static_cast<int>(n); }
+
+/// op(L)^-1 B in place.
+void solve_in_place(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& L, Eigen::MatrixXd& B) {
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, CblasNonUnit, width(B.rows()),
+              width(B.cols()), 1, L.data(), width(L.rows()), B.data(), width(B.rows()));
+}
+
+bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  return L.rows() >= kLarge && B.cols() > 1;
+}
+
+}  // namespace
 
 void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
   const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(A);
@@ -46,11 +68,37 @@ OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A) {
 }
 
 Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A) {
-  return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
+  if (A.rows() < kLarge) return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
+  Eigen::MatrixXd L = A;
+  const int n = width(A.rows());
+  int info = 0;
+  dpotrf_("L", &n, L.data(), &n, &info);
+  L.triangularView<Eigen::StrictlyUpper>().setZero();
+  return L;
 }
 
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
-  return L.triangularView<Eigen::Lower>().solve(B);
+  if (!large(L, B)) return L.triangularView<Eigen::Lower>().solve(B);
+  Eigen::MatrixXd X = B;
+  solve_in_place(CblasNoTrans, L, X);
+  return X;
+}
+
+Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  if (!large(L, B)) return L.transpose().triangularView<Eigen::Upper>().solve(B);
+  Eigen::MatrixXd X = B;
+  solve_in_place(CblasTrans, L, X);
+  return X;
+}
+
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  if (A.rows() < kLarge) return A.transpose() * B;
+  Eigen::MatrixXd AB(A.cols(), B.cols());
+  if (AB.size() == 0) return AB;
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, width(A.cols()), width(B.cols()),
+              width(A.rows()), 1, A.data(), width(A.rows()), B.data(), width(B.rows()), 0,
+              AB.data(), width(A.cols()));
+  return AB;
 }
 
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {

@@ -34,6 +34,10 @@ OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A);
 Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A);
 /// L^-1 B of the lower triangular `L`.
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
+/// L^-T B.
+Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
+/// A^T B.
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// Inverse of the positive definite `A`.
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A);
 

@@ -126,5 +126,22 @@ TEST(SymmetricEigen, AscendsAndRebuildsTheMatrix) {
   for (int i = 1; i < 4; ++i) EXPECT_LE(found.values[i - 1], found.values[i]);
 }
 
+TEST(Triangles, AreSolvedAlikeOnBothSidesOfTheSizeFromWhichALibraryDoes) {
+  std::mt19937_64 random(47);
+  for (const Eigen::Index n : {5, 63, 64, 200})
+    for (const Eigen::Index columns : {1, 2, 7}) {
+      const Eigen::MatrixXd A =
+          gram(random_matrix(n + 10, n, random)) + Eigen::MatrixXd::Identity(n, n);
+      const Eigen::MatrixXd L = cholesky_root(A);
+      const double rounding = 1e-13 * static_cast<double>(n) * A.norm();
+      EXPECT_TRUE(L.isLowerTriangular(0));
+      EXPECT_LT((L * L.transpose() - A).norm(), rounding) << n;
+      const Eigen::MatrixXd B = random_matrix(n, columns, random);
+      EXPECT_LT((L * solve_lower(L, B) - B).norm(), rounding) << n;
+      EXPECT_LT((L.transpose() * solve_lower_transposed(L, B) - B).norm(), rounding) << n;
+      EXPECT_LT((transposed_product(A, B) - A.transpose() * B).norm(), rounding * B.norm()) << n;
+    }
+}
+
 }  // namespace
 }  // namespace selfcal
