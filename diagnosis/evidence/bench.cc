@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace selfcal {
 namespace {
@@ -39,12 +38,23 @@ EvidenceEvaluator::EvidenceEvaluator(const Whitened& rows,
     groups->back().insert(groups->back().end(), candidate.slack.begin(), candidate.slack.end());
   }
   groups_ = std::move(groups);
+  number_causes();
   marginal_likelihoods_.reserve(structures.size());
   for (DiscrepancyCovariance& structure : structures) {
     Columns columns(*rows_, structure.root);
     marginal_likelihoods_.emplace_back(rows_, std::move(structure), groups_, columns);
     if (blocks_.empty()) make_blocks(parameters);
     if (!rule_.noise_is_known) agree(marginal_likelihoods_.back(), std::move(columns));
+  }
+}
+
+void EvidenceEvaluator::number_causes() {
+  for (const Candidate& candidate : all_.list) {
+    const auto first = [&](auto of) {
+      return static_cast<int>(std::ranges::find(all_.list, of(candidate), of) - all_.list.begin());
+    };
+    family_.push_back(first([](const Candidate& each) { return each.effect; }));
+    cause_.push_back(first([](const Candidate& each) { return Cause{each.effect, each.at}; }));
   }
 }
 
@@ -112,11 +122,21 @@ void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, Columns c
   }
 }
 
-void EvidenceEvaluator::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull,
-                                bool noise_alone) {
-  for (MarginalLikelihood& marginal_likelihood : marginal_likelihoods_)
-    if (!noise_alone || marginal_likelihood.structure().kind == 0)
-      marginal_likelihood.look_at(y, pull);
+EvidenceEvaluator::Views EvidenceEvaluator::views_of(const Eigen::MatrixXd& Y, Of which) const {
+  Views views(marginal_likelihoods_.size());
+  for (std::size_t s = 0; s < views.size(); ++s)
+    if (which == Of::all || marginal_likelihoods_[s].structure().kind == 0)
+      views[s] = marginal_likelihoods_[s].views_of(Y);
+  return views;
+}
+
+void EvidenceEvaluator::look_at(const Views& views, Eigen::Index which) {
+  for (std::size_t s = 0; s < views.size(); ++s)
+    if (views[s].g.cols() > 0) marginal_likelihoods_[s].look_at(views[s], which);
+}
+
+void EvidenceEvaluator::look_at_rows() {
+  for (MarginalLikelihood& each : marginal_likelihoods_) each.look_at_rows();
 }
 
 double EvidenceEvaluator::plausibility(int candidate, double size) const {
@@ -125,23 +145,24 @@ double EvidenceEvaluator::plausibility(int candidate, double size) const {
   return beyond > 0 ? -2 * beyond * beyond : 0;
 }
 
-double EvidenceEvaluator::log_prior(const std::vector<int>& candidates, int structure) const {
+double EvidenceEvaluator::log_prior(std::span<const int> candidates, int structure) const {
   double sum = 0;
-  std::set<std::string> families;
-  std::set<Cause> causes;
-  for (const int c : candidates) {
-    const Candidate& each = all_.list[static_cast<size_t>(c)];
-    sum += each.log_prior;
-    if (!causes.insert({each.effect, each.at}).second)
-      sum += std::log(rule_.same_family);
-    else if (!families.insert(each.effect).second)
+  int families = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const int c = candidates[i];
+    sum += all_.list[static_cast<size_t>(c)].log_prior;
+    const auto has = [&](const std::vector<int>& number) {
+      return std::ranges::any_of(candidates.first(i),
+                                 [&](int other) { return number[other] == number[c]; });
+    };
+    if (has(cause_) || has(family_))
       sum += std::log(rule_.same_family);
     else
-      sum += std::log(rule_.family_odds) + (families.size() > 1 ? std::log(rule_.another) : 0);
+      sum += std::log(rule_.family_odds) + (++families > 1 ? std::log(rule_.another) : 0);
   }
   sum += std::log(this->structure(structure).probability);
   if (this->structure(structure).kind == 0) return sum;
-  return sum + std::log(rule_.unknown_odds) + (families.empty() ? 0 : std::log(rule_.another));
+  return sum + std::log(rule_.unknown_odds) + (families == 0 ? 0 : std::log(rule_.another));
 }
 
 EvidenceEvaluator::Single EvidenceEvaluator::weigh(const MarginalLikelihood& marginal_likelihood,

@@ -30,7 +30,7 @@ MarginalLikelihood::MarginalLikelihood(std::shared_ptr<const Whitened> rows,
   // Freedom of the rows alone: each prior determines the share of its parameter that they do not.
   nu_ = static_cast<double>(equations) - fixed.Q.topRows(equations).squaredNorm();
   const Eigen::MatrixXd& C = columns.C;
-  fixed.QC = fixed.Q.topRows(equations).transpose() * C;
+  fixed.QC = transposed_product(fixed.Q.topRows(equations), C);
   for (const std::vector<int>& group : *fixed.groups) {
     fixed.at.push_back(kept_.size());
     for (const int i : group)
@@ -38,32 +38,45 @@ MarginalLikelihood::MarginalLikelihood(std::shared_ptr<const Whitened> rows,
         kept_.push_back(C.col(i).dot(C.col(j)) - fixed.QC.col(i).dot(fixed.QC.col(j)));
   }
   fixed_ = std::make_shared<const Fixed>(std::move(fixed));
-  look_at(fixed_->rows->y, fixed_->rows->pull);
+  look_at_rows();
 }
 
-Eigen::VectorXd MarginalLikelihood::beyond_geometry(const Eigen::VectorXd& x,
+Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X,
                                                     const Eigen::VectorXd& pull) const {
   const Eigen::MatrixXd& Q = fixed_->Q;
-  Eigen::VectorXd z(Q.rows());
-  z << solve_lower(fixed_->structure.root, x), pull;
-  z -= Q * (Q.transpose() * z).eval();
-  return z;
+  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(Q.rows(), X.cols());
+  Z.topRows(X.rows()) = solve_lower(fixed_->structure.root, X);
+  if (pull.size() > 0) Z.bottomRows(pull.size()).colwise() = pull;
+  Z.noalias() -= Q * transposed_product(Q, Z);
+  return Z;
 }
 
-void MarginalLikelihood::look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull) {
-  const Eigen::VectorXd left = beyond_geometry(y, pull);
-  const Eigen::VectorXd back =
-      fixed_->structure.root.transpose().triangularView<Eigen::Upper>().solve(
-          left.head(fixed_->rows->A.rows()));
-  g_ = fixed_->rows->C.transpose() * back;
-  yy_ = left.squaredNorm();  // the strain on the priors too: a cause relieves both
+MarginalLikelihood::Views MarginalLikelihood::views_of(const Eigen::MatrixXd& Y) const {
+  return views_beyond(beyond_geometry(Y));
+}
+
+/// Of what y leave beyond structure and geometry.
+MarginalLikelihood::Views MarginalLikelihood::views_beyond(const Eigen::MatrixXd& left) const {
+  const Eigen::MatrixXd back =
+      solve_lower_transposed(fixed_->structure.root, left.topRows(fixed_->rows->A.rows()));
+  // The strain on the priors too: a cause relieves both.
+  return {transposed_product(fixed_->rows->C, back), left.colwise().squaredNorm().transpose()};
+}
+
+void MarginalLikelihood::look_at(const Views& views, Eigen::Index which) {
+  g_ = views.g.col(which);
+  yy_ = views.yy[which];
+}
+
+void MarginalLikelihood::look_at_rows() {
+  look_at(views_beyond(beyond_geometry(fixed_->rows->y, fixed_->rows->pull)), 0);
 }
 
 Eigen::MatrixXd MarginalLikelihood::products(const std::vector<int>& a) const {
-  const Eigen::MatrixXd back =
-      fixed_->structure.root.transpose().triangularView<Eigen::Upper>().solve(
-          solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a)));
-  return back.transpose() * fixed_->rows->C - fixed_->QC(Eigen::all, a).transpose() * fixed_->QC;
+  const Eigen::MatrixXd back = solve_lower_transposed(
+      fixed_->structure.root, solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a)));
+  return transposed_product(back, fixed_->rows->C) -
+         fixed_->QC(Eigen::all, a).transpose() * fixed_->QC;
 }
 
 Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& a,
@@ -73,7 +86,7 @@ Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& a,
                            static_cast<Eigen::Index>(b.size()));
   const Eigen::MatrixXd left = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a));
   const Eigen::MatrixXd right = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, b));
-  return left.transpose() * right -
+  return transposed_product(left, right) -
          fixed_->QC(Eigen::all, a).transpose() * fixed_->QC(Eigen::all, b);
 }
 
@@ -179,25 +192,23 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms,
          of_signs(terms, L, z);
 }
 
-double MarginalLikelihood::log_evidence_of(const Eigen::VectorXd& y) const {
-  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(fixed_->rows->pull.size());
-  return constant_ + of_noise(beyond_geometry(y, no_pull).squaredNorm(), nu_);
+Eigen::VectorXd MarginalLikelihood::log_evidences_of(const Eigen::MatrixXd& Y) const {
+  Eigen::VectorXd list = beyond_geometry(Y).colwise().squaredNorm().transpose();
+  for (double& each : list) each = constant_ + of_noise(each, nu_);
+  return list;
 }
 
 double MarginalLikelihood::gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
                                           const std::vector<int>& out) const {
   if (out.empty() || terms.empty()) return 0;
-  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(fixed_->rows->pull.size());
   const auto [columns, D] = unfold(terms);
-  Eigen::MatrixXd X(fixed_->Q.rows(), D.size() + 1);  // of the terms, then of y
-  for (Eigen::Index i = 0; i < D.size(); ++i)
-    X.col(i) = D[i] * beyond_geometry(fixed_->rows->C.col(columns[i]), no_pull);
-  X.col(D.size()) = beyond_geometry(y, no_pull);
+  Eigen::MatrixXd seen(y.size(), D.size() + 1);  // the terms, then y
+  seen << fixed_->rows->C(Eigen::all, columns) * D.asDiagonal(), y;
+  const Eigen::MatrixXd X = beyond_geometry(seen);
   // An equation left out is one with an unknown of its own.
-  Eigen::MatrixXd free(X.rows(), static_cast<Eigen::Index>(out.size()));
-  for (size_t i = 0; i < out.size(); ++i)
-    free.col(static_cast<Eigen::Index>(i)) =
-        beyond_geometry(Eigen::VectorXd::Unit(y.size(), out[i]), no_pull);
+  Eigen::MatrixXd alone = Eigen::MatrixXd::Zero(y.size(), static_cast<Eigen::Index>(out.size()));
+  for (size_t i = 0; i < out.size(); ++i) alone(out[i], static_cast<Eigen::Index>(i)) = 1;
+  const Eigen::MatrixXd free = beyond_geometry(alone);
   const auto gain = [&](const Eigen::MatrixXd& of, double freedom) {
     const auto c = of.leftCols(D.size());
     const Eigen::MatrixXd L =

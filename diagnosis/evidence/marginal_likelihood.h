@@ -60,8 +60,17 @@ class MarginalLikelihood {
                      std::shared_ptr<const Groups> groups, const Columns& columns);
   const DiscrepancyCovariance& structure() const { return fixed_->structure; }
 
-  /// Exchanges y (for a null distribution); `y` and `pull` as in Whitened.
-  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull);
+  /// What several y say, one a column, without a strain on the priors: made together, for then it
+  /// costs a tenth, and looked at one after the other.
+  struct Views {
+    Eigen::MatrixXd g;   ///< columns of C x y
+    Eigen::VectorXd yy;  ///< by y
+  };
+  Views views_of(const Eigen::MatrixXd& Y) const;
+  /// Exchanges y.
+  void look_at(const Views& views, Eigen::Index which);
+  /// Goes back to that of the rows.
+  void look_at_rows();
 
   struct Term {
     const Block* block;
@@ -74,8 +83,8 @@ class MarginalLikelihood {
   double log_evidence(std::span<const Term> terms) const;
   /// The same for any number of terms, from G of their columns (as gram() gives it) in their order.
   double log_evidence(std::span<const Term> terms, const Eigen::MatrixXd& G) const;
-  /// What rows `y` (no strain on the priors) say without any term.
-  double log_evidence_of(const Eigen::VectorXd& y) const;
+  /// What each column of `Y` as y (no strain on the priors) says without any term.
+  Eigen::VectorXd log_evidences_of(const Eigen::MatrixXd& Y) const;
   /// By how much the terms' log evidence over that of none grows when equations `out` of `y` are
   /// left out; signs are not asked.
   double gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
@@ -95,8 +104,9 @@ class MarginalLikelihood {
   const Eigen::VectorXd& right() const { return g_; }
   double total() const { return yy_; }
   double freedom() const { return nu_; }
-  /// `x` (equations) beyond structure and geometry.
-  Eigen::VectorXd beyond_geometry(const Eigen::VectorXd& x, const Eigen::VectorXd& pull) const;
+  /// Columns of `X` (equations) beyond structure and geometry, with the strain on the priors
+  /// (columns of A; none where it has no rows) under each.
+  Eigen::MatrixXd beyond_geometry(const Eigen::MatrixXd& X, const Eigen::VectorXd& pull = {}) const;
 
  private:
   /// What does not depend on y.
@@ -109,6 +119,7 @@ class MarginalLikelihood {
     std::vector<std::size_t> at;  ///< of each group's block in `kept_`
   };
   MarginalLikelihood() = default;
+  Views views_beyond(const Eigen::MatrixXd& left) const;
   /// a by all columns of G.
   Eigen::MatrixXd products(const std::vector<int>& a) const;
   const double* block(int group) const { return &kept_[fixed_->at[group]]; }

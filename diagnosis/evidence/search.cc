@@ -2,9 +2,10 @@
 #include "diagnosis/evidence/search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <set>
+#include <tuple>
 
 namespace selfcal {
 namespace {
@@ -24,29 +25,54 @@ class Search {
   Posterior run(int singles, int pairs) {
     visit_singles();
     extend(best_of(1, singles));
+    keep_best();
     extend(best_of(2, pairs));
+    keep_best();
     return posterior();
   }
 
  private:
-  const Candidate& candidate(int c) const { return bench_.all_.list[static_cast<size_t>(c)]; }
+  /// A hypothesis of up to three candidates, ascending.
+  struct Visit {
+    int count = 0, structure = 0;
+    std::array<int, 3> candidates{};
+    std::array<double, 3> sizes{};
+    double log_weight = 0;
 
-  /// Notes a hypothesis, the best of those with the same candidates and structure; its weight.
-  double note(const Hypothesis& of, double log_evidence) {
-    std::vector<size_t> order(of.candidates.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](size_t a, size_t b) { return of.candidates[a] < of.candidates[b]; });
-    Hypothesis h;
-    h.structure = of.structure;
-    for (const size_t i : order) {
-      h.candidates.push_back(of.candidates[i]);
-      h.sizes.push_back(of.sizes[i]);
+    std::span<const int> all() const {
+      return {candidates.data(), static_cast<std::size_t>(count)};
     }
-    h.log_weight = log_evidence + bench_.log_prior(h.candidates, h.structure);
-    Hypothesis& slot = visited_[{h.candidates, h.structure}];
-    if (slot.candidates.empty() || h.log_weight > slot.log_weight) slot = h;
-    return slot.log_weight;
+    auto key() const { return std::tuple(count, structure, candidates); }
+    void add(int candidate, double size) {
+      int at = count++;
+      for (; at > 0 && candidates[at - 1] > candidate; --at) {
+        candidates[at] = candidates[at - 1];
+        sizes[at] = sizes[at - 1];
+      }
+      candidates[at] = candidate;
+      sizes[at] = size;
+    }
+    Hypothesis hypothesis() const {
+      return {{candidates.begin(), candidates.begin() + count},
+              structure,
+              log_weight,
+              {sizes.begin(), sizes.begin() + count}};
+    }
+  };
+
+  double note(Visit visit, double log_evidence) {
+    visit.log_weight = log_evidence + bench_.log_prior(visit.all(), visit.structure);
+    visited_.push_back(visit);
+    return visit.log_weight;
+  }
+
+  /// Of those with the same candidates and structure, reached by different ways, the best.
+  void keep_best() {
+    std::ranges::sort(visited_, [](const Visit& a, const Visit& b) {
+      return std::tuple(a.key(), -a.log_weight) < std::tuple(b.key(), -b.log_weight);
+    });
+    const auto same = std::ranges::unique(visited_, {}, &Visit::key);
+    visited_.erase(same.begin(), same.end());
   }
 
   /// Every candidate alone in every structure; the structures that do best go on.
@@ -54,11 +80,14 @@ class Search {
     std::vector<std::pair<double, int>> ranked;
     for (int s = 0; s < bench_.structures(); ++s) {
       const MarginalLikelihood& marginal_likelihood = bench_.marginal_likelihoods_[s];
-      double best = note({{}, s, 0, {}}, marginal_likelihood.log_evidence({}));
+      const Visit none{.structure = s};
+      double best = note(none, marginal_likelihood.log_evidence({}));
       for (int c = 0; c < candidates_; ++c) {
         if (!bench_.seen_[c]) continue;
         const EvidenceEvaluator::Single single = bench_.weigh(marginal_likelihood, c);
-        best = std::max(best, note({{c}, s, 0, {single.size}}, single.log_sum));
+        Visit one = none;
+        one.add(c, single.size);
+        best = std::max(best, note(one, single.log_sum));
       }
       kept_[s] = bench_.structure(s).kind == 0;
       if (!kept_[s]) ranked.emplace_back(-best, s);
@@ -70,77 +99,86 @@ class Search {
 
   /// The best of `size` candidates. Not one cause in all its shapes: two of each cause and
   /// structure.
-  std::vector<Hypothesis> best_of(size_t size, int most) const {
-    std::vector<Hypothesis> list;
-    for (const auto& [key, h] : visited_)
-      if (h.candidates.size() == size && kept_[h.structure]) list.push_back(h);
-    std::sort(list.begin(), list.end(), more_probable);
-    std::map<std::pair<std::vector<Cause>, int>, int> taken;
-    std::vector<Hypothesis> diverse;
-    for (const Hypothesis& h : list) {
-      std::vector<Cause> causes;
-      for (const int c : h.candidates) causes.emplace_back(candidate(c).effect, candidate(c).at);
-      if (++taken[{causes, h.structure}] > 2) continue;
+  std::vector<Visit> best_of(int size, int most) const {
+    std::vector<Visit> list;
+    for (const Visit& each : visited_)
+      if (each.count == size && kept_[each.structure]) list.push_back(each);
+    std::ranges::stable_sort(list, std::ranges::greater{}, &Visit::log_weight);
+    std::map<std::pair<std::vector<int>, int>, int> taken;
+    std::vector<Visit> diverse;
+    for (const Visit& each : list) {
+      std::vector<int> causes;
+      for (const int c : each.all()) causes.push_back(bench_.cause_[c]);
+      if (++taken[{causes, each.structure}] > 2) continue;
       if (static_cast<int>(diverse.size()) >= most) break;
-      diverse.push_back(h);
+      diverse.push_back(each);
     }
     return diverse;
   }
 
-  void extend(const std::vector<Hypothesis>& from) {
-    for (const Hypothesis& h : from) {
+  void extend(const std::vector<Visit>& from) {
+    for (const Visit& each : from) {
+      const Hypothesis h = each.hypothesis();
       const MarginalLikelihood rest =
           bench_.marginal_likelihoods_[h.structure].given(bench_.terms(h));
+      const double held = bench_.held(h);
       for (int c = 0; c < candidates_; ++c) {
-        if (!bench_.seen_[c] || std::count(h.candidates.begin(), h.candidates.end(), c)) continue;
+        if (!bench_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
         const EvidenceEvaluator::Single single = bench_.weigh(rest, c);
-        Hypothesis more = h;
-        more.candidates.push_back(c);
-        more.sizes.push_back(single.size);
-        note(more, single.log_sum + bench_.held(h));
+        Visit more = each;
+        more.add(c, single.size);
+        note(more, single.log_sum + held);
       }
     }
   }
 
-  Posterior posterior() const {
-    Posterior posterior;
-    for (const auto& [key, h] : visited_) posterior.hypotheses.push_back(h);
-    std::sort(posterior.hypotheses.begin(), posterior.hypotheses.end(), more_probable);
-    const double top = posterior.hypotheses.front().log_weight;
+  Posterior posterior() {
+    std::ranges::stable_sort(visited_, std::ranges::greater{}, &Visit::log_weight);
+    const double top = visited_.front().log_weight;
     double sum = 0;
-    for (const Hypothesis& h : posterior.hypotheses) sum += std::exp(h.log_weight - top);
+    for (const Visit& each : visited_) sum += std::exp(each.log_weight - top);
     const double total = top + std::log(sum);
+    Posterior posterior;
     posterior.log_total = total - bench_.marginal_likelihoods_.front().log_evidence({});
-    for (Hypothesis& h : posterior.hypotheses) {
-      h.log_weight -= total;
-      share_out(h, posterior);
+    posterior.hypotheses.reserve(visited_.size());
+    std::vector<double> family(bench_.blocks_.size()), cause(bench_.blocks_.size());
+    for (Visit& each : visited_) {
+      each.log_weight -= total;
+      share_out(each, family, cause, posterior);
+      posterior.hypotheses.push_back(each.hypothesis());
+    }
+    for (int c = 0; c < candidates_; ++c) {
+      const Candidate& candidate = bench_.all_.list[static_cast<std::size_t>(c)];
+      const auto at = static_cast<std::size_t>(c);
+      if (family[at] > 0) posterior.family[candidate.effect] = family[at];
+      if (cause[at] > 0) posterior.cause[{candidate.effect, candidate.at}] = cause[at];
     }
     return posterior;
   }
 
-  void share_out(const Hypothesis& h, Posterior& posterior) const {
-    const double p = std::exp(h.log_weight);
-    const bool unknown = bench_.structure(h.structure).kind > 0;
+  /// Its probability, to each family and cause (by number) that it has.
+  void share_out(const Visit& visit, std::vector<double>& family, std::vector<double>& cause,
+                 Posterior& posterior) const {
+    const double p = std::exp(visit.log_weight);
+    const bool unknown = bench_.structure(visit.structure).kind > 0;
     if (unknown) posterior.unknown += p;
-    if (!unknown && h.candidates.empty()) posterior.none += p;
-    std::set<std::string> families;
-    std::set<Cause> causes;
-    for (const int c : h.candidates) {
-      families.insert(candidate(c).effect);
-      causes.insert({candidate(c).effect, candidate(c).at});
-    }
-    for (const std::string& f : families) posterior.family[f] += p;
-    for (const Cause& c : causes) posterior.cause[c] += p;
-  }
-
-  static bool more_probable(const Hypothesis& a, const Hypothesis& b) {
-    return a.log_weight > b.log_weight;
+    if (!unknown && visit.count == 0) posterior.none += p;
+    const auto once = [&](const std::vector<int>& number, std::vector<double>& to) {
+      for (int i = 0; i < visit.count; ++i) {
+        const int mine = number[visit.candidates[i]];
+        bool before = false;
+        for (int j = 0; j < i; ++j) before = before || number[visit.candidates[j]] == mine;
+        if (!before) to[mine] += p;
+      }
+    };
+    once(bench_.family_, family);
+    once(bench_.cause_, cause);
   }
 
   const EvidenceEvaluator& bench_;
   int candidates_;
   std::vector<char> kept_;  ///< by structure: pairs and triples are tried in it
-  std::map<std::pair<std::vector<int>, int>, Hypothesis> visited_;
+  std::vector<Visit> visited_;
 };
 
 Posterior EvidenceEvaluator::search(int singles, int pairs) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -59,8 +60,15 @@ class EvidenceEvaluator {
                     const Candidates& all, const std::vector<EffectParameter>& parameters,
                     const SearchRule& rule);
 
-  /// Exchanges y in every workbench, or in those of noise alone: enough for best_found().
-  void look_at(const Eigen::VectorXd& y, const Eigen::VectorXd& pull, bool noise_alone = false);
+  /// What several y say, one a column, in every workbench or in those of noise alone: enough for
+  /// best_found().
+  using Views = std::vector<MarginalLikelihood::Views>;
+  enum class Of { all, noise_alone };
+  Views views_of(const Eigen::MatrixXd& Y, Of which = Of::all) const;
+  /// Exchanges y in the workbenches of the views.
+  void look_at(const Views& views, Eigen::Index which);
+  /// Goes back to that of the rows.
+  void look_at_rows();
   Posterior search() const { return search(rule_.extended_singles, rule_.extended_pairs); }
   /// So many singles extended to pairs, so many pairs to triples.
   Posterior search(int singles, int pairs) const;
@@ -106,7 +114,7 @@ class EvidenceEvaluator {
   struct Single {
     double log_sum = 0, log_best = 0, size = 1;
   };
-  double log_prior(const std::vector<int>& candidates, int structure) const;
+  double log_prior(std::span<const int> candidates, int structure) const;
   /// One candidate in the light of a workbench, its sizes summed over.
   Single weigh(const MarginalLikelihood& marginal_likelihood, int candidate) const;
   double plausibility(int candidate, double size) const;
@@ -117,6 +125,7 @@ class EvidenceEvaluator {
   Hypothesis without_parts(Hypothesis h) const;
   /// One of them holds all that the other has.
   bool overlap(int a, int b) const;
+  void number_causes();
   void make_blocks(const std::vector<EffectParameter>& parameters);
   /// `columns` are those of the workbench's structure.
   void agree(MarginalLikelihood& marginal_likelihood, Columns columns);
@@ -129,6 +138,9 @@ class EvidenceEvaluator {
   std::vector<Block> blocks_;
   std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1
   std::vector<char> seen_;                    ///< not absorbed altogether
+  /// By candidate: number of the first candidate of its family (effect), of its cause (effect and
+  /// place).
+  std::vector<int> family_, cause_;
 };
 
 }  // namespace selfcal

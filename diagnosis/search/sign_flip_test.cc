@@ -98,14 +98,15 @@ class Dealer {
   std::vector<std::vector<std::vector<Eigen::Index>>> groups_;  ///< rows alike, their equations
 };
 
-/// Log evidence times prior of the most probable structure over that of the most probable noise.
-double found_structure(const EvidenceEvaluator& bench, const Eigen::VectorXd& y) {
-  double noise = -INFINITY, structure = -INFINITY;
+/// Of each column of `Y`: log evidence times prior of the most probable structure over that of the
+/// most probable noise.
+Eigen::ArrayXd found_structure(const EvidenceEvaluator& bench, const Eigen::MatrixXd& Y) {
+  Eigen::ArrayXd noise = Eigen::ArrayXd::Constant(Y.cols(), -INFINITY), structure = noise;
   for (int s = 0; s < bench.structures(); ++s) {
-    const double log =
-        bench.marginal_likelihood(s).log_evidence_of(y) + std::log(bench.structure(s).probability);
-    double& best = bench.structure(s).kind == 0 ? noise : structure;
-    best = std::max(best, log);
+    const Eigen::ArrayXd log = bench.marginal_likelihood(s).log_evidences_of(Y).array() +
+                               std::log(bench.structure(s).probability);
+    Eigen::ArrayXd& best = bench.structure(s).kind == 0 ? noise : structure;
+    best = best.max(log);
   }
   return structure - noise;
 }
@@ -125,14 +126,15 @@ NullDistribution::NullDistribution(const LinearisedModel& view, EvidenceEvaluato
   const Eigen::VectorXd residual = view.geometry_residuals(rows);
   SignRandom random(seed);
   OutliersOfSearch outliers(kept, rows, static_cast<size_t>(data.rows()), most_rejected);
-  const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows.pull.size());
+  Eigen::MatrixXd Y(residual.size(), resamples);
+  for (int i = 0; i < resamples; ++i) Y.col(i) = flipped(residual, kept, data, random);
+  const EvidenceEvaluator::Views views = bench.views_of(Y, EvidenceEvaluator::Of::noise_alone);
   for (int i = 0; i < resamples; ++i) {
-    const Eigen::VectorXd y = flipped(residual, kept, data, random);
-    bench.look_at(y, no_pull, true);
+    bench.look_at(views, i);
     const EvidenceEvaluator::Found best = bench.best_found();
-    found_.push_back(best.log_odds + std::max(0.0, outliers.gain(bench, best, y)));
+    found_.push_back(best.log_odds + std::max(0.0, outliers.gain(bench, best, Y.col(i))));
   }
-  bench.look_at(rows.y, rows.pull);
+  bench.look_at_rows();
 }
 
 double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
@@ -152,10 +154,10 @@ double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
       residual.cwiseQuotient(view.geometry_leaves(rows).cwiseMax(kLeastOfRow).cwiseSqrt());
   const Dealer dealer(kept, data);
   SignRandom random(seed);
-  std::vector<double> found;
-  for (int i = 0; i < resamples; ++i)
-    found.push_back(found_structure(bench, dealer.dealt(noise, random)));
-  return share_as_good(found, found_structure(bench, residual));
+  Eigen::MatrixXd Y(residual.size(), resamples);
+  for (int i = 0; i < resamples; ++i) Y.col(i) = dealer.dealt(noise, random);
+  const Eigen::ArrayXd found = found_structure(bench, Y);
+  return share_as_good({found.begin(), found.end()}, found_structure(bench, residual)[0]);
 }
 
 double least_probability_of_none(double p) {

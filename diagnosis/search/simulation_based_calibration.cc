@@ -42,10 +42,14 @@ class Simulator {
     SimulationBasedCalibration practice;
     std::vector<Stated> stated;
     int causes = 0, none = 0;
-    const Eigen::VectorXd no_pull = Eigen::VectorXd::Zero(rows_.pull.size());
-    for (int i = 0; i < options_.practice; ++i) {
-      std::string truth;
-      bench_.look_at(session(truth), no_pull);
+    std::vector<std::string> truths(static_cast<std::size_t>(options_.practice));
+    Eigen::MatrixXd Y(rows_.y.size(), options_.practice);
+    Eigen::Index drawn = 0;
+    for (std::string& truth : truths) Y.col(drawn++) = session(truth);
+    const EvidenceEvaluator::Views views = bench_.views_of(Y);
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      const std::string& truth = truths[i];
+      bench_.look_at(views, static_cast<Eigen::Index>(i));
       const CauseResult answer = answered(bench_.search(kExtendedSingles, 0));
       stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
@@ -60,7 +64,7 @@ class Simulator {
     practice.right /= std::max(causes, 1);
     practice.false_alarms /= std::max(none, 1);
     practice.temperature = fitted(stated);
-    bench_.look_at(rows_.y, rows_.pull);
+    bench_.look_at_rows();
     return practice;
   }
 
