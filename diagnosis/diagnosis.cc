@@ -9,6 +9,7 @@
 #include "diagnosis/report/attribution.h"
 #include "diagnosis/report/closing.h"
 #include "diagnosis/report/detectable.h"
+#include "diagnosis/report/doubt.h"
 #include "diagnosis/report/experiment_design.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
@@ -48,6 +49,8 @@ class Diagnostician {
     tell("closing the gap", 0.85);
     close_gap(view_, *bench_, posterior_, data_, options_, result_);
     result_.why = verdict_in_words(result_);
+    if (const std::string doubt = doubt_of(view_, data_, result_); !doubt.empty())
+      withdraw(doubt, result_);
     return std::move(result_);
   }
 

@@ -1,0 +1,88 @@
+#include "diagnosis/report/doubt.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "constraints/estimation/first_look.h"
+#include "constraints/estimation/noise.h"
+#include "diagnosis/search/causes.h"
+
+namespace selfcal {
+namespace {
+
+/// Of the usual largest: beyond it by two sigma is no machine. What is moved or exchanged at a
+/// moment (a tool, a fixture) may be moved as far as one likes.
+constexpr double kImpossible = 20;
+constexpr std::array<std::string_view, 3> kMovedAtWill = {"tool_shift", "fixture_shift",
+                                                          "zero_shift"};
+constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
+constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
+constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
+
+std::string impossible_size(const std::vector<CauseResult>& named) {
+  for (const CauseResult& each : named) {
+    if (std::ranges::find(kMovedAtWill, each.effect) != kMovedAtWill.end()) continue;
+    for (const NamedValue& v : each.parameters)
+      if (std::abs(v.value) - 2 * v.sigma > kImpossible * v.usual_most)
+        return "no machine has " + v.name + " of " + format_number(v.value) + " " + v.unit +
+               ", which is what the rows would need";
+  }
+  return {};
+}
+
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
+  return text;
+}
+
+std::string beyond_tolerances(const LinearisedModel& view, const Diagnosis& diagnosis) {
+  if (diagnosis.noise <= gross_misfit(view.geometry(), true)) return {};
+  return "calibration and all effects leave " + millimetres(diagnosis.noise) +
+         ", which no tolerance of the maker explains";
+}
+
+std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
+  const std::vector<Scale> noise = view.noise_of_sets();
+  for (std::size_t s = 0; s < data.sets.size(); ++s) {
+    const double declared = data.sets[s].noise, found = noise[s].length;
+    if (declared <= 0 || found <= kBeyondSheet * declared) continue;
+    const double repeats = repeat_sigma(data, static_cast<int>(s),
+                                        view.adjusted().fitted.at.residuals, view.outlier());
+    if (repeats > kConfirmed * found) continue;
+    return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
+           " once the robot is calibrated where their file states a noise of " +
+           millimetres(declared) +
+           (repeats > 0 ? ", and their repeats differ by " + millimetres(repeats) : "");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis) {
+  if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
+  if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
+  return diagnosis.verdict.effect == kNone ? beyond_sheet(view, data) : std::string();
+}
+
+void withdraw(const std::string& doubt, Diagnosis& diagnosis) {
+  const bool named = !diagnosis.named.empty();
+  diagnosis.named.clear();
+  const auto unknown = std::ranges::find(diagnosis.candidates, kUnknown, &CauseResult::effect);
+  if (unknown != diagnosis.candidates.end() && unknown->probability < kWithdrawn) {
+    const double others = (1 - kWithdrawn) / std::max(1 - unknown->probability, 1e-12);
+    for (CauseResult& each : diagnosis.candidates) each.probability *= std::min(others, 1.0);
+    unknown->probability = kWithdrawn;
+  }
+  diagnosis.verdict = {.effect = kUnknown, .probability = kWithdrawn};
+  agree(diagnosis.candidates, diagnosis.verdict);
+  diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
+                  "; look at the rows and files first" +
+                  (named ? " (what would be named else: " + diagnosis.why + ")" : "");
+}
+
+}  // namespace selfcal

@@ -1,0 +1,24 @@
+// Rows and files that no cause may be named from, however well one fits them.
+//
+// A search among effects explains whatever it is given. What it finds in a table of degrees taken
+// for radians, or in the rows of another robot, is of a size that no machine has, or leaves what no
+// noise is. Then nothing is named: structure of unknown kind is there, and a person looks at the
+// rows and files first.
+#pragma once
+
+#include <string>
+
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/findings.h"
+
+namespace selfcal {
+
+/// What speaks against the rows or files, in words; empty where nothing does. In turn: a named
+/// cause far beyond what any machine has; what is left beyond what the maker's tolerances explain;
+/// where nothing is named, noise far beyond the data sheet's that no repeat confirms.
+std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis);
+
+/// Takes back what is named: the verdict is `unknown`, and its words begin with the doubt.
+void withdraw(const std::string& doubt, Diagnosis& diagnosis);
+
+}  // namespace selfcal
