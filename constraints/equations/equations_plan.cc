@@ -16,7 +16,7 @@ std::vector<Item> all_items(const DataSet& data, int set) {
   std::vector<Item> items;
   std::map<int, int> last;  // group -> row
   for (int row = 0; row < data.rows.rows(); ++row) {
-    if (data.rows.set[row] != set) continue;
+    if (data.rows.set[row] != set || data.rows.check[row] == kCopy) continue;
     if (!paired) {
       items.push_back({row, -1});
       continue;

@@ -14,6 +14,9 @@ namespace selfcal {
 
 /// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
 /// reader has made sure that the cells a row's method needs are there and finite.
+/// Of Observations::check: the row says what another one says in every digit.
+inline constexpr char kCopy = 2;
+
 struct Observations {
   Eigen::MatrixXd q;             ///< rows x joints, readings (rad or m)
   Eigen::MatrixXd position;      ///< rows x 3, x y z (m)
@@ -27,7 +30,7 @@ struct Observations {
   std::vector<int> set;          ///< rows, index into the data set's sets
   std::vector<int> group;        ///< rows, index into its set's group names; -1 without a group
   std::vector<int> repeat;  ///< rows, equal for immediate repeats; -1 without; empty when no column
-  std::vector<char> check;  ///< rows, 1 for rows kept aside to judge
+  std::vector<char> check;  ///< rows, 1 for rows kept aside to judge; kCopy: takes no part at all
   /// By their names, the columns of one number a row that methods bring along (Method::measures).
   std::map<std::string, Eigen::VectorXd, std::less<>> measured;
 

@@ -19,7 +19,9 @@ struct JudgedRows {
 JudgedRows judged_rows(const DataSet& data, int set, const ToolPoses& tool) {
   JudgedRows rows;
   for (int row = 0; row < data.rows.rows(); ++row) {
-    if (data.rows.set[row] != set || !tool[static_cast<std::size_t>(row)]) continue;
+    if (data.rows.set[row] != set || !tool[static_cast<std::size_t>(row)] ||
+        data.rows.check[row] == kCopy)
+      continue;
     (data.rows.check[row] ? rows.check : rows.fit).push_back(row);
   }
   rows.apart = !rows.fit.empty() && !rows.check.empty();

@@ -39,7 +39,7 @@ DataSet with_fold(const DataSet& data, int fold) {
   const std::vector<int> place = places(data.rows, all, count);
   for (int row = 0; row < data.rows.rows(); ++row) {
     const int stretch = place[row] * kStretches / count[data.rows.set[row]];
-    part.rows.check[row] = stretch % kFolds == fold;
+    if (data.rows.check[row] != kCopy) part.rows.check[row] = stretch % kFolds == fold;
   }
   return part;
 }

@@ -3,7 +3,10 @@
 #include "io/files/observations_csv.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "io/files/columns.h"
@@ -80,6 +83,7 @@ class RowReader {
     if (auto fault = numbers_.read(cells, row)) return fault;
     if (auto fault = check_needs(cells, *labels)) return fault;
     append(*labels);
+    note_copy(cells, *labels);
     return std::nullopt;
   }
 
@@ -91,6 +95,11 @@ class RowReader {
 
   std::vector<std::string> notices() const {
     std::vector<std::string> notices;
+    if (!copies_.empty())
+      notices.push_back(std::to_string(copies_.size()) +
+                        (copies_.size() > 1 ? " rows say" : " row says") +
+                        " what another says in every digit, first row " +
+                        std::to_string(copies_.front() + 1) + ": each is counted once");
     std::string ignored;
     for (const std::string& name : layout_.ignored()) {
       ignored += (ignored.empty() ? "" : ", ") + name;
@@ -145,6 +154,23 @@ class RowReader {
     return std::nullopt;
   }
 
+  /// A measurement that another row has in every digit is no second one. Readings alone may well be
+  /// the same twice, and so may what is called a repeat.
+  void note_copy(Cells cells, const Labels& labels) {
+    const Set& set = data_.sets[labels.set];
+    const bool measures = std::ranges::any_of(
+        needs_[labels.set], [](const Need& need) { return need.column != "group"; });
+    if (!measures || set.method->paired() || labels.repeat >= 0) return;
+    std::size_t hash = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (i != layout_.part)
+        hash = (hash ^ std::hash<std::string_view>()(cells[i])) * 0x9E3779B97F4A7C15u;
+    if (!seen_.insert(hash).second) {
+      copies_.push_back(set_.size() - 1);
+      check_.back() = kCopy;
+    }
+  }
+
   void append(const Labels& labels) {
     const auto extend = [](std::vector<double>& column, const auto& vector) {
       column.insert(column.end(), vector.begin(), vector.end());
@@ -183,6 +209,8 @@ class RowReader {
   std::vector<std::vector<double>> measured_;  // per column that a method brings along
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
+  std::unordered_set<std::size_t> seen_;  // the rows' cells, hashed
+  std::vector<std::size_t> copies_;
 };
 
 Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {

@@ -284,6 +284,23 @@ TEST_F(ObservationsCsv, NamesUnknownColumnsInOneNotice) {
               ElementsAre("observations.csv: unknown columns are ignored: operator, X, m1, q01"));
 }
 
+TEST_F(ObservationsCsv, CountsRowsThatSayTheSameInEveryDigitOnce) {
+  const std::string csv =
+      "set,group,q1,q2,x,y,z,repeat,part\n"
+      "tracker,,0.1,0.2,1,2,3,,fit\n"
+      "tracker,,0.1,0.2,1,2,3,,check\n"  // whichever part it is given to
+      "tracker,,0.1,0.2,1,2,3.1,,fit\n"  // measured again
+      "tracker,,0.1,0.2,1,2,3,a,fit\n"   // said to be repeats
+      "tracker,,0.1,0.2,1,2,3,a,fit\n"
+      "table,,0.9,1.0,,,,,fit\n"  // nothing but readings, which encoders may give twice
+      "table,,0.9,1.0,,,,,fit\n";
+  const auto loaded = load(csv);
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_THAT(loaded->data.rows.check, ElementsAre(0, kCopy, 0, 0, 0, 0, 0));
+  EXPECT_THAT(notices(csv), ElementsAre("observations.csv: 1 row says what another says in every "
+                                        "digit, first row 2: each is counted once"));
+}
+
 TEST_F(ObservationsCsv, ReadsManyRows) {
   constexpr int kRows = 50000;
   std::string csv = "set,q1,q2,x,y,z\n";
