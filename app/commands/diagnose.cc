@@ -87,6 +87,7 @@ void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosi
                    {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values});
   if (wrong.empty()) return;
   diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong);
+  diagnosis.why = wrong + " As the files are: " + diagnosis.why;
   NextStep step;
   step.what = wrong;
   step.probability_after = std::numeric_limits<double>::quiet_NaN();

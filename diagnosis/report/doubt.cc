@@ -13,30 +13,32 @@
 namespace selfcal {
 namespace {
 
-/// Of the usual largest: beyond it by two sigma is no machine. What is moved or exchanged at a
-/// moment (a tool, a fixture) may be moved as far as one likes.
+/// Of the usual largest: beyond it by two sigma is no machine. What can be moved or exchanged (a
+/// tool, a fixture, the instrument) may be moved as far as one likes.
 constexpr double kImpossible = 20;
-constexpr std::array<std::string_view, 3> kMovedAtWill = {"tool_shift", "fixture_shift",
-                                                          "zero_shift"};
+constexpr std::array<std::string_view, 4> kMovedAtWill = {"tool_shift", "fixture_shift",
+                                                          "zero_shift", "base_drift"};
 constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
 constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
+
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string millimetres(double metres) { return three_digits(1e3 * metres) + " mm"; }
 
 std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
     if (std::ranges::find(kMovedAtWill, each.effect) != kMovedAtWill.end()) continue;
     for (const NamedValue& v : each.parameters)
       if (std::abs(v.value) - 2 * v.sigma > kImpossible * v.usual_most)
-        return "no machine has " + v.name + " of " + format_number(v.value) + " " + v.unit +
-               ", which is what the rows would need";
+        return "no machine has " + v.name + " of " + three_digits(v.value) +
+               (v.unit == "1" ? "" : " " + v.unit) + ", which is what the rows would need";
   }
   return {};
-}
-
-std::string millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
-  return text;
 }
 
 std::string beyond_tolerances(const LinearisedModel& view, const Diagnosis& diagnosis) {
@@ -54,7 +56,7 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
                                         view.adjusted().fitted.at.residuals, view.outlier());
     if (repeats > kConfirmed * found) continue;
     return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
-           " once the robot is calibrated where their file states a noise of " +
+           " once the robot is calibrated, and their files state a noise of " +
            millimetres(declared) +
            (repeats > 0 ? ", and their repeats differ by " + millimetres(repeats) : "");
   }

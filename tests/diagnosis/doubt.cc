@@ -1,0 +1,61 @@
+// Rows and files that nothing may be named from, and those that look like them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "diagnosis/diagnosis.h"
+#include "tests/diagnosis/two_sessions.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+/// Position rows of a calibrated robot, some of them repeated at once.
+struct Rows {
+  explicit Rows(int repeats = 1) {
+    const TwoSessions sessions;
+    robot = sessions.robot;
+    data = sessions.before;
+    std::vector<int> list;
+    for (int row = 0; row < data.rows.rows(); ++row) list.insert(list.end(), repeats, row);
+    data.rows = taken(data.rows, list);
+    data.rows.repeat = list;
+  }
+
+  void disturb(double sigma) {
+    Random random(11);
+    std::normal_distribution<double> normal(0, sigma);
+    for (double& each : data.rows.position.reshaped()) each += normal(random);
+  }
+
+  std::shared_ptr<const Robot> robot;
+  DataSet data;
+};
+
+TEST(Doubt, NamesNothingWhereOneJointIsReadWithTheOtherSign) {
+  Rows rows;
+  rows.data.rows.q.col(3) *= -1;
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
+  EXPECT_GT(diagnosis.verdict.probability, 0.9);
+  EXPECT_TRUE(diagnosis.named.empty());
+  EXPECT_THAT(diagnosis.why, HasSubstr("look at the rows and files first"));
+}
+
+TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {
+  Rows rows;
+  rows.disturb(50 * kTrackerNoise);
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
+  EXPECT_THAT(diagnosis.why, HasSubstr("state a noise of 0.02 mm"));
+}
+
+TEST(Doubt, BelievesTheRepeatsWhereTheySayThatTheNoiseIsSo) {
+  Rows rows(2);
+  rows.disturb(50 * kTrackerNoise);
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_EQ(diagnosis.verdict.effect, kNone) << diagnosis.why;
+}
+
+}  // namespace
+}  // namespace selfcal
