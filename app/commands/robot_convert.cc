@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/foreign_robot.h"
 #include "app/report/format.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "io/models/delta_firmware.h"
 #include "io/models/mjcf_text.h"
-#include "io/models/mujoco.h"
 #include "io/models/ur_kinematics.h"
 #include "io/models/urdf_text.h"
 #include "kinematics/rotation.h"
@@ -20,80 +20,12 @@ namespace {
 
 constexpr std::size_t kMostModelBytes = std::size_t{16} << 20;
 
-struct ConvertArguments {
-  std::string file, to = "yaml", like, out;
-  UrdfEnds ends;
+struct ConvertArguments : ForeignRobot {
+  std::string to = "yaml", like, out;
 };
-
-void note(const std::string& what) { std::fprintf(stderr, "selfcal: note: %s\n", what.c_str()); }
 
 void note_left_out(const std::vector<std::string>& all) {
   for (const std::string& each : all) note("left out: " + each);
-}
-
-/// The robot file of a chain, after a line that says where it is from.
-Result<std::string> chain_file(const JointChain& chain, const std::string& origin,
-                               const ConvertArguments& arguments) {
-  const std::string converted =
-      "# From " + origin + "\n" + write_yaml(serial::write(frames_of(chain)));
-  if (const auto robot = robot_of(converted, arguments.file + ", converted"); !robot)
-    return tl::unexpected(robot.error());
-  return converted;
-}
-
-/// A model of MuJoCo's own, which its first element tells.
-bool is_mjcf(const std::string& text) { return text.find("<mujoco") != std::string::npos; }
-
-Result<std::string> from_mjcf(const ConvertArguments& arguments) {
-  if (!arguments.ends.base.empty())
-    return tl::unexpected(
-        Failure{kWrongUsage,
-                "--base chooses a link of a URDF: a model for MuJoCo is taken from its world"});
-  const auto model = read_mujoco(arguments.file, arguments.ends.tip);
-  if (!model) return tl::unexpected(model.error());
-  for (const std::string& notice : model->notices) note(notice);
-  return chain_file(model->chain,
-                    "the MuJoCo model " + model->chain.name + ", its world to " + model->tool,
-                    arguments);
-}
-
-/// The kinematics file of Universal Robots' driver, which one key tells.
-bool is_ur_kinematics(const std::string& text, const ConvertArguments& arguments) {
-  const auto node = parse_yaml(text, arguments.file);
-  return node && node->find("kinematics") && !node->find("frames");
-}
-
-/// Its joints have the names that the driver's readings have.
-Result<std::string> from_ur(const std::string& text, const ConvertArguments& arguments) {
-  static constexpr const char* kReadings[] = {"shoulder_pan_joint", "shoulder_lift_joint",
-                                              "elbow_joint",        "wrist_1_joint",
-                                              "wrist_2_joint",      "wrist_3_joint"};
-  auto read = read_ur_kinematics(text, arguments.file);
-  if (!read) return tl::unexpected(read.error());
-  for (std::size_t j = 0; j < read->chain.joints.size(); ++j)
-    read->chain.joints[j].name = kReadings[j];
-  note(
-      "the world is base_link_inertia of the driver, the end the flange wrist_3; the file has no "
-      "limits, masses and tool");
-  return chain_file(read->chain, "Universal Robots' kinematics " + read->hash, arguments);
-}
-
-/// The robot file that `text` comes to: a URDF, a model for MuJoCo, Universal Robots' kinematics or
-/// a robot file.
-Result<std::string> as_robot_file(const std::string& text, const ConvertArguments& arguments) {
-  if (!looks_like_xml(text)) {
-    if (is_ur_kinematics(text, arguments)) return from_ur(text, arguments);
-    const auto robot = robot_of(text, arguments.file);
-    if (!robot) return tl::unexpected(robot.error());
-    return robot_text(**robot, values(**robot));
-  }
-  if (is_mjcf(text)) return from_mjcf(arguments);
-  const auto urdf = read_urdf(text, arguments.file, arguments.ends);
-  if (!urdf) return tl::unexpected(urdf.error());
-  for (const std::string& notice : urdf->notices) note(notice);
-  return chain_file(
-      urdf->chain,
-      "the URDF " + urdf->chain.name + ", " + urdf->ends.base + " to " + urdf->ends.tip, arguments);
 }
 
 /// Names what another program does not hold of a robot: its effects but for those that it `holds`.
@@ -239,6 +171,8 @@ int convert(const ConvertArguments& arguments) {
     return wrong_usage(
         "--to ur needs --like FILE, the kinematics file that calibration_correction wrote for this "
         "robot: its links and its hash, which the driver compares with the controller, are kept");
+  if (!arguments.convention.empty() && !is_table(arguments.file))
+    return wrong_usage("--convention is of a table (FILE.csv)");
   const auto text = read_file(arguments.file, kMostModelBytes);
   if (!text) return tell(text.error());
   const bool ends = !arguments.ends.base.empty() || !arguments.ends.tip.empty();
@@ -266,9 +200,13 @@ void add_robot_convert(CLI::App& robot, int& status) {
                                            "kinematics, or a calibrated robot for another program");
   command
       ->add_option("FILE", arguments->file,
-                   "URDF, model for MuJoCo, kinematics of Universal Robots' driver or "
-                   "NAME.robot.yaml")
+                   "URDF, model for MuJoCo, kinematics of Universal Robots' driver, table of "
+                   "Denavit-Hartenberg numbers (.csv) or NAME.robot.yaml")
       ->required();
+  command
+      ->add_option("--convention", arguments->convention,
+                   "Of a table: standard or modified, which give different robots")
+      ->check(CLI::IsMember({"standard", "modified"}));
   command->add_option("--base", arguments->ends.base,
                       "Link of the URDF that the chain begins at (default: the root)");
   command->add_option("--tip", arguments->ends.tip,

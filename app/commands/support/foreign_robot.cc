@@ -1,0 +1,106 @@
+#include "app/commands/support/foreign_robot.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "app/commands/subcommand.h"
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+#include "io/models/dh_table.h"
+#include "io/models/mujoco.h"
+#include "io/models/ur_kinematics.h"
+
+namespace selfcal {
+namespace {
+
+/// The robot file of `text`, after a line that says where it is from.
+Result<std::string> robot_file(const std::string& text, const std::string& origin,
+                               const ForeignRobot& foreign) {
+  const std::string converted = "# From " + origin + "\n" + text;
+  if (const auto robot = robot_of(converted, foreign.file + ", converted"); !robot)
+    return tl::unexpected(robot.error());
+  return converted;
+}
+
+Result<std::string> chain_file(const JointChain& chain, const std::string& origin,
+                               const ForeignRobot& foreign) {
+  return robot_file(write_yaml(serial::write(frames_of(chain))), origin, foreign);
+}
+
+/// A model of MuJoCo's own, which its first element tells.
+bool is_mjcf(const std::string& text) { return text.find("<mujoco") != std::string::npos; }
+
+Result<std::string> from_mjcf(const ForeignRobot& foreign) {
+  if (!foreign.ends.base.empty())
+    return tl::unexpected(
+        Failure{kWrongUsage,
+                "--base chooses a link of a URDF: a model for MuJoCo is taken from its world"});
+  const auto model = read_mujoco(foreign.file, foreign.ends.tip);
+  if (!model) return tl::unexpected(model.error());
+  for (const std::string& notice : model->notices) note(notice);
+  return chain_file(model->chain,
+                    "the MuJoCo model " + model->chain.name + ", its world to " + model->tool,
+                    foreign);
+}
+
+/// The kinematics file of Universal Robots' driver, which one key tells.
+bool is_ur_kinematics(const std::string& text, const ForeignRobot& foreign) {
+  const auto node = parse_yaml(text, foreign.file);
+  return node && node->find("kinematics") && !node->find("frames");
+}
+
+/// Its joints have the names that the driver's readings have.
+Result<std::string> from_ur(const std::string& text, const ForeignRobot& foreign) {
+  static constexpr const char* kReadings[] = {"shoulder_pan_joint", "shoulder_lift_joint",
+                                              "elbow_joint",        "wrist_1_joint",
+                                              "wrist_2_joint",      "wrist_3_joint"};
+  auto read = read_ur_kinematics(text, foreign.file);
+  if (!read) return tl::unexpected(read.error());
+  for (std::size_t j = 0; j < read->chain.joints.size(); ++j)
+    read->chain.joints[j].name = kReadings[j];
+  note(
+      "the world is base_link_inertia of the driver, the end the flange wrist_3; the file has no "
+      "limits, masses and tool");
+  return chain_file(read->chain, "Universal Robots' kinematics " + read->hash, foreign);
+}
+
+Result<std::string> from_table(const ForeignRobot& foreign) {
+  if (foreign.convention.empty())
+    return tl::unexpected(Failure{
+        kWrongUsage,
+        "a table of alpha, a, d and theta is meant in one of two ways, which give different "
+        "robots: say --convention standard (a row moves along z by d and then along x by a, as "
+        "most data sheets have it) or --convention modified (after Craig, or Khalil)"});
+  const auto table = read_dh_table(foreign.file, foreign.convention);
+  if (!table) return tl::unexpected(table.error());
+  note("base and tool are as the table has them: `selfcal robot check` shows the frames");
+  return robot_file(write_yaml(*table),
+                    "the table " + std::filesystem::path(foreign.file).filename().string(),
+                    foreign);
+}
+
+Result<std::string> from_urdf(const std::string& text, const ForeignRobot& foreign) {
+  const auto urdf = read_urdf(text, foreign.file, foreign.ends);
+  if (!urdf) return tl::unexpected(urdf.error());
+  for (const std::string& notice : urdf->notices) note(notice);
+  return chain_file(
+      urdf->chain,
+      "the URDF " + urdf->chain.name + ", " + urdf->ends.base + " to " + urdf->ends.tip, foreign);
+}
+
+}  // namespace
+
+void note(const std::string& what) { std::fprintf(stderr, "selfcal: note: %s\n", what.c_str()); }
+
+bool is_table(const std::string& file) { return file.ends_with(".csv"); }
+
+Result<std::string> as_robot_file(const std::string& text, const ForeignRobot& foreign) {
+  if (is_table(foreign.file)) return from_table(foreign);
+  if (looks_like_xml(text)) return is_mjcf(text) ? from_mjcf(foreign) : from_urdf(text, foreign);
+  if (is_ur_kinematics(text, foreign)) return from_ur(text, foreign);
+  const auto robot = robot_of(text, foreign.file);
+  if (!robot) return tl::unexpected(robot.error());
+  return robot_text(**robot, values(**robot));
+}
+
+}  // namespace selfcal
