@@ -18,13 +18,15 @@ list(TRANSFORM parts PREPEND selfcal_)
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/selfcal)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/selfcal)
 install(TARGETS ${parts} EXPORT selfcal ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${headers})
-install(FILES app/selfcal.h DESTINATION ${headers})
-install(DIRECTORY kinematics constraints diagnosis DESTINATION ${headers} FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY io/files DESTINATION ${headers}/io FILES_MATCHING PATTERN "*.h")
-install(FILES io/result.h DESTINATION ${headers}/io)
+        COMPONENT library INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${headers})
+install(FILES app/selfcal.h DESTINATION ${headers} COMPONENT library)
+install(DIRECTORY kinematics constraints diagnosis DESTINATION ${headers} COMPONENT library
+        FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY io/files DESTINATION ${headers}/io COMPONENT library FILES_MATCHING PATTERN "*.h")
+install(FILES io/result.h DESTINATION ${headers}/io COMPONENT library)
 
-install(EXPORT selfcal NAMESPACE selfcal:: FILE selfcalTargets.cmake DESTINATION ${package})
+install(EXPORT selfcal NAMESPACE selfcal:: FILE selfcalTargets.cmake DESTINATION ${package}
+        COMPONENT library)
 write_basic_package_version_file(selfcalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES app/selfcalConfig.cmake io/files/libcsv.cmake ${PROJECT_BINARY_DIR}/selfcalConfigVersion.cmake
-        DESTINATION ${package})
+        DESTINATION ${package} COMPONENT library)

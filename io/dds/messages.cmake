@@ -43,5 +43,9 @@ target_link_libraries(selfcal_messages PUBLIC CycloneDDS::ddsc)
 # What others generate is held to their warnings, not to ours.
 set_target_properties(selfcal_messages PROPERTIES COMPILE_OPTIONS "" COMPILE_WARNING_AS_ERROR OFF)
 
-install(DIRECTORY ${message_folder}/selfcal_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/selfcal/msg
+# As a package of ROS 2, for the src of a workspace.
+set(messages_package ${CMAKE_INSTALL_DATADIR}/selfcal_msgs)
+install(DIRECTORY ${message_folder}/selfcal_msgs/ DESTINATION ${messages_package}/msg COMPONENT messages
         FILES_MATCHING PATTERN "*.msg")
+install(FILES ${message_folder}/selfcal_msgs/package.xml ${message_folder}/selfcal_msgs/CMakeLists.txt
+        DESTINATION ${messages_package} COMPONENT messages)
