@@ -22,8 +22,8 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 Matrix3Xd noise(Eigen::Index markers, double sigma, Random& random) {
-  std::normal_distribution<double> normal(0, sigma);
-  return Matrix3Xd::NullaryExpr(3, markers, [&] { return normal(random); });
+  std::normal_distribution<double> normal;
+  return Matrix3Xd::NullaryExpr(3, markers, [&] { return sigma * normal(random); });
 }
 
 Matrix3Xd about_the_centroid(const Matrix3Xd& markers) {
