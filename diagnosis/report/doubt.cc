@@ -13,11 +13,10 @@
 namespace selfcal {
 namespace {
 
-/// Of the usual largest: beyond it by two sigma is no machine. What can be moved or exchanged (a
-/// tool, a fixture, the instrument) may be moved as far as one likes.
+/// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
+/// exchanged may be moved as far as one likes.
 constexpr double kImpossible = 20;
-constexpr std::array<std::string_view, 4> kMovedAtWill = {"tool_shift", "fixture_shift",
-                                                          "zero_shift", "base_drift"};
+constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
 constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
 constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
