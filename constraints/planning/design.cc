@@ -301,6 +301,11 @@ void Design::update(Moments& at, Eigen::Index first, const Rise& rise, int sign)
 
 void Design::change(int candidate, int sign) {
   const auto which = static_cast<std::size_t>(candidate);
+  in_[which] = sign > 0;
+  if (sign < 0 && !(determinant(raised(all_.seen, at_[which], k_[which], -1)) > kLeastRemoved)) {
+    refresh();
+    return;
+  }
   const Eigen::MatrixXd w = rows_of(which);
   const Rise rise = rise_of(all_.C, w, sign);
   if (objective_.criterion == Criterion::sigma) {
@@ -322,7 +327,6 @@ void Design::change(int candidate, int sign) {
     log_determinant_ -= of_nuisance.log_determinant;
     update(nuisance_, interest(), of_nuisance, sign);
   }
-  in_[which] = sign > 0;
 }
 
 std::pair<int, double> Design::best_instead_of(int candidate) {
@@ -330,9 +334,7 @@ std::pair<int, double> Design::best_instead_of(int candidate) {
   const Eigen::MatrixXd CAC = CAC_, spread = spread_;
   const double trace = trace_, log_determinant = log_determinant_;
   const auto which = static_cast<std::size_t>(candidate);
-  const bool rounds = !(determinant(raised(all_.seen, at_[which], k_[which], -1)) > kLeastRemoved);
   change(candidate, -1);
-  if (rounds) refresh();
   std::pair<int, double> found = best(+1, kinds_[which]);
   all_ = all;
   nuisance_ = nuisance;

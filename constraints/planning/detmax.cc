@@ -22,22 +22,46 @@ class Search {
   Search(Design& design, const Progress& progress) : design_(design), progress_(progress) {}
 
   int add_and_drop() {
-    while (add_one_drop_one()) count();
-    design_.refresh();
-    return exchanges_;
+    return while_gaining([this] { return add_one_drop_one(); });
   }
   int exchange_pairs() {
-    while (exchange_best_pair()) count();
-    design_.refresh();
-    return exchanges_;
+    return while_gaining([this] { return exchange_best_pair(); });
   }
 
  private:
-  void count() {
-    if (++exchanges_ % kExchangesAfresh == 0) design_.refresh();
+  /// Repeats an exchange for as long as it gains. Rounding adds up, most where few are chosen: what
+  /// has not gained once the design is made anew is taken back, and tried again with the design
+  /// made anew after each exchange. So every round ends with more merit, and the search ends.
+  template <class ExchangeOne>
+  int while_gaining(ExchangeOne exchange_one) {
+    int counted = 0, since = 0, afresh = kExchangesAfresh;
+    design_.refresh();
+    std::vector<int> best = design_.chosen();
+    double merit = design_.merit();
+    for (;;) {
+      const bool exchanged = exchange_one();
+      if (exchanged) tell(counted + ++since);
+      if (exchanged && since < afresh) continue;
+      design_.refresh();
+      if (since == 0) return counted;
+      if (gains(design_.merit(), merit)) {
+        merit = design_.merit();
+        best = design_.chosen();
+        counted += since;
+        if (!exchanged) return counted;
+      } else {
+        design_.choose(best);
+        if (afresh == 1) return counted;
+        afresh = 1;
+      }
+      since = 0;
+    }
+  }
+
+  void tell(int exchanges) const {
     if (progress_)
       progress_("exchanging configurations",
-                exchanges_ / (exchanges_ + static_cast<double>(design_.chosen().size())));
+                exchanges / (exchanges + static_cast<double>(design_.chosen().size())));
   }
 
   bool add_one_drop_one() {
@@ -63,7 +87,7 @@ class Search {
     int out = -1, in = -1;
     for (const int each : design_.chosen()) {
       const auto [instead, merit] = design_.best_instead_of(each);
-      if (instead < 0 || !gains(merit, most)) continue;
+      if (instead < 0 || instead == each || !gains(merit, most)) continue;
       most = merit;
       out = each;
       in = instead;
@@ -79,7 +103,6 @@ class Search {
 
   Design& design_;
   const Progress& progress_;
-  int exchanges_ = 0;
 };
 
 }  // namespace
