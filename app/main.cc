@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/suggestion.h"
 
 namespace selfcal {
 namespace {
@@ -37,6 +38,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0)
+      if (const std::string what = unknown_word(app, {argv + 1, argv + argc}); !what.empty())
+        return wrong_usage(what);
     return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
   return status;

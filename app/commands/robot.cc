@@ -1,12 +1,16 @@
 // selfcal robot check FILE: validates a robot file and shows what a person can check by eye.
 #include <cstdio>
 #include <memory>
+#include <numbers>
 
 #include "app/commands/subcommand.h"
 #include "io/files/robot_file.h"
 
 namespace selfcal {
 namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kMillimetres = 1e3;
 
 int check(const std::string& file) {
   const auto robot = load_robot(file);
@@ -16,12 +20,13 @@ int check(const std::string& file) {
               std::string(r.kind()).c_str(), r.joints().size(), r.parameters().size(),
               model_hash(r).c_str());
   for (const Joint& joint : r.joints()) {
-    const char* unit_name = joint.quantity == Quantity::angle ? "rad" : "m";
+    const bool turns = joint.quantity == Quantity::angle;
+    const double factor = turns ? kDegrees : kMillimetres;
     if (joint.limited())
-      std::printf("  %s: %.4g to %.4g %s\n", joint.name.c_str(), joint.lower, joint.upper,
-                  unit_name);
+      std::printf("  %s: %.4g to %.4g %s\n", joint.name.c_str(), factor * joint.lower,
+                  factor * joint.upper, turns ? "degrees" : "mm");
     else
-      std::printf("  %s: no limits given (%s)\n", joint.name.c_str(), unit_name);
+      std::printf("  %s: no limits given (%s)\n", joint.name.c_str(), turns ? "turns" : "slides");
   }
   for (const std::string& line : r.text().remarks()) std::printf("%s\n", line.c_str());
   return kDone;

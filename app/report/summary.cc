@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "app/report/format.h"
 
 namespace selfcal {
 namespace {
@@ -12,15 +12,6 @@ namespace {
 constexpr size_t kMostListedItems = 12;
 constexpr double kToldShare = 0.1;  ///< of the end position's doubt: less is not told
 constexpr double kAlone = 0.9;      ///< share of the scale that one length carries alone
-
-[[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
-  char text[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// "touches" when every row that identifies is one, else "rows".
 const char* noun(const DataSet& data, const Solution& solution) {
@@ -44,21 +35,8 @@ std::string first_line(const DataSet& data, const Solution& solution) {
   int rows = 0;
   for (const SetResult& set : solution.sets)
     if (set.identifies) rows += set.rows;
-  std::string text =
-      phrase("%d parameters from %d %s: ", static_cast<int>(count), rows, noun(data, solution));
-  const Figures& check = solution.residual.check;
-  const Figures& fit = solution.residual.fit;
-  if (check.rows > 0) {
-    text += phrase(check.angle_alone ? "%.3g mrad before, %.3g mrad after on %d rows kept aside"
-                                     : "%.3g mm before, %.3g mm after on %d rows kept aside",
-                   1e3 * check.rms_before, 1e3 * check.rms_after, check.rows);
-    // False rows among those kept aside count; say what is left without them.
-    if (check.rms_without_rejected < 0.9 * check.rms_after)
-      text += phrase(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
-  } else {
-    text += phrase("%.3g mm before, %.3g mm after on the same rows (none kept aside)",
-                   1e3 * fit.rms_before, 1e3 * fit.rms_after);
-  }
+  std::string text = printed("%d parameters identified from %d %s", static_cast<int>(count), rows,
+                             noun(data, solution));
   size_t told = 0;
   const std::vector<Note>& held = solution.gauge;
   for (size_t i = 0; i < held.size() && told < 2; ++i) {
@@ -91,22 +69,36 @@ Shown shown(const Parameter& parameter) {
   return {1, parameter.other_unit.c_str()};
 }
 
+/// Nominal, new, change and sigma of a parameter. A ratio's own value is no ppm.
+std::string parameter_line(const ParameterResult& p, int width) {
+  const Shown unit = shown(p.parameter);
+  const bool ratio = p.parameter.quantity == Quantity::ratio;
+  const char* format = p.parameter.part == Part::effect || ratio ? " %11.4g" : " %11.4f";
+  std::string text = "  " + padded(full_name(p.parameter), width);
+  for (const double value : {p.parameter.nominal, p.value})
+    text += printed(ratio ? " %11.7f" : format, (ratio ? 1 : unit.factor) * value);
+  for (const double value : {p.value - p.parameter.nominal, p.sigma})
+    text += printed(format, unit.factor * value);
+  return text + " " + unit.unit + "\n";
+}
+
 std::string parameter_table(const Solution& solution) {
-  std::string text = "\n  parameter             change      sigma   (mm, mrad, ppm)\n";
-  int grouped = 0, without_effect = 0;
+  std::vector<const ParameterResult*> moved, still;
+  int grouped = 0, without_effect = 0, width = 9;
   for (const ParameterResult& p : solution.parameters) {
     grouped += p.status == Status::grouped;
     without_effect += p.status == Status::no_effect;
     if (p.status != Status::identified) continue;
-    const Shown unit = shown(p.parameter);
-    const std::string name = full_name(p.parameter);
-    text += phrase(p.parameter.part == Part::effect ? "  %-18s %9.3g  %9.2g %s\n"
-                                                    : "  %-18s %9.4f  %9.4f %s\n",
-                   name.c_str(), unit.factor * (p.value - p.parameter.nominal),
-                   unit.factor * p.sigma, unit.unit);
+    (std::abs(p.value - p.parameter.nominal) > p.sigma ? moved : still).push_back(&p);
+    width = std::max(width, characters(full_name(p.parameter)));
   }
+  std::string text = "\n  " + padded("parameter", width) +
+                     printed(" %11s %11s %11s %11s\n", "nominal", "new", "change", "sigma");
+  for (const ParameterResult* p : moved) text += parameter_line(*p, width);
+  if (!still.empty()) text += "  changed by less than their sigma, so perhaps not at all:\n";
+  for (const ParameterResult* p : still) text += parameter_line(*p, width);
   if (grouped + without_effect > 0)
-    text += phrase(
+    text += printed(
         "  and %d grouped with these, %d without effect on these rows (result.json says "
         "which)\n",
         grouped, without_effect);
@@ -120,29 +112,29 @@ void list(std::string& text, const char* title, const Items& items, Line line) {
   for (size_t i = 0; i < items.size() && i < kMostListedItems; ++i)
     text += "  " + line(items[i]) + "\n";
   if (items.size() > kMostListedItems)
-    text += phrase("  and %d more\n", static_cast<int>(items.size() - kMostListedItems));
+    text += printed("  and %d more\n", static_cast<int>(items.size() - kMostListedItems));
 }
 
 std::string set_line(const SetResult& set) {
   std::string text = set.name + " (" + set.method + "): ";
   if (!set.identifies)
-    text += phrase("%d rows judge%s", set.rows,
+    text += printed("%d rows judge%s", set.rows,
                    set.aligned ? ", own unknowns fitted to them (aligned)" : "");
   else
-    text += phrase("%d of %d rows used", set.used, set.rows);
-  if (set.noise_sigma > 0) text += phrase(", noise %.3g um", 1e6 * set.noise_sigma);
-  if (set.noise_angle_sigma > 0) text += phrase(" and %.3g urad", 1e6 * set.noise_angle_sigma);
-  if (set.repeat_sigma >= 0) text += phrase(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
+    text += printed("%d of %d rows used", set.used, set.rows);
+  if (set.noise_sigma > 0) text += printed(", noise %.3g um", 1e6 * set.noise_sigma);
+  if (set.noise_angle_sigma > 0) text += printed(" and %.3g urad", 1e6 * set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) text += printed(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
   return text;
 }
 
 /// Of a length given: what hangs on it, and from what size on an error in it is noticed.
 std::string scale_line(const ScaleLength& each, bool alone) {
   std::string text =
-      phrase("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
-  text += alone ? ", alone" : phrase(" (%.0f %% of it)", 100 * each.share);
-  text += phrase(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
-  return text + phrase(
+      printed("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
+  text += alone ? ", alone" : printed(" (%.0f %% of it)", 100 * each.share);
+  text += printed(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
+  return text + printed(
                     "; the maker's lengths expect %.6g +- %.2g mm and notice an error from %.2g mm "
                     "on",
                     1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
@@ -174,7 +166,7 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "and cone.");
   else if (solution.workspace.rms > data.target)
     steps.push_back(
-        phrase("The end position is known to %.3g mm only. Add rows that move the joints "
+        printed("The end position is known to %.3g mm only. Add rows that move the joints "
                "named above%s.",
                1e3 * solution.workspace.rms,
                solution.gauge.empty() ? "" : ", and a known length for the scale"));
@@ -187,12 +179,34 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
   return steps;
 }
 
+std::string headline(const Solution& solution) {
+  const Figures& check = solution.residual.check;
+  const char* unit = check.angle_alone ? "mrad" : "mm";
+  const std::string what = check.angle_alone ? "directions are met" : "the tool is met";
+  std::string figures;
+  if (check.rows > 0)
+    figures = what + printed(" to %.3g %s instead of %.3g %s on %d rows kept aside",
+                             1e3 * check.rms_after, unit, 1e3 * check.rms_before, unit, check.rows);
+  // False rows among those kept aside count; say what is left without them.
+  if (check.rows > 0 && check.rms_without_rejected < 0.9 * check.rms_after)
+    figures += printed(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+  switch (solution.verdict.answer) {
+    case Answer::improved:
+      return "Improved: " + figures + ".";
+    case Answer::not_improved:
+      return "Not improved: the maker's figures explain the rows as well" +
+             (figures.empty() ? std::string() : " (" + figures + ")") + ".";
+    case Answer::not_determined:
+      break;
+  }
+  return "Not determined: these rows do not say how the robot really is" +
+         (figures.empty() ? std::string() : "; " + figures) + ".";
+}
+
 std::string summary(const DataSet& data, const Solution& solution) {
-  const bool without_rows = solution.sets.empty();
-  std::string text = without_rows ? "" : first_line(data, solution);
-  text += std::string(to_string(solution.verdict.answer)) + ": " + solution.verdict.why + "\n";
-  if (without_rows) return text;
-  text += parameter_table(solution);
+  std::string text = headline(solution) + "\n" + solution.verdict.why + "\n";
+  if (solution.sets.empty()) return text;
+  text += first_line(data, solution) + parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
   const std::vector<ScaleLength>& lengths = solution.scale.stands_on;
   const bool alone = lengths.size() == 1 && lengths.front().share > kAlone;
@@ -203,15 +217,15 @@ std::string summary(const DataSet& data, const Solution& solution) {
     return each.sigma < kToldShare * solution.workspace.rms;
   });
   list(text, "The end position's doubt in the workspace (1 sigma)", budget,
-       [](const BudgetLine& each) { return phrase("%.3g mm: ", 1e3 * each.sigma) + each.source; });
+       [](const BudgetLine& each) { return printed("%.3g mm: ", 1e3 * each.sigma) + each.source; });
   list(text, "Held", solution.gauge,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Not excited by these rows", solution.unexcited,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Rows beyond the noise", solution.rejected, [](const Outlier& r) {
-    const std::string of_row = phrase("row %d (%s): ", r.row, r.set.c_str());
+    const std::string of_row = printed("row %d (%s): ", r.row, r.set.c_str());
     if (!std::isfinite(r.residual)) return of_row + r.why;
-    return of_row + phrase("%.3g %s, ", 1e3 * r.residual, r.angle_alone ? "mrad" : "mm") + r.why;
+    return of_row + printed("%.3g %s, ", 1e3 * r.residual, r.angle_alone ? "mrad" : "mm") + r.why;
   });
   list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
   list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });

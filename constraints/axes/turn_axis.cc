@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "kinematics/linear_algebra.h"
@@ -23,10 +24,10 @@ using Eigen::Vector3d;
 
 Matrix3Xd centred(const Matrix3Xd& markers) { return markers.colwise() - markers.rowwise().mean(); }
 
-std::string in_words(double value) {
-  const double rounded = std::round(value * 1e3) / 1e3;
-  std::string text = std::to_string(rounded);
-  return text.substr(0, text.find('.') + 4);
+std::string in_words(double angle) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g mrad", 1e3 * angle);
+  return text;
 }
 
 /// The two rows whose turns differ most.
@@ -37,7 +38,7 @@ double farthest_turn(const Eigen::VectorXd& variable) {
 std::string unsuited(const Turning& turning) {
   if (turning.variable.size() < 2) return "it takes two rows or more";
   if (const double turn = farthest_turn(turning.variable); turn < kLeastTurn)
-    return "the joint turns through " + in_words(turn) + " rad only; it takes " +
+    return "the joint turns through " + in_words(turn) + " only; it takes " +
            in_words(kLeastTurn) + " or more";
   if (turning.markers[0].cols() < 3) return "it takes three markers or more";
   const Eigen::VectorXd extent = singular_values(centred(turning.markers[0]).transpose()).values;
@@ -70,8 +71,8 @@ void find_direction(const Turning& turning, TurnAxis& axis) {
         log_rotation(exp_rotation(changes[i] * axis.e).transpose() * turns[i]).norm();
     if (off <= kOtherwise || !axis.problem.empty()) continue;
     axis.problem = "where the joint's readings turn by " + in_words(changes[i]) +
-                   " rad the markers turned otherwise, by " + in_words(off) +
-                   " rad: another joint moved, or the robot's file couples or gears this one "
+                   " the markers turned otherwise, by " + in_words(off) +
+                   ": another joint moved, or the robot's file couples or gears this one "
                    "otherwise";
   }
 }

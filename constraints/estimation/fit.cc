@@ -171,7 +171,7 @@ class Iteration {
   std::optional<std::string> arrival(double distance, const Eigen::VectorXd& step) const {
     if (distance < rule_.step_tolerance)
       return "step below " + format_number(rule_.step_tolerance) + " sigma";
-    if (step.norm() < kRounding) return "step below " + format_number(kRounding) + " m or rad";
+    if (step.norm() < kRounding) return "the step is down to rounding";
     return std::nullopt;
   }
 

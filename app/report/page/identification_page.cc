@@ -86,30 +86,6 @@ Json result_json(const Robot& robot, const Solution& solution) {
 
 }  // namespace
 
-std::string headline(const Solution& solution) {
-  const Figures& check = solution.residual.check;
-  const char* unit = check.angle_alone ? "mrad" : "mm";
-  const std::string what = check.angle_alone ? "directions are met" : "the tool is met";
-  std::string figures;
-  if (check.rows > 0)
-    figures = what + printed(" to %.3g %s instead of %.3g %s on %d rows kept aside",
-                             1e3 * check.rms_after, unit, 1e3 * check.rms_before, unit, check.rows);
-  // False rows among those kept aside count; say what is left without them.
-  if (check.rows > 0 && check.rms_without_rejected < 0.9 * check.rms_after)
-    figures += printed(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
-  switch (solution.verdict.answer) {
-    case Answer::improved:
-      return "Improved: " + figures + ".";
-    case Answer::not_improved:
-      return "Not improved: the maker's figures explain the rows as well" +
-             (figures.empty() ? std::string() : " (" + figures + ")") + ".";
-    case Answer::not_determined:
-      break;
-  }
-  return "Not determined: these rows do not say how the robot really is" +
-         (figures.empty() ? std::string() : "; " + figures) + ".";
-}
-
 Json identification_data(const PageSubject& subject, const Solution& solution) {
   Json json = page_begin("identification", subject);
   json["verdict"] = {{"answer", to_string(solution.verdict.answer)},

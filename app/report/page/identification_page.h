@@ -6,9 +6,6 @@
 
 namespace selfcal {
 
-/// "Improved: the tool is met to 0.0215 mm instead of 2.08 mm …": the verdict in one sentence.
-std::string headline(const Solution& solution);
-
 /// The page's object. `result` is result.json without the covariance and the sets' own values;
 /// `rows` are columns, evenly thinned where there are more than a page holds.
 nlohmann::ordered_json identification_data(const PageSubject& subject, const Solution& solution);
