@@ -3,17 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <memory>
 
 #include "app/commands/support/find_robot.h"
+#include "app/commands/support/fleet_monitor.h"
+#include "app/commands/support/live_screen.h"
 #include "app/commands/support/signals.h"
 #include "app/commands/support/user.h"
 #include "app/report/format.h"
 #include "app/report/listener.h"
-#include "app/report/message_json.h"
-#include "app/report/monitor_news.h"
+#include "app/report/message_lines.h"
 #include "app/report/monitor_view.h"
 #include "app/report/screen.h"
 #include "app/web/serve_page.h"
@@ -22,7 +22,6 @@
 namespace selfcal {
 namespace {
 
-constexpr Nanoseconds kRedraw = kSecond / 20;       // at most so often
 constexpr Nanoseconds kRest = 1200 * kMillisecond;  // for what follows a first status: health, once
                                                     // a second, and the last result
 
@@ -33,72 +32,16 @@ struct MonitorArguments {
   PageOptions page;
 };
 
-std::int64_t unix_ms() { return realtime_now() / kMillisecond; }
-
-/// One line for each message, in the order in which they were sent.
-class Output {
- public:
-  explicit Output(bool json) : json_(json) {}
-
-  template <class Message>
-  void add(const Message& message) {
-    put(message.unix_ms, json_ ? line_of(to_json(message)) : news_.of(message));
-  }
-  void add(const std::string& robot, const HealthReport& report) {
-    if (json_) return put(report.unix_ms, line_of(to_json(robot, report.unix_ms, report.lines)));
-    for (const HealthMessage& line : report.lines) put(report.unix_ms, news_.of(line));
-  }
-  void add_silence(const Watched& watched) {
-    const std::string text = news_.of_silence(watched);
-    if (text.empty() || !json_) return put(unix_ms(), text);
-    put(unix_ms(), line_of({{"topic", "silence"},
-                            {"unix_ms", unix_ms()},
-                            {"robot", watched.robot},
-                            {"silent", watched.silent >= kSilence}}));
-  }
-  /// False when nobody reads any more.
-  bool flush() {
-    std::ranges::stable_sort(lines_, {}, &Entry::first);
-    for (const auto& [when, text] : lines_)
-      std::printf("%s%s\n", json_ ? "" : (clock_time(when) + " ").c_str(), text.c_str());
-    lines_.clear();
-    if (std::fflush(stdout) == 0) return true;
-    if (errno == EPIPE) std::clearerr(stdout);  // a reader who has seen enough is no failure
-    return false;
-  }
-
- private:
-  using Entry = std::pair<std::int64_t, std::string>;
-  void put(std::int64_t when, std::string text) {
-    if (!text.empty()) lines_.emplace_back(when, std::move(text));
-  }
-
-  bool json_;
-  News news_;
-  std::vector<Entry> lines_;
-};
-
-void watch_on_terminal(Listener& listener, Wakeup& wakeup) {
-  Screen screen;
-  ScreenSize drawn_for;
-  Nanoseconds drawn = 0;
-  bool news = true;
-  while (!told_to_stop()) {
-    news = listener.take([](const auto&) {}) || news;
-    const Nanoseconds now = monotonic_now();
-    const ScreenSize size = Screen::size();
-    if ((news && now - drawn >= kRedraw) || now - drawn >= kSecond || size != drawn_for) {
-      screen.draw(picture(listener.watched(), unix_ms(), size.columns - 1, size.rows - 1), size);
-      drawn = now;
-      drawn_for = size;
-      news = false;
-    }
-    wakeup.wait(news ? kRedraw : kSignalWait);
-  }
+Result<void> watch_on_terminal(Listener& listener, Wakeup& wakeup) {
+  return show_live(
+      wakeup, [&]() -> Result<bool> { return listener.take([](const auto&) {}); },
+      [&](int columns, int rows) {
+        return picture(listener.watched(), unix_now_ms(), columns, rows);
+      });
 }
 
 void watch_in_lines(Listener& listener, Wakeup& wakeup, bool json) {
-  Output output(json);
+  MessageLines output(json);
   const std::string robot = listener.watched().robot;
   const auto add = [&](const auto& message) {
     if constexpr (std::is_same_v<decltype(message), const HealthReport&>)
@@ -135,18 +78,13 @@ int show_once(Listener& listener, Wakeup& wakeup, const Whom& whom) {
                                        "%g s",
                                        watched.robot.c_str(), whom.domain, whom.wait)});
   if (whom.json) {
-    Output output(true);
-    output.add(*watched.status);
-    if (watched.result) output.add(*watched.result);
-    if (!watched.health.empty())
-      output.add(watched.status->robot, HealthReport{unix_ms(), "", watched.health});
-    output.flush();
+    print_last(watched);
     return kDone;
   }
   constexpr int kNoLimit = 10000;
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const int columns = terminal ? Screen::size().columns - 1 : kNoLimit;
-  for (const Line& line : picture(watched, unix_ms(), columns, kNoLimit))
+  for (const Line& line : picture(watched, unix_now_ms(), columns, kNoLimit))
     std::printf("%s\n", terminal ? painted(line).c_str() : line.text.c_str());
   return kDone;
 }
@@ -170,18 +108,21 @@ int monitor_command(const MonitorArguments& arguments) {
       DdsParticipant::open(static_cast<std::uint32_t>(whom.domain), "selfcal monitor");
   if (!participant) return tell(participant.error());
   if (!arguments.web.empty()) return serve_in_browsers(*participant, arguments);
-  const auto robot = find_robot(*participant, whom);
-  if (!robot) return tell(robot.error());
-  if (!*robot) return kDone;
+  const auto robots = find_robots(*participant, whom);
+  if (!robots) return tell(robots.error());
+  if (!*robots) return kDone;
+  if ((*robots)->size() > 1) return monitor_fleet(*participant, arguments.once, whom);
+  const std::string& robot = (*robots)->front();
   Wakeup wakeup;
-  const auto monitor = DdsMonitor::open(*participant, **robot, wakeup);
+  const auto monitor = DdsMonitor::open(*participant, robot, wakeup);
   if (!monitor) return tell(monitor.error());
-  Listener listener(**monitor, **robot);
+  Listener listener(**monitor, robot);
   if (arguments.once) return show_once(listener, wakeup, whom);
-  if (!whom.json && isatty(STDOUT_FILENO) != 0)
-    watch_on_terminal(listener, wakeup);
-  else
-    watch_in_lines(listener, wakeup, whom.json);
+  if (!whom.json && isatty(STDOUT_FILENO) != 0) {
+    const auto watched = watch_on_terminal(listener, wakeup);
+    return watched ? kDone : tell(watched.error());
+  }
+  watch_in_lines(listener, wakeup, whom.json);
   return kDone;
 }
 

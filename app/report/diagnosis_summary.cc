@@ -5,23 +5,28 @@
 
 #include "app/report/format.h"
 #include "app/report/gap_words.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
 
 constexpr size_t kMostListedCauses = 6;
 
+std::string millimetres(double metres) { return plain_figure(1e3 * metres, 4); }
+
 std::string gap_lines(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
   if (gap.rows == 0) return "No rows are kept aside: how far the gap closes was not judged.\n";
-  std::string text = printed("Gap: %.4g mm with the maker's figures, %.4g mm calibrated",
-                             1e3 * gap.rms_nominal, 1e3 * gap.rms_before);
+  std::string text =
+      printed("Gap: %s mm with the maker's figures, %s mm calibrated",
+              millimetres(gap.rms_nominal).c_str(), millimetres(gap.rms_before).c_str());
   if (const std::string named = named_in_words(diagnosis); !named.empty())
-    text += printed(", %.4g mm with ", 1e3 * gap.rms_after) + named;
+    text += printed(", %s mm with ", millimetres(gap.rms_after).c_str()) + named;
   if (const std::string found = found_in_words(diagnosis); !found.empty())
-    text += printed(", %.4g mm with ", 1e3 * gap.rms_all) + found;
-  text += printed("; noise %.4g mm (rms, %d rows %s)\n", 1e3 * gap.noise_floor, gap.rows,
-                  gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
+    text += printed(", %s mm with ", millimetres(gap.rms_all).c_str()) + found;
+  text +=
+      printed("; noise %s mm (rms, %d rows %s)\n", millimetres(gap.noise_floor).c_str(), gap.rows,
+              gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += "     " + closed + "\n";
   if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())
@@ -42,8 +47,11 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     for (size_t p = 0;
          p < each.parameters.size() && each.probability > 0.5 && p < kMostListedCauses; ++p) {
       const NamedValue& v = each.parameters[p];
-      text += printed("                 %s = %.3g ± %.1g %s (usual %.1g to %.1g)\n", v.name.c_str(),
-                      v.value, v.sigma, v.unit.c_str(), v.usual_least, v.usual_most);
+      const ReadableUnit unit = readable_unit(v.unit, std::abs(v.value));
+      text += "                 " + v.name + " = " + plain_figure(unit.factor * v.value) + " ± " +
+              plain_figure(unit.factor * v.sigma, 1) + " " + unit.name + " (usual " +
+              plain_figure(unit.factor * v.usual_least, 1) + " to " +
+              plain_figure(unit.factor * v.usual_most, 1) + ")\n";
     }
   }
   return text;

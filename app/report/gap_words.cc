@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/report/format.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -65,11 +66,11 @@ std::string false_rows_in_words(const Diagnosis& diagnosis) {
   std::string text =
       printed("%d row%s kept aside that no model comes near %s left out; with %s ", gap.false_rows,
               one ? "" : "s", one ? "is" : "are", one ? "it" : "them");
-  text += printed("%.4g mm calibrated", 1e3 * gap.with_false_rows.before);
+  text += with_figures("%.4g mm calibrated", 1e3 * gap.with_false_rows.before);
   if (!diagnosis.named.empty())
-    text += printed(", %.4g mm with what is named", 1e3 * gap.with_false_rows.after);
+    text += with_figures(", %.4g mm with what is named", 1e3 * gap.with_false_rows.after);
   if (!diagnosis.found.empty())
-    text += printed(", %.4g mm with everything found", 1e3 * gap.with_false_rows.all);
+    text += with_figures(", %.4g mm with everything found", 1e3 * gap.with_false_rows.all);
   return text;
 }
 

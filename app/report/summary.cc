@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/report/format.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -115,16 +116,24 @@ void list(std::string& text, const char* title, const Items& items, Line line) {
     text += printed("  and %d more\n", static_cast<int>(items.size() - kMostListedItems));
 }
 
+/// In um below a millimetre.
+std::string small_length(double metres) {
+  return metres < 1e-3 ? plain_figure(1e6 * metres) + " um" : plain_figure(1e3 * metres) + " mm";
+}
+std::string small_angle(double angle) {
+  return angle < 1e-3 ? plain_figure(1e6 * angle) + " urad" : plain_figure(1e3 * angle) + " mrad";
+}
+
 std::string set_line(const SetResult& set) {
   std::string text = set.name + " (" + set.method + "): ";
   if (!set.identifies)
     text += printed("%d rows judge%s", set.rows,
-                   set.aligned ? ", own unknowns fitted to them (aligned)" : "");
+                    set.aligned ? ", own unknowns fitted to them (aligned)" : "");
   else
     text += printed("%d of %d rows used", set.used, set.rows);
-  if (set.noise_sigma > 0) text += printed(", noise %.3g um", 1e6 * set.noise_sigma);
-  if (set.noise_angle_sigma > 0) text += printed(" and %.3g urad", 1e6 * set.noise_angle_sigma);
-  if (set.repeat_sigma >= 0) text += printed(", of repeats alone %.3g um", 1e6 * set.repeat_sigma);
+  if (set.noise_sigma > 0) text += ", noise " + small_length(set.noise_sigma);
+  if (set.noise_angle_sigma > 0) text += " and " + small_angle(set.noise_angle_sigma);
+  if (set.repeat_sigma >= 0) text += ", of repeats alone " + small_length(set.repeat_sigma);
   return text;
 }
 
@@ -166,10 +175,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "and cone.");
   else if (solution.workspace.rms > data.target)
     steps.push_back(
-        printed("The end position is known to %.3g mm only. Add rows that move the joints "
-               "named above%s.",
-               1e3 * solution.workspace.rms,
-               solution.gauge.empty() ? "" : ", and a known length for the scale"));
+        with_figures("The end position is known to %.3g mm only. Add rows that move the joints "
+                     "named above",
+                     1e3 * solution.workspace.rms) +
+        (solution.gauge.empty() ? "." : ", and a known length for the scale."));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
   else if (solution.converged)
@@ -185,11 +194,13 @@ std::string headline(const Solution& solution) {
   const std::string what = check.angle_alone ? "directions are met" : "the tool is met";
   std::string figures;
   if (check.rows > 0)
-    figures = what + printed(" to %.3g %s instead of %.3g %s on %d rows kept aside",
-                             1e3 * check.rms_after, unit, 1e3 * check.rms_before, unit, check.rows);
+    figures = what + printed(" to %s %s instead of %s %s on %d rows kept aside",
+                             plain_figure(1e3 * check.rms_after).c_str(), unit,
+                             plain_figure(1e3 * check.rms_before).c_str(), unit, check.rows);
   // False rows among those kept aside count; say what is left without them.
   if (check.rows > 0 && check.rms_without_rejected < 0.9 * check.rms_after)
-    figures += printed(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+    figures +=
+        with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
   switch (solution.verdict.answer) {
     case Answer::improved:
       return "Improved: " + figures + ".";
@@ -204,7 +215,8 @@ std::string headline(const Solution& solution) {
 }
 
 std::string summary(const DataSet& data, const Solution& solution) {
-  std::string text = headline(solution) + "\n" + solution.verdict.why + "\n";
+  std::string text = headline(solution) + "\n";
+  if (!solution.verdict.why.empty()) text += solution.verdict.why + "\n";
   if (solution.sets.empty()) return text;
   text += first_line(data, solution) + parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
@@ -217,7 +229,9 @@ std::string summary(const DataSet& data, const Solution& solution) {
     return each.sigma < kToldShare * solution.workspace.rms;
   });
   list(text, "The end position's doubt in the workspace (1 sigma)", budget,
-       [](const BudgetLine& each) { return printed("%.3g mm: ", 1e3 * each.sigma) + each.source; });
+       [](const BudgetLine& each) {
+         return with_figures("%.3g mm: ", 1e3 * each.sigma) + each.source;
+       });
   list(text, "Held", solution.gauge,
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Not excited by these rows", solution.unexcited,
@@ -225,7 +239,7 @@ std::string summary(const DataSet& data, const Solution& solution) {
   list(text, "Rows beyond the noise", solution.rejected, [](const Outlier& r) {
     const std::string of_row = printed("row %d (%s): ", r.row, r.set.c_str());
     if (!std::isfinite(r.residual)) return of_row + r.why;
-    return of_row + printed("%.3g %s, ", 1e3 * r.residual, r.angle_alone ? "mrad" : "mm") + r.why;
+    return of_row + plain_figure(1e3 * r.residual) + (r.angle_alone ? " mrad, " : " mm, ") + r.why;
   });
   list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
   list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });

@@ -13,8 +13,8 @@ namespace selfcal {
 /// "Improved: the tool is met to 0.0215 mm instead of 2.08 mm …": the verdict in one sentence.
 std::string headline(const Solution& solution);
 
-/// Several lines: the verdict, what moved, what cannot be known and why, the rows put aside, what to
-/// do next. Lengths in mm, angles in mrad.
+/// Several lines: the verdict, what moved, what cannot be known and why, the rows put aside, what
+/// to do next. Lengths in mm, angles in mrad.
 std::string summary(const DataSet& data, const Solution& solution);
 
 /// How the warning begins that says what is likely wrong with robot file or rows. It is all that is

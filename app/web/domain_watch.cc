@@ -1,6 +1,6 @@
 #include "app/web/domain_watch.h"
 
-#include "app/web/fleet.h"
+#include "app/report/fleet.h"
 #include "io/dds/names.h"
 
 namespace selfcal {
@@ -15,63 +15,37 @@ Result<std::unique_ptr<DomainWatch>> DomainWatch::open(const DdsParticipant& par
                                                        const std::string& only,
                                                        std::vector<std::unique_ptr<CellView>> cells,
                                                        Wakeup& wakeup, Board& board) {
-  std::unique_ptr<DomainWatch> watch(
-      new DomainWatch(participant, only.empty() ? "" : ros_name(only), wakeup, board));
-  auto discovery = DdsRobots::open(participant, wakeup);
-  if (!discovery) return tl::unexpected(discovery.error());
-  watch->discovery_ = *std::move(discovery);
-  auto diagnostics = DdsDiagnostics::open(participant, wakeup);
-  if (!diagnostics) return tl::unexpected(diagnostics.error());
-  watch->diagnostics_ = *std::move(diagnostics);
+  std::unique_ptr<DomainWatch> watch(new DomainWatch(board));
   for (std::unique_ptr<CellView>& cell : cells) {
     const std::string name = ros_name(cell->config().id);
     if (!watch->cells_.emplace(name, std::move(cell)).second)
       return bad_input("two configurations are of robot " + name);
   }
+  const auto begin = [&participant, &wakeup, &board, self = watch.get(),
+                      wanted = only.empty() ? "" : ros_name(only)](
+                         const std::string& robot) -> Result<std::unique_ptr<RobotWatch>> {
+    if (!wanted.empty() && robot != wanted) return nullptr;
+    return RobotWatch::open(participant, robot, wakeup, std::move(self->cells_[robot]), board);
+  };
+  auto listener = DomainListener<RobotWatch>::open(participant, wakeup, begin);
+  if (!listener) return tl::unexpected(listener.error());
+  watch->listener_ = *std::move(listener);
   return watch;
 }
 
-Result<void> DomainWatch::find() {
-  const auto heard = discovery_->heard();
-  if (!heard) return tl::unexpected(heard.error());
-  for (const std::string& robot : *heard) {
-    if (robots_.contains(robot) || robots_.size() >= kMostRobots) continue;
-    if (!only_.empty() && robot != only_) continue;
-    auto watch = RobotWatch::open(participant_, robot, wakeup_, std::move(cells_[robot]), board_);
-    if (!watch) return tl::unexpected(watch.error());
-    robots_[robot] = *std::move(watch);
-  }
-  return {};
-}
-
-void DomainWatch::forget() {
-  for (auto each = robots_.begin(); each != robots_.end();) {
-    RobotWatch& watch = *each->second;
-    if (watch.connected() || watch.watched().silent < kRemembered) {
-      ++each;
-      continue;
-    }
-    cells_[each->first] = watch.give_back_cell();
-    board_.drop(each->first);
-    each = robots_.erase(each);
-  }
-}
-
 Result<void> DomainWatch::take() {
-  if (auto found = find(); !found) return found;
-  bool news = false;
-  const auto health = diagnostics_->take();
-  for (const auto& [name, watch] : robots_) {
-    const auto of_robot = health.find(name);
-    news = watch->take(of_robot == health.end() ? std::vector<HealthReport>() : of_robot->second) ||
-           news;
-  }
+  const auto news = listener_->take();
+  if (!news) return tl::unexpected(news.error());
   const Nanoseconds now = monotonic_now();
-  if (now - told_ < (news ? kFleetEvery : kFleetAtLeast)) return {};
+  if (now - told_ < (*news ? kFleetEvery : kFleetAtLeast)) return {};
   told_ = now;
-  forget();
+  for (const std::unique_ptr<RobotWatch>& gone : listener_->forget()) {
+    cells_[gone->watched().robot] = gone->give_back_cell();
+    board_.drop(gone->watched().robot);
+  }
   std::vector<nlohmann::ordered_json> lines;
-  for (const auto& [name, watch] : robots_) lines.push_back(fleet_line(watch->watched()));
+  for (const auto& [name, watch] : listener_->robots())
+    lines.push_back(fleet_line(watch->watched()));
   board_.put("", "fleet", fleet_json(std::move(lines)));
   return {};
 }

@@ -1,24 +1,20 @@
-// Every robot of the domain, as they come and go.
+// Every robot of the domain on the board, as they come and go.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/report/domain_listener.h"
 #include "app/web/board.h"
 #include "app/web/robot_watch.h"
-#include "io/dds/clients/diagnostics.h"
-#include "io/dds/clients/discovery.h"
 
 namespace selfcal {
 
 class DomainWatch {
  public:
-  static constexpr std::size_t kMostRobots = 256;
-  /// A robot whose service has gone is shown as silent for so long.
-  static constexpr double kRemembered = 3600;  ///< s
-
   /// `only`: the one robot to watch; empty for all. `cells` of robots that a configuration was
   /// given for. What is given by reference must outlive it.
   static Result<std::unique_ptr<DomainWatch>> open(const DdsParticipant& participant,
@@ -30,19 +26,11 @@ class DomainWatch {
   Result<void> take();
 
  private:
-  DomainWatch(const DdsParticipant& participant, std::string only, Wakeup& wakeup, Board& board)
-      : participant_(participant), only_(std::move(only)), wakeup_(wakeup), board_(board) {}
-  Result<void> find();
-  void forget();
+  explicit DomainWatch(Board& board) : board_(board) {}
 
-  const DdsParticipant& participant_;
-  std::string only_;
-  Wakeup& wakeup_;
   Board& board_;
-  std::unique_ptr<DdsRobots> discovery_;
-  std::unique_ptr<DdsDiagnostics> diagnostics_;
   std::map<std::string, std::unique_ptr<CellView>> cells_;  // of robots not yet heard, by name
-  std::map<std::string, std::unique_ptr<RobotWatch>> robots_;
+  std::optional<DomainListener<RobotWatch>> listener_;
   Nanoseconds told_ = 0;  // of the fleet
 };
 

@@ -9,10 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "kinematics/linear_algebra.h"
+#include "kinematics/readable.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -24,11 +24,7 @@ using Eigen::Vector3d;
 
 Matrix3Xd centred(const Matrix3Xd& markers) { return markers.colwise() - markers.rowwise().mean(); }
 
-std::string in_words(double angle) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g mrad", 1e3 * angle);
-  return text;
-}
+std::string in_words(double angle) { return with_figures("%.4g mrad", 1e3 * angle); }
 
 /// The two rows whose turns differ most.
 double farthest_turn(const Eigen::VectorXd& variable) {
@@ -38,8 +34,8 @@ double farthest_turn(const Eigen::VectorXd& variable) {
 std::string unsuited(const Turning& turning) {
   if (turning.variable.size() < 2) return "it takes two rows or more";
   if (const double turn = farthest_turn(turning.variable); turn < kLeastTurn)
-    return "the joint turns through " + in_words(turn) + " only; it takes " +
-           in_words(kLeastTurn) + " or more";
+    return "the joint turns through " + in_words(turn) + " only; it takes " + in_words(kLeastTurn) +
+           " or more";
   if (turning.markers[0].cols() < 3) return "it takes three markers or more";
   const Eigen::VectorXd extent = singular_values(centred(turning.markers[0]).transpose()).values;
   if (!(extent[1] > kLeastSpread * extent[0])) return "the markers are in a line";

@@ -15,8 +15,8 @@
 #include <array>
 #include <cmath>
 
-#include "constraints/estimation/figures.h"
 #include "constraints/statistics.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {

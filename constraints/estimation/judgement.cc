@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/estimation/figures.h"
 #include "constraints/statistics.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "constraints/estimation/change_point.h"
-#include "constraints/estimation/figures.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {

@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/estimation/figures.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {

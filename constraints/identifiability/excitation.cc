@@ -50,8 +50,8 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
   const Movement m = movement(robot, data, j);
   char text[200];
   if (m.share() < 0.1) {
-    std::snprintf(text, sizeof text, "%s moved through %.3g %s only", joint.name.c_str(), 1e3 * m.moved,
-                  joint.quantity == Quantity::angle ? "mrad" : "mm");
+    std::snprintf(text, sizeof text, "%s moved through %.3g %s only", joint.name.c_str(),
+                  1e3 * m.moved, joint.quantity == Quantity::angle ? "mrad" : "mm");
     return text;
   }
   std::string names;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "diagnosis/search/causes.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -73,13 +73,11 @@ std::string list_of(const char* opening, const std::vector<ShownCause>& causes) 
 
 std::string apart_in_words(const SharedCause& cause) {
   std::string text;
-  char part[200];
   for (const SideBySide& each : cause.parameters) {
     if (each.sigmas < kApart) continue;
-    std::snprintf(part, sizeof part, "%s is %.3g %s in the robot and %.3g in the simulation",
-                  each.robot.name.c_str(), each.robot.value, each.robot.unit.c_str(),
-                  each.simulation.value);
-    text += (text.empty() ? "" : ", ") + std::string(part);
+    text += (text.empty() ? "" : ", ") + each.robot.name + " is " +
+            in_readable_unit(each.robot.value, each.robot.unit) + " in the robot and " +
+            in_readable_unit(each.simulation.value, each.robot.unit) + " in the simulation";
   }
   return text.empty() ? "" : cause_in_words(cause.effect, cause.where) + " is in both, but " + text;
 }
@@ -92,10 +90,10 @@ std::string geometry_in_words(const Comparison& geometry) {
     text += (text.empty() ? "the geometry differs: " : ", ") +
             (plain ? each.where : cause_in_words(each.effect, each.where));
     if (each.values.size() != 1) continue;
-    char value[100];
-    std::snprintf(value, sizeof value, " by %.3g ± %.1g %s", each.values[0].value,
-                  each.values[0].sigma, each.values[0].unit.c_str());
-    text += value;
+    const NamedValue& by = each.values[0];
+    const ReadableUnit unit = readable_unit(by.unit, std::abs(by.value));
+    text += " by " + plain_figure(unit.factor * by.value) + " ± " +
+            plain_figure(unit.factor * by.sigma, 1) + " " + unit.name;
   }
   return text;
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
 #include "constraints/estimation/first_look.h"
 #include "constraints/estimation/noise.h"
 #include "diagnosis/search/causes.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -21,21 +21,15 @@ constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
 constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
 
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-std::string millimetres(double metres) { return three_digits(1e3 * metres) + " mm"; }
+std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
 std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
     if (std::ranges::find(kMovedAtWill, each.effect) != kMovedAtWill.end()) continue;
     for (const NamedValue& v : each.parameters)
       if (std::abs(v.value) - 2 * v.sigma > kImpossible * v.usual_most)
-        return "no machine has " + v.name + " of " + three_digits(v.value) +
-               (v.unit == "1" ? "" : " " + v.unit) + ", which is what the rows would need";
+        return "no machine has " + v.name + " of " + in_readable_unit(v.value, v.unit) +
+               ", which is what the rows would need";
   }
   return {};
 }

@@ -4,6 +4,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "kinematics/readable.h"
+
 namespace selfcal {
 namespace {
 
@@ -69,10 +71,9 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)
       if (std::abs(v.value) - 2 * v.sigma > kFarBeyond * v.usual_most)
-        words += phrase(
-            "; %s = %.3g %s is far beyond the usual %.2g to %.2g: something else may "
-            "look like it",
-            v.name.c_str(), v.value, v.unit.c_str(), v.usual_least, v.usual_most);
+        words += "; " + v.name + " = " + in_readable_unit(v.value, v.unit) +
+                 " is far beyond the usual " + in_readable_unit(v.usual_least, v.unit) + " to " +
+                 in_readable_unit(v.usual_most, v.unit) + ": something else may look like it";
   return words;
 }
 

@@ -36,7 +36,8 @@ TEST_F(Program, CalibratesTheSimulatedExampleAndWritesTheCandidate) {
   const std::string data = simulated();
   const Ran ran = run_selfcal("identify " + data + " --out " + (folder_ / "result").string());
   EXPECT_EQ(ran.status, 0) << ran.out;
-  EXPECT_NE(ran.out.find("improved: check residual"), std::string::npos) << ran.out;
+  EXPECT_TRUE(ran.out.find("\nImproved: the tool is met to ") != std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" parameters identified from 360 touches"), std::string::npos) << ran.out;
   const auto json = nlohmann::json::parse(text_of(folder_ / "result/result.json"));
   EXPECT_EQ(json["verdict"]["answer"], "improved");
   const Ran again =
@@ -81,6 +82,20 @@ TEST_F(Program, RefusesUnknownNamesAndMethodsAsWrongUsage) {
       2);
   EXPECT_EQ(run_selfcal("identify").status, 2);
   EXPECT_EQ(run_selfcal("calibrate").status, 2);
+}
+
+TEST_F(Program, AsksWhetherANearWordWasMeant) {
+  for (const auto& [typed, said] : std::map<std::string, std::string>{
+           {"identfy x", "selfcal has no command 'identfy'; did you mean 'identify'?"},
+           {"robot covnert x", "robot has no command 'covnert'; did you mean 'convert'?"},
+           {"monitor --wbe x", "monitor has no option '--wbe'; did you mean '--web'?"},
+           {"identify x --fxi=theta2", "identify has no option '--fxi'; did you mean '--fix'?"},
+           {"frobnicate", "selfcal has no command 'frobnicate'\n"}}) {
+    const Ran ran = run_selfcal(typed);
+    EXPECT_EQ(ran.status, 2) << typed;
+    EXPECT_NE(ran.out.find(said), std::string::npos) << ran.out;
+  }
+  EXPECT_NE(run_selfcal("identify").out.find("DATASET is required"), std::string::npos);
 }
 
 TEST_F(Program, HoldsWhatTheUserFixes) {
@@ -146,14 +161,14 @@ TEST_F(Program, JudgesRowsThatTheNominalRobotMeetsExactly) {
             0);
   const Ran ran = run_selfcal("identify " + data);
   EXPECT_EQ(ran.status, 1) << ran.out;
-  EXPECT_NE(ran.out.find("not-improved"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("Not improved: "), std::string::npos) << ran.out;
 }
 
 TEST_F(Program, ClaimsNothingWhereEverythingIsFixed) {
   const std::string data = simulated();
   const Ran told = run_selfcal("identify " + data + " --fix '*'");
   EXPECT_EQ(told.status, 1);
-  EXPECT_NE(told.out.find("not-determined: nothing was identified"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("\nnothing was identified"), std::string::npos) << told.out;
   EXPECT_EQ(told.out.find("end position"), std::string::npos) << told.out;
   EXPECT_EQ(told.out.find("candidate"), std::string::npos) << told.out;
   const Ran ran = run_selfcal("identify " + data + " --fix '*' --json", true);
@@ -179,7 +194,8 @@ TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
     EXPECT_TRUE(p["sigma"].is_null()) << p["name"];
   }
   EXPECT_EQ(run_selfcal("identify " + data, true).out,
-            "not-determined: no rows to identify from\n");
+            "Not determined: these rows do not say how the robot really is.\n"
+            "no rows to identify from\n");
   EXPECT_EQ(run_selfcal("identifiable " + data).status, 1);
 }
 

@@ -11,6 +11,7 @@
 
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/page/identification_page.h"
+#include "app/report/summary.h"
 #include "constraints/estimation/identification.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"

@@ -76,16 +76,28 @@ TEST_F(ServiceCommands, RefuseAWrongVerbAndTellTheServicesReason) {
   EXPECT_EQ(Json::parse(in_json.out)["why"], "no result waits for acceptance");
 }
 
-TEST_F(ServiceCommands, AskWhichRobotWhereThereAreTwo) {
+TEST_F(ServiceCommands, ShowEveryRobotOfTheDomainAndAskWhichIsMeant) {
   const auto first = serve("left");
   ASSERT_FALSE(heard(ready).is_null());
   const auto second = serve("right");
   ASSERT_EQ(run_selfcal("monitor --once --robot right --wait 20" + in_domain()).status, 0);
 
-  const Ran ran = run_selfcal("monitor --once --wait 20" + in_domain());
+  const Ran table = run_selfcal("monitor --once --wait 20" + in_domain());
+  const Ran json = run_selfcal("monitor --once --json --wait 20" + in_domain(), true);
+  const Ran command = run_selfcal("command start --wait 20" + in_domain());
 
-  EXPECT_EQ(ran.status, 2);
-  EXPECT_NE(ran.out.find("left, right"), std::string::npos) << ran.out;
+  EXPECT_EQ(table.status, 0) << table.out;
+  EXPECT_EQ(table.out.rfind("2 robots", 0), 0U) << table.out;
+  EXPECT_NE(table.out.find("\nleft "), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("\nright "), std::string::npos) << table.out;
+  std::map<std::string, int> statuses;
+  std::istringstream lines(json.out);
+  for (std::string line; std::getline(lines, line);)
+    if (const Json message = Json::parse(line); message["topic"] == "status")
+      ++statuses[message["robot"]];
+  EXPECT_EQ(statuses, (std::map<std::string, int>{{"left", 1}, {"right", 1}})) << json.out;
+  EXPECT_EQ(command.status, 2);
+  EXPECT_NE(command.out.find("left, right"), std::string::npos) << command.out;
 }
 
 TEST_F(ServiceCommands, EndTheMonitorOnInterrupt) {
@@ -96,6 +108,19 @@ TEST_F(ServiceCommands, EndTheMonitorOnInterrupt) {
   ASSERT_EQ(run_selfcal("monitor --once --wait 20" + in_domain()).status, 0);
 
   EXPECT_EQ(monitor.end(SIGINT), 0);
+}
+
+TEST_F(ServiceCommands, HoldTheMonitorStillAndLeaveItByAKey) {
+  const auto service = serve("rx90");
+  ASSERT_FALSE(heard(ready).is_null());
+  // script(1) gives it a terminal.
+  const Ran ran = run_in_bash(
+      "(sleep 2; printf p; sleep 1; printf p; sleep 1; printf q; sleep 20) | "
+      "timeout 15 script -qec \"" SELFCAL_BINARY " monitor --robot rx90 --wait 20" +
+      in_domain() + "\" /dev/null");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("p: hold still   q: leave"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("HELD STILL"), std::string::npos) << ran.out;
 }
 
 /// Identified parameters and their sigma, by name.

@@ -145,7 +145,7 @@ TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {
   EXPECT_EQ(verdict_in_words(with(cause)).find("far beyond"), std::string::npos);
   cause.parameters.front().value = -0.105;  // a tool that was remounted, six degrees
   EXPECT_NE(verdict_in_words(with(cause))
-                .find("; j6.step = -0.105 rad is far beyond the usual 5e-05 to 0.005"),
+                .find("; j6.step = -105 mrad is far beyond the usual 0.05 mrad to 5 mrad"),
             std::string::npos);
   cause.parameters.front().sigma = 0.05;  // and hardly known
   EXPECT_EQ(verdict_in_words(with(cause)).find("far beyond"), std::string::npos);

@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include "app/report/fleet.h"
+#include "app/report/format.h"
 #include "app/web/changes.h"
-#include "app/web/fleet.h"
 #include "io/files/robot_file.h"
 #include "tests/support/domain.h"
 
@@ -115,6 +116,26 @@ TEST(Fleet, SaysHowFarTheActiveParametersAreOff) {
   EXPECT_EQ(fleet_line(watched)["off"], 1e-4);
   result.answer = "failed";
   EXPECT_TRUE(fleet_line(watched)["off"].is_null());
+}
+
+TEST(Fleet, IsATableForATerminal) {
+  std::vector<nlohmann::ordered_json> lines;
+  for (int i = 0; i < 9; ++i) lines.push_back(fleet_line(heard("robot" + std::to_string(i))));
+  Watched fault = heard("a_robot_with_a_long_name");
+  fault.status->state = "fault";
+  fault.status->why = "the trigger\033[2J is silent";
+  lines.push_back(fleet_line(fault));
+
+  const std::vector<Line> shown = fleet_picture(fleet_json(lines), 0, 90, 6);
+
+  ASSERT_EQ(shown.size(), 6U);
+  EXPECT_EQ(shown[0].text, "10 robots, 1 error, 9 well");
+  EXPECT_EQ(shown[1].text.find("state"), shown[2].text.find("fault")) << "aligned";
+  EXPECT_EQ(shown[2].text.rfind("a_robot_with_a_long_name", 0), 0U);
+  EXPECT_EQ(shown[2].tone, Tone::bad);
+  EXPECT_EQ(shown[2].text.find('\033'), std::string::npos);
+  EXPECT_EQ(shown[5].text, "and 7 more robots");
+  for (const Line& line : shown) EXPECT_LE(characters(line.text), 90) << line.text;
 }
 
 std::shared_ptr<const Robot> two_links(const std::string& first, const std::string& second) {

@@ -6,6 +6,7 @@
 #include "app/report/summary.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -72,19 +73,18 @@ std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
   if (nominal.rms <= gross && tool <= gross) return {};
   const auto look = look_at_files(path, loaded, robot);
   if (!look || look->found.empty()) return {};
-  const char* unit = look->lengths ? "mm" : "mrad";
+  const std::string unit = look->lengths ? "mm" : "mrad";
   std::string text = std::string(kFilesFirst) + look->found;
   if (look->explained)
-    text += printed(" (half the rows are off by more than %.3g %s, without this by %.3g %s)",
-                    1e3 * look->left, unit, 1e3 * look->tried.front().left, unit);
+    text += " (half the rows are off by more than " + plain_figure(1e3 * look->left) + " " + unit +
+            ", without this by " + plain_figure(1e3 * look->tried.front().left) + " " + unit + ")";
   else if (look->tool)
-    text += printed(" (the rows put the tool %.3g mm from where its file has it)",
-                    1e3 * look->tool_moved);
+    text += " (the rows put the tool " + plain_figure(1e3 * look->tool_moved) +
+            " mm from where its file has it)";
   else
-    text += printed(
-        " (half the rows are off by more than %.3g %s, the maker's tolerances leave "
-        "about %.3g %s)",
-        1e3 * look->left, unit, 1e3 * look->expected, unit);
+    text += " (half the rows are off by more than " + plain_figure(1e3 * look->left) + " " + unit +
+            ", the maker's tolerances leave about " + plain_figure(1e3 * look->expected) + " " +
+            unit + ")";
   return text + ".";
 }
 

@@ -11,21 +11,6 @@ namespace {
 // Participants answer a newcomer at once; after the first, others have this long.
 constexpr Nanoseconds kOthers = kSecond / 2;
 
-Result<std::optional<std::string>> only_one(const std::vector<std::string>& robots,
-                                            const Whom& whom) {
-  if (robots.size() == 1) return robots.front();
-  if (robots.empty())
-    return device_failed(
-        printed("no service was heard in DDS domain %d within %g s; is `selfcal serve` running "
-                "there? (--domain, CYCLONEDDS_URI)",
-                whom.domain, whom.wait));
-  std::string list;
-  for (const std::string& robot : robots) list += (list.empty() ? "" : ", ") + one_line(robot);
-  return tl::unexpected<Failure>(
-      {kWrongUsage, printed("%zu robots are in DDS domain %d: ", robots.size(), whom.domain) +
-                        list + "; choose one with --robot"});
-}
-
 }  // namespace
 
 void add_whom(CLI::App& command, Whom& whom, const std::string& what_waits) {
@@ -40,8 +25,9 @@ void add_whom(CLI::App& command, Whom& whom, const std::string& what_waits) {
   command.add_flag("--json", whom.json, "JSON for programs");
 }
 
-Result<std::optional<std::string>> find_robot(const DdsParticipant& participant, const Whom& whom) {
-  if (!whom.robot.empty()) return whom.robot;
+Result<std::optional<std::vector<std::string>>> find_robots(const DdsParticipant& participant,
+                                                            const Whom& whom) {
+  if (!whom.robot.empty()) return std::vector{whom.robot};
   Wakeup wakeup;
   auto discovery = DdsRobots::open(participant, wakeup);
   if (!discovery) return tl::unexpected(discovery.error());
@@ -55,7 +41,25 @@ Result<std::optional<std::string>> find_robot(const DdsParticipant& participant,
     if (robots.empty() && !heard->empty()) end = std::min(end, monotonic_now() + kOthers);
     robots = *std::move(heard);
   }
-  return only_one(robots, whom);
+  if (robots.empty())
+    return device_failed(
+        printed("no service was heard in DDS domain %d within %g s; is `selfcal serve` running "
+                "there? (--domain, CYCLONEDDS_URI)",
+                whom.domain, whom.wait));
+  return robots;
+}
+
+Result<std::optional<std::string>> find_robot(const DdsParticipant& participant, const Whom& whom) {
+  const auto found = find_robots(participant, whom);
+  if (!found) return tl::unexpected(found.error());
+  if (!*found) return std::nullopt;
+  const std::vector<std::string>& robots = **found;
+  if (robots.size() == 1) return robots.front();
+  std::string list;
+  for (const std::string& robot : robots) list += (list.empty() ? "" : ", ") + one_line(robot);
+  return tl::unexpected<Failure>(
+      {kWrongUsage, printed("%zu robots are in DDS domain %d: ", robots.size(), whom.domain) +
+                        list + "; choose one with --robot"});
 }
 
 }  // namespace selfcal

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/commands/subcommand.h"
 #include "io/dds/participant.h"
@@ -20,9 +21,12 @@ struct Whom {
 
 void add_whom(CLI::App& command, Whom& whom, const std::string& what_waits);
 
-/// The robot that `whom` names, or the only one that is heard before the wait is over. Fails when
-/// there is none (kDeviceIsBad) or more than one (kWrongUsage, naming them). Nothing when told to
-/// stop in the meantime.
+/// The robot that `whom` names, or all that are heard before the wait is over, as they stand in
+/// topics; fails when there is none (kDeviceIsBad). Nothing when told to stop in the meantime.
+Result<std::optional<std::vector<std::string>>> find_robots(const DdsParticipant& participant,
+                                                            const Whom& whom);
+
+/// The only one of these; fails when there are more (kWrongUsage, naming them).
 Result<std::optional<std::string>> find_robot(const DdsParticipant& participant, const Whom& whom);
 
 }  // namespace selfcal

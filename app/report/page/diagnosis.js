@@ -10,7 +10,7 @@ function cause_words(cause) {
 }
 
 function value_words(value) {
-  const [factor, unit] = shown(value.unit);
+  const [factor, unit] = shown(value.unit, Math.abs(value.value));
   return figure(factor * value.value) + " ± " + figure(factor * value.sigma, 2) + " " + unit;
 }
 
@@ -71,7 +71,7 @@ function causes_of(data) {
 
 function sizes_of(candidates) {
   const rows = candidates.filter(each => each.probability >= 0.5).flatMap(each => each.parameters.map(value => {
-    const [factor, unit] = shown(value.unit), [least, most] = value.usual;
+    const [factor, unit] = shown(value.unit, Math.abs(value.value)), [least, most] = value.usual;
     return [value.name, value_words(value), figure(factor * least, 2) + " to " + figure(factor * most, 2) + " " + unit,
             Math.abs(value.value) > 3 * most ? "larger than usual" : "plausible"];
   }));
@@ -112,7 +112,7 @@ function where_of(data) {
 
 function limits_of(result) {
   const rows = result.detectable.map(each => {
-    const [factor, unit] = shown(each.unit);
+    const [factor, unit] = shown(each.unit, each.smallest);
     return [cause_words(each), figure(factor * each.smallest, 2) + " " + unit];
   });
   const smallest = table([{title: "cause"}, {title: "smallest that would have been named", number: true}], rows);
@@ -136,7 +136,7 @@ function shown_causes(title, causes) {
 
 function simulation_of(sim) {
   const shared = sim.both.flatMap(cause => cause.parameters.map(p => {
-    const [factor, unit] = shown(p.unit);
+    const [factor, unit] = shown(p.unit, Math.abs(p.robot));
     const side = (value, sigma) => figure(factor * value) + " ± " + figure(factor * sigma, 2) + " " + unit;
     return [cause_words(cause) + ": " + p.name, side(p.robot, p.robot_sigma), side(p.simulation, p.simulation_sigma),
             figure(p.sigmas, 2) + " sigma"];

@@ -3,7 +3,16 @@
 
 const SHOWN = {m: [1e3, "mm"], rad: [1e3, "mrad"], "1": [1e6, "ppm"]};
 
-function shown(unit) { return SHOWN[unit] || [1, unit]; }
+// Of a compound unit, as "rad/(N m)" or "1/K", the prefix that makes a figure of one to a thousand of `size`.
+function shown(unit, size = 0) {
+  if (SHOWN[unit]) return SHOWN[unit];
+  const first = unit.split("/")[0];
+  if (first === unit || !(size > 0)) return [1, unit];
+  if (first === "1") return size < 0.1 ? [1e6, "ppm" + unit.slice(1)] : [1, unit];
+  if (first !== "m" && first !== "rad") return [1, unit];
+  const prefix = [[1e3, "m"], [1e6, "µ"], [1e9, "n"]].find(([factor]) => factor * size >= 1) || [1e9, "n"];
+  return [prefix[0], prefix[1] + unit];
+}
 
 function known(number) { return typeof number === "number" && isFinite(number); }
 

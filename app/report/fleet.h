@@ -23,4 +23,10 @@ nlohmann::ordered_json fleet_line(const Watched& watched);
 /// The lines, worst first; among equals by the robot's name.
 nlohmann::ordered_json fleet_json(std::vector<nlohmann::ordered_json> lines);
 
+/// The same for a terminal: how many need a person, a table, and why; at most `rows` lines of at
+/// most `columns` characters, of which the last says how many robots are not shown. `fleet` as
+/// fleet_json gives it; times as seen at `now_ms`.
+std::vector<Line> fleet_picture(const nlohmann::ordered_json& fleet, std::int64_t now_ms,
+                                int columns, int rows);
+
 }  // namespace selfcal

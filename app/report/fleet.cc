@@ -1,7 +1,8 @@
-#include "app/web/fleet.h"
+#include "app/report/fleet.h"
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "app/report/format.h"
 #include "app/report/message_json.h"
@@ -96,6 +97,84 @@ nlohmann::ordered_json fleet_json(std::vector<nlohmann::ordered_json> lines) {
     return std::pair(kConcerns.end() - at, line["robot"].get<std::string>());
   };
   std::ranges::sort(lines, {}, rank);
+  return lines;
+}
+
+namespace {
+
+using Cells = std::vector<std::string>;
+
+const Cells kFleetTitles = {"robot", "state", "health", "last result", "off, mm", "next due"};
+constexpr int kWidestCell = 40;
+
+Tone tone_of_line(const nlohmann::ordered_json& line) {
+  const auto at = std::ranges::find(kConcerns, line["concern"].get_ref<const std::string&>());
+  switch (static_cast<Concern>(at - kConcerns.begin())) {
+    case Concern::none:
+      return Tone::plain;
+    case Concern::warning:
+    case Concern::waits:
+      return Tone::warning;
+    case Concern::error:
+    case Concern::silent:
+      break;
+  }
+  return Tone::bad;
+}
+
+Cells cells_of_line(const nlohmann::ordered_json& line, std::int64_t now_ms) {
+  std::string state = line["silent"].get<bool>() ? "SILENT" : line["state"].get<std::string>();
+  if (line["planned"] > 0)
+    state += printed(" %d of %d", line["done"].get<int>(), line["planned"].get<int>());
+  std::string result = "none yet";
+  if (const auto& last = line["result"]; last.is_object()) {
+    result = day_time(last["unix_ms"], now_ms) + " " + last["answer"].get<std::string>();
+    const std::string decision = last["decision"];
+    if (!decision.empty() && decision != "none") result += ", " + decision;
+  }
+  const std::int64_t due = line["next_due_ms"];
+  return {line["robot"],
+          state,
+          line["health"],
+          result,
+          line["off"].is_number() ? mm(line["off"]) : "-",
+          due > 0 ? day_time(due, now_ms) : "when asked"};
+}
+
+}  // namespace
+
+std::vector<Line> fleet_picture(const nlohmann::ordered_json& fleet, std::int64_t now_ms,
+                                int columns, int rows) {
+  std::vector<Cells> table = {kFleetTitles};
+  std::map<std::string, int> count;
+  for (const auto& line : fleet) {
+    table.push_back(cells_of_line(line, now_ms));
+    ++count[line["concern"].get<std::string>()];
+  }
+  std::vector<int> widths(kFleetTitles.size(), 0);
+  for (Cells& row : table)
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      row[c] = fitted(one_line(row[c]), kWidestCell);
+      widths[c] = std::max(widths[c], characters(row[c]));
+    }
+  std::string head = printed("%zu robots", fleet.size());
+  for (auto concern = kConcerns.rbegin(); concern != kConcerns.rend(); ++concern)
+    if (const int of_it = count[std::string(*concern)]; of_it > 0)
+      head += printed(", %d ", of_it) + std::string(*concern == "none" ? "well" : *concern);
+  std::vector<Line> lines = {{fitted(head, columns), Tone::strong, 0}};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    std::string text;
+    for (std::size_t c = 0; c < widths.size(); ++c) text += padded(table[i][c], widths[c]) + "  ";
+    if (i > 0) text += one_line(fleet[i - 1]["why"].get<std::string>());
+    text.erase(text.find_last_not_of(' ') + 1);
+    lines.push_back({fitted(text, columns), i > 0 ? tone_of_line(fleet[i - 1]) : Tone::plain, 0});
+  }
+  const std::size_t room = static_cast<std::size_t>(std::max(rows, 3));
+  if (lines.size() > room) {
+    const std::size_t hidden = lines.size() - room + 1;
+    lines.resize(room - 1);
+    lines.push_back({fitted(printed("and %zu more robots", hidden), columns), Tone::plain, 0});
+  }
   return lines;
 }
 

@@ -1,0 +1,28 @@
+// Numbers for people: no powers of ten, lengths in mm, angles in mrad, ratios in ppm.
+#pragma once
+
+#include <string>
+
+namespace selfcal {
+
+/// `format`, as printf's, with up to four figures in it; numbers of a thousand and more, up to
+/// 1e9, are written out. At most 199 characters.
+std::string with_figures(const char* format, double a, double b = 0, double c = 0, double d = 0);
+
+/// So many significant digits, without a power of ten from 1e-6 up to 1e9.
+std::string plain_figure(double value, int digits = 3);
+
+/// The unit that a person reads, and by what a number of the SI unit is to be multiplied.
+struct ReadableUnit {
+  double factor = 1;
+  std::string name;
+};
+
+/// "m" in mm, "rad" in mrad, "1" in ppm; a compound unit ("rad/(N m)", "m/N", "1/K") with the
+/// prefix of its first that makes a figure of one to a thousand of `size` (SI). Others as they are.
+ReadableUnit readable_unit(const std::string& unit, double size);
+
+/// "0.0458 mrad": a value of that unit (SI).
+std::string in_readable_unit(double value, const std::string& unit);
+
+}  // namespace selfcal
