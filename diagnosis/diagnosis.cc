@@ -23,6 +23,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kDiagnosisPasses = 4;
+constexpr const char* kAllKept = "every row is `part: check`: there is none to find a cause with";
 constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
 
 class Diagnostician {
@@ -33,6 +34,12 @@ class Diagnostician {
         options_(options),
         progress_(progress),
         view_(robot, data, options, progress) {}
+
+  /// Why these rows cannot be diagnosed; empty where they can.
+  std::string problem() {
+    prepare();
+    return lacking();
+  }
 
   Diagnosis run() {
     weigh();
@@ -89,25 +96,33 @@ class Diagnostician {
     return {};
   }
 
+  /// The evidence of the rows that are kept.
+  void prepare() {
+    const DenseEquations rows = view_.kept();
+    bench_ = std::make_unique<EvidenceEvaluator>(
+        view_.whitened(),
+        structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
+                   comparable_readings(view_.geometry(), data_.rows.q),
+                   noise_of_visits(data_.rows, rows, view_.left())),
+        view_.candidates(), view_.parameters(), options_.search);
+  }
+
+  /// Why there are too few rows; empty where there are enough.
+  std::string lacking() const {
+    const double freedom = bench_->marginal_likelihood(0).freedom();
+    if (freedom >= kFewestFreedoms) return {};
+    return "too few rows for a diagnosis: beyond what calibration takes they leave " +
+           format_number(std::floor(freedom)) + " equations, at least 10 are needed";
+  }
+
   /// Every cause on rows without the false ones, until neither these nor the noise change.
   void weigh() {
     for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
       tell("weighing the causes", 0.2 + 0.2 * pass);
-      const DenseEquations rows = view_.kept();
-      bench_ = std::make_unique<EvidenceEvaluator>(
-          view_.whitened(),
-          structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
-                     comparable_readings(view_.geometry(), data_.rows.q),
-                     noise_of_visits(data_.rows, rows, view_.left())),
-          view_.candidates(), view_.parameters(), options_.search);
+      prepare();
+      result_.problem = lacking();
+      if (!result_.problem.empty()) return;
       posterior_ = bench_->search();
-      if (bench_->marginal_likelihood(0).freedom() < kFewestFreedoms) {
-        result_.problem =
-            "too few rows for a diagnosis: beyond what calibration takes they leave " +
-            format_number(std::floor(bench_->marginal_likelihood(0).freedom())) +
-            " equations, at least 10 are needed";
-        return;
-      }
       expects(std::isfinite(posterior_.log_total), "the evidence of finite rows is finite");
       const Hypothesis& best = posterior_.hypotheses.front();
       const auto [columns, sigma] = MarginalLikelihood::unfold(bench_->terms(best));
@@ -161,11 +176,18 @@ void judge_by_folds(const std::shared_ptr<const Robot>& robot, const DataSet& da
 
 }  // namespace
 
+std::string why_not_diagnosable(const std::shared_ptr<const Robot>& robot, const DataSet& data) {
+  if (std::ranges::all_of(data.rows.check, [](auto check) { return check != 0; })) return kAllKept;
+  const DiagnosisOptions options;
+  const Progress silent;
+  return Diagnostician(robot, data, options, silent).problem();
+}
+
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
                    const DiagnosisOptions& options, const Progress& progress) {
   if (std::ranges::all_of(data.rows.check, [](auto check) { return check != 0; })) {
     Diagnosis nothing;
-    nothing.problem = "every row is `part: check`: there is none to find a cause with";
+    nothing.problem = kAllKept;
     return nothing;
   }
   Diagnosis diagnosis = Diagnostician(robot, data, options, progress).run();

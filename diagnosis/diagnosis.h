@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "constraints/methods/data_set.h"
 #include "constraints/progress.h"
@@ -14,5 +15,8 @@ namespace selfcal {
 
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
                    const DiagnosisOptions& options = {}, const Progress& progress = {});
+
+/// Why these rows cannot be diagnosed, found without a search for causes; empty where they can.
+std::string why_not_diagnosable(const std::shared_ptr<const Robot>& robot, const DataSet& data);
 
 }  // namespace selfcal

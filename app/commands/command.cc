@@ -5,7 +5,7 @@
 #include "app/commands/support/find_robot.h"
 #include "app/commands/support/user.h"
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "io/dds/clients/commander.h"
 
 namespace selfcal {

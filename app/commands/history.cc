@@ -9,7 +9,7 @@
 #include "app/commands/support/session_export.h"
 #include "app/report/drift.h"
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "app/report/page/history_page.h"
 #include "app/report/past.h"
 #include "app/service/config.h"

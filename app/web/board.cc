@@ -1,6 +1,6 @@
 #include "app/web/board.h"
 
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 
 namespace selfcal {
 

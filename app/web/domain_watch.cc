@@ -1,6 +1,6 @@
 #include "app/web/domain_watch.h"
 
-#include "app/report/fleet.h"
+#include "app/report/live/fleet.h"
 #include "io/dds/names.h"
 
 namespace selfcal {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/domain_listener.h"
+#include "app/report/live/domain_listener.h"
 #include "app/web/board.h"
 #include "app/web/robot_watch.h"
 

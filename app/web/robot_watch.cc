@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "app/web/changes.h"
 
 namespace selfcal {

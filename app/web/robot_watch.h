@@ -11,8 +11,8 @@
 #include <memory>
 #include <string>
 
-#include "app/report/listener.h"
-#include "app/report/monitor_news.h"
+#include "app/report/live/listener.h"
+#include "app/report/live/monitor_news.h"
 #include "app/web/archive.h"
 #include "app/web/board.h"
 #include "app/web/cell_view.h"

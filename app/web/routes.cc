@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "app/web/live_page.h"
 
 namespace selfcal {

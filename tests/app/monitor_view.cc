@@ -1,13 +1,13 @@
 // The picture and the lines that a watcher reads, from messages made up.
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
-#include "app/report/monitor_news.h"
+#include "app/report/live/message_json.h"
+#include "app/report/live/monitor_news.h"
 
 namespace selfcal {
 namespace {

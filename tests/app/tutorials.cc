@@ -82,6 +82,12 @@ TEST_F(Tutorials, MendASimulator) {
       << ran.out;
 }
 
+TEST_F(Tutorials, WatchManyRobots) {
+  const Ran ran = follow("fleet.md");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("3 robots, 1 waits, 2 warning"), std::string::npos) << ran.out;
+}
+
 TEST_F(Tutorials, SayWhatToExpectOfACell) {
   const Ran ran = follow("accuracy.md");
   EXPECT_EQ(ran.status, 0) << ran.out;

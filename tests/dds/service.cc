@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "io/dds/clients/monitor.h"
 #include "io/dds/messenger.h"
 #include "tests/support/domain.h"

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
@@ -147,6 +148,19 @@ TEST_F(TrialCommand, LeavesNothingBehindWhenItRefusesGivenDataSets) {
   EXPECT_EQ(trial("seal " + first + sealed + out), 2);  // names t001 besides
   EXPECT_EQ(trial("seal " + both + " " + first + sealed + out), 2);
   EXPECT_FALSE(fs::exists(path("b")));
+
+  // What cannot be diagnosed cannot be answered: a dozen rows of t001.
+  fs::copy(path("a"), path("few"), fs::copy_options::recursive);
+  std::istringstream rows(text("a/t001/observations.csv"));
+  std::string some, line;
+  for (int i = 0; i < 13 && std::getline(rows, line); ++i) some += line + "\n";
+  scratch_.write("few/t001/observations.csv", some);
+  EXPECT_EQ(
+      trial("seal " + path("few/t000").string() + " " + path("few/t001").string() + sealed + out),
+      kBadInput);
+  EXPECT_THAT(said_, HasSubstr("t001/observations.csv: too few rows for a diagnosis"));
+  EXPECT_FALSE(fs::exists(path("b")));
+
   EXPECT_EQ(trial("seal " + both + sealed + out), 0) << said_;
 }
 

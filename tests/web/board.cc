@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "app/report/fleet.h"
 #include "app/report/format.h"
+#include "app/report/live/fleet.h"
 #include "app/web/changes.h"
 #include "io/files/robot_file.h"
 #include "tests/support/domain.h"

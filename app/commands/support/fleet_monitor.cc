@@ -7,11 +7,11 @@
 
 #include "app/commands/support/live_screen.h"
 #include "app/commands/support/signals.h"
-#include "app/report/domain_listener.h"
-#include "app/report/fleet.h"
 #include "app/report/format.h"
-#include "app/report/message_lines.h"
-#include "app/report/screen.h"
+#include "app/report/live/domain_listener.h"
+#include "app/report/live/fleet.h"
+#include "app/report/live/message_lines.h"
+#include "app/report/live/screen.h"
 
 namespace selfcal {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "app/commands/support/signals.h"
 #include "app/report/format.h"
-#include "app/report/keyboard.h"
-#include "app/report/screen.h"
+#include "app/report/live/keyboard.h"
+#include "app/report/live/screen.h"
 #include "io/clock.h"
 
 namespace selfcal {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 #include "io/result.h"
 #include "io/wakeup.h"
 

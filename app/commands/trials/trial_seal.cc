@@ -8,6 +8,7 @@
 #include "app/commands/subcommand.h"
 #include "app/commands/trials/trial.h"
 #include "app/report/progress_line.h"
+#include "diagnosis/diagnosis.h"
 #include "io/files/data_set_file.h"
 #include "io/files/data_set_writer.h"
 #include "io/files/file.h"
@@ -136,9 +137,13 @@ Result<Given> examine(const fs::path& folder, const fs::path& out) {
   Given given{name, from, out / name, {}};
   std::error_code error;
   if (fs::exists(given.to, error)) return bad_input(given.to.string() + ": is there already");
-  const auto loaded = load_data_set(from);
+  auto loaded = load_data_set(from);
   if (!loaded) return tl::unexpected(loaded.error());
   given.files = loaded->files;
+  // What `trial run` cannot answer would be scored as if the diagnosis had failed.
+  if (const std::string why = why_not_diagnosable(std::move(loaded->robot), loaded->data);
+      !why.empty())
+    return bad_input((from / "observations.csv").string() + ": " + why);
   for (const fs::path& file : given.files)
     if (file.is_absolute() || *file.lexically_normal().begin() == "..")
       return bad_input((from / "dataset.yaml").string() + ": " + file.string() +

@@ -29,12 +29,12 @@ function gap_of(data) {
   if (gap.rows === 0) return [paragraph("No rows are kept aside: how far the gap closes was not judged.")];
   const steps = [{label: ["maker's figures"], value: gap.rms_nominal, colour: "soft"},
                  {label: ["calibrated"], value: gap.rms_before, colour: "before"}];
-  if (words.named) steps.push({label: wrapped("with " + words.named, 30), value: gap.rms_after, colour: "after"});
-  if (words.found) steps.push({label: wrapped("with " + words.found, 30), value: gap.rms_all, colour: "good"});
+  if (words.named) steps.push({label: ["with what is named"], tile: "with " + words.named, value: gap.rms_after, colour: "after"});
+  if (words.found) steps.push({label: ["with all found"], tile: "with " + words.found, value: gap.rms_all, colour: "good"});
   steps.push({label: ["noise"], value: gap.noise_floor, colour: "open"});
   const items = steps.filter(step => known(step.value)).map(step =>
-    ({label: step.label, value: 1e3 * step.value, colour: step.colour}));
-  const parts = [tiles(items.map(item => [figure(item.value, 4) + " mm", item.label.join(" ")])),
+    ({label: step.label, tile: step.tile || step.label[0], value: 1e3 * step.value, colour: step.colour}));
+  const parts = [tiles(items.map(item => [figure(item.value, 4) + " mm", item.tile])),
     chart(bars(items, "rms, mm"), "On " + gap.rows + (gap.judged_on === "folds"
       ? " rows, each part judged by the others in turn." : " rows that neither the fit nor the choice has seen."),
       "", 3 + 3 * items.length)];

@@ -1,11 +1,11 @@
-#include "app/report/message_lines.h"
+#include "app/report/live/message_lines.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 
 namespace selfcal {
 

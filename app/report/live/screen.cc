@@ -1,6 +1,6 @@
 // ECMA-48: ESC [ n A goes up n lines, ESC [ H to the first; ESC [ K clears to the end of the line,
 // ESC [ J to that of the screen, ESC [ 2 J all of it.
-#include "app/report/screen.h"
+#include "app/report/live/screen.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

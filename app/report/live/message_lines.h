@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/report/monitor_news.h"
+#include "app/report/live/monitor_news.h"
 #include "io/dds/clients/monitor.h"
 #include "io/messages.h"
 

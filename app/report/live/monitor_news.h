@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 
 namespace selfcal {
 

@@ -1,11 +1,11 @@
-#include "app/report/fleet.h"
+#include "app/report/live/fleet.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "io/files/json_parts.h"
 #include "io/outcome.h"
 

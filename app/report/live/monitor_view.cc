@@ -1,12 +1,12 @@
 // The picture has a column of titles and one of texts. Ranks: what a person must see is 0, what
 // only pleases the eye is last.
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "io/outcome.h"
 
 namespace selfcal {

@@ -1,4 +1,4 @@
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 
 #include "io/files/json_parts.h"
 

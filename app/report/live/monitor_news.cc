@@ -1,9 +1,9 @@
-#include "app/report/monitor_news.h"
+#include "app/report/live/monitor_news.h"
 
 #include <cmath>
 
 #include "app/report/format.h"
-#include "app/report/message_json.h"
+#include "app/report/live/message_json.h"
 #include "io/outcome.h"
 
 namespace selfcal {

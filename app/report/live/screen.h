@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 
 namespace selfcal {
 

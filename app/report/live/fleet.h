@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 
 namespace selfcal {
 

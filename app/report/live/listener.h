@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/monitor_view.h"
+#include "app/report/live/monitor_view.h"
 #include "io/clock.h"
 #include "io/dds/clients/monitor.h"
 

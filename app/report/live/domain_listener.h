@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/listener.h"
+#include "app/report/live/listener.h"
 #include "io/dds/clients/diagnostics.h"
 #include "io/dds/clients/discovery.h"
 

@@ -1,4 +1,4 @@
-#include "app/report/keyboard.h"
+#include "app/report/live/keyboard.h"
 
 #include <poll.h>
 #include <unistd.h>
