@@ -9,6 +9,7 @@
 
 #include "app/commands/subcommand.h"
 #include "app/commands/support/method_sets.h"
+#include "app/report/format.h"
 #include "app/report/progress_line.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/identifiability/excitation.h"
@@ -125,6 +126,11 @@ void print_answered(const Answered& answered) {
   std::printf("%s by %s, %d rows: %d of %zu parameters identifiable, %d own unknowns\n",
               robot.name().c_str(), answered.method.c_str(), answered.rows, answered.rank.total(),
               robot.parameters().size(), answered.nuisance);
+  int name_width = 0, full_width = 0;
+  for (const Parameter& p : robot.parameters()) {
+    name_width = std::max(name_width, characters(p.name));
+    full_width = std::max(full_width, characters(p.frame + "." + p.field));
+  }
   for (size_t i = 0; i < robot.parameters().size(); ++i) {
     std::string text = std::string(to_string(answered.rank.status[i]));
     const auto& carriers = answered.rank.grouped_with[i];
@@ -135,8 +141,9 @@ void print_answered(const Answered& answered) {
       text += each;
     }
     const Parameter& p = robot.parameters()[i];
-    std::printf("  %-8s %-24s %s%s\n", p.name.c_str(), (p.frame + "." + p.field).c_str(),
-                text.c_str(), carriers.size() > 4 ? ", …" : "");
+    std::printf("  %s  %s  %s%s\n", padded(p.name, name_width).c_str(),
+                padded(p.frame + "." + p.field, full_width).c_str(), text.c_str(),
+                carriers.size() > 4 ? ", …" : "");
   }
   for (const Lost& lost : answered.lost) {
     std::string names;

@@ -51,15 +51,17 @@ std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
                         const std::vector<Drift>& drifts) {
   const std::size_t count = calibrations.size();
   const std::size_t first = count > kMostColumns ? count - kMostColumns : 0;
-  std::string text = padded("", 30);
+  int width = 23;
+  for (const Drift& drift : drifts) width = std::max(width, characters(drift.name) + 1);
+  std::string text = padded("", width + 7);
   for (std::size_t c = first; c < count; ++c)
     text += printed(
         "%20s", printed("session %lld", static_cast<long long>(calibrations[c].session)).c_str());
-  text += "\n" + padded("", 30);
+  text += "\n" + padded("", width + 7);
   for (std::size_t c = first; c < count; ++c)
     text += printed("%20s", date_time(calibrations[c].unix_ms).substr(0, 10).c_str());
   for (const Drift& drift : drifts) {
-    text += "\n  " + padded(drift.name, 23) + padded(shown_unit(drift.quantity), 5);
+    text += "\n  " + padded(drift.name, width) + padded(shown_unit(drift.quantity), 5);
     for (std::size_t c = first; c < count; ++c) {
       const std::string change = c > 0 ? printed("(%+.3f)", 1e3 * drift.since_last[c]) : "";
       text += printed("%+10.3f%10s", 1e3 * drift.since_factory[c], change.c_str());

@@ -52,11 +52,16 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
 
 std::string cell_plan_words(const Config& config, const CellPlan& cell) {
   std::string text;
+  int name_width = 0, method_width = 0;
+  for (const Set& set : config.sets) {
+    name_width = std::max(name_width, characters(set.name));
+    method_width = std::max(method_width, characters(set.method->name()));
+  }
   for (int s = 0; s < static_cast<int>(config.sets.size()); ++s) {
     const Set& set = config.sets[static_cast<std::size_t>(s)];
     const SetCount count = count_of(cell.plan, s);
-    text += printed("  %-16s %-20s %4d touches, %d to check, %d reached through home\n",
-                    set.name.c_str(), std::string(set.method->name()).c_str(), count.touches,
+    text += "  " + padded(set.name, name_width) + "  " + padded(set.method->name(), method_width) +
+            printed(" %4d touches, %d to check, %d reached through home\n", count.touches,
                     count.check, count.home);
   }
   if (const std::string what = lacking(cell); !what.empty())
