@@ -120,8 +120,7 @@ Result<void> Store::roll_back(std::int64_t unix_ms) {
   const Result<StoredSlot> previous = find_slot(database_, Slot::previous);
   if (!active || !previous) return tl::unexpected((!active ? active : previous).error());
   if (!active->there) {
-    return sqlite::failure(database_,
-                           "the factory's parameters are active: there is nothing further back");
+    return device_failed("the factory's parameters are active: there is nothing further back");
   }
   if (!previous->damaged.empty()) return damaged(database_, *previous);
   // Where the active ones are damaged, setting them aside is the way back already.

@@ -94,6 +94,6 @@ function show_history(data) {
               r ? mm(r.check_before) : "", r ? mm(r.check_after) : "", r && full ? mm(r.endpoint_sigma) : "",
               r ? String(r.touches) : ""];
     })));
-  section("Events", table([{title: "when"}, {title: "level"}, {title: "what"}],
+  section("Events", table([{title: "when", whole: true}, {title: "level", whole: true}, {title: "what"}],
                           data.events.map(each => [each.when, each.level, each.text])));
 }

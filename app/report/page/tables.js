@@ -25,15 +25,18 @@ function bullets(items) {
 
 function folded(title, ...children) { return element("details", {}, element("summary", {}, title), children); }
 
-// Tables become cards on a phone: each cell then carries its column's name. columns: {title, number}.
+// Tables become cards on a phone: each cell then carries its column's name. columns: {title, number, whole},
+// of which the last is never broken into lines.
 function table(columns, rows) {
   if (rows.length === 0) return null;
-  const kind = column => column.number ? {class: "number"} : {};
+  const classes = column => [column.number ? "number" : "", column.whole ? "whole" : ""].filter(each => each);
+  const kind = column => classes(column).length ? {class: classes(column).join(" ")} : {};
   const head = element("tr", {}, columns.map(column => element("th", kind(column), column.title)));
   const body = rows.map(cells => element("tr", {}, cells.map((cell, i) => {
     const empty = cell === "" || cell === null;
     const attributes = {"data-label": columns[i].title};
-    if (columns[i].number || empty) attributes.class = (columns[i].number ? "number" : "") + (empty ? " empty" : "");
+    const own = classes(columns[i]).concat(empty ? ["empty"] : []);
+    if (own.length) attributes.class = own.join(" ");
     return element("td", attributes, cell);
   })));
   return element("table", {class: "cards"}, element("thead", {}, head), element("tbody", {}, body));

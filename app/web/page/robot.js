@@ -74,10 +74,14 @@ function touch_chart() {
       (item.raw.touch.accepted ? figure(item.raw.y) + " µm" : item.raw.touch.note);
     return configured;
   };
+  const note = element("p", {class: "soft"});
   const made = chart(make, "How far each touch lies from where the active parameters and the surface, as known so far, have it.", "tall");
   const entry = drawn[drawn.length - 1];
-  return {figure: made, show(list) {
+  return {figure: element("div", {}, made, note), show(list) {
     touches = list;
+    const first = touches.filter(touch => touch.accepted && !known(touch.residual)).length;
+    note.textContent = first === 0 ? "" : plural(first, "touch is", "touches are") +
+      " taken and not drawn: a surface's first touches find where it lies, and can miss nothing.";
     if (!entry.chart || list.length === 0) return;
     entry.chart.resize();
     entry.chart.data = make().data;
