@@ -114,6 +114,15 @@ struct Residuals {
   std::vector<SetFigures> check_by_set;
 };
 
+/// The frame of a set's positions moved against the robot's base between two of its rows.
+struct FrameStep {
+  std::string set;
+  int before = 0, after = 0;  ///< rows, from 0
+  double shift = 0;           ///< m, in the middle of the rows
+  double turn = 0;            ///< rad
+  double share = 0;           ///< of the squares that calibration leaves, explained by it
+};
+
 enum class Answer { improved, not_improved, not_determined };
 std::string_view to_string(Answer answer);
 
@@ -239,6 +248,7 @@ struct Solution {
   double prior_dof = 0;
   double prior_widening = 1;
   Observability observability;
+  std::vector<FrameStep> frame_steps;        ///< of sets of positions, the largest of each
   std::vector<LockSlip> slips;               ///< of locked joints, in the order of the rows
   std::vector<std::string> locks_put_aside;  ///< sets of which nothing was used, for their slips
   std::vector<std::string> warnings;

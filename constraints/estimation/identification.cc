@@ -9,6 +9,7 @@
 #include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/angles.h"
 #include "constraints/estimation/covariance_sources.h"
+#include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/judgement.h"
 #include "constraints/estimation/lock_slip.h"
 #include "constraints/estimation/results.h"
@@ -159,11 +160,13 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.rejected = outlier_rows(data, after, fitted.noise.outlier);
   solution.sets = set_results(equations, fitted, C, after);
   solution.slips = lock_slips(data, after);
+  solution.frame_steps = frame_steps(robot, solution.values, data, solution.residual.rows);
   const std::vector<std::string> turned = gross_angles(robot, data, before, after);
   add_warnings(equations, adjusted, solution);
   std::ranges::copy(scale.scale.contradictions, std::back_inserter(solution.warnings));
   std::ranges::copy(turned, std::back_inserter(solution.warnings));
   std::ranges::transform(solution.slips, std::back_inserter(solution.warnings), slip_words);
+  std::ranges::transform(solution.frame_steps, std::back_inserter(solution.warnings), step_words);
   if (progress) progress("done", 1);
   if (nothing) {  // certain of what was given, not of what is true
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";
@@ -185,6 +188,8 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || !known_to(solution.workspace, data.target))
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
+  for (const FrameStep& step : solution.frame_steps)
+    if (step.shift > data.target) grounds.contradictions.push_back(step_words(step));
   solution.verdict = verdict(before, after, solution.residual, grounds);
   return solution;
 }

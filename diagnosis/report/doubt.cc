@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "constraints/estimation/first_look.h"
+#include "constraints/estimation/frame_step.h"
+#include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/readable.h"
@@ -56,11 +58,18 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
   return {};
 }
 
+/// Rows of which some were taken with the instrument, or the base, elsewhere.
+std::string moved_between_rows(const LinearisedModel& view, const DataSet& data) {
+  const Solution calibrated = identify(view.geometry(), data);
+  return calibrated.frame_steps.empty() ? "" : step_words(calibrated.frame_steps.front());
+}
+
 }  // namespace
 
 std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis) {
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
+  if (std::string why = moved_between_rows(view, data); !why.empty()) return why;
   return diagnosis.verdict.effect == kNone ? beyond_sheet(view, data) : std::string();
 }
 

@@ -57,5 +57,15 @@ TEST(Doubt, BelievesTheRepeatsWhereTheySayThatTheNoiseIsSo) {
   EXPECT_EQ(diagnosis.verdict.effect, kNone) << diagnosis.why;
 }
 
+TEST(Doubt, NamesNothingWhereTheInstrumentWasMoved) {
+  Rows rows;
+  for (int row = 35; row < rows.data.rows.rows(); ++row)
+    rows.data.rows.position.row(row) += Eigen::RowVector3d(0.003, -0.002, 0.001);
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
+  EXPECT_TRUE(diagnosis.named.empty());
+  EXPECT_THAT(diagnosis.why, HasSubstr("between rows 35 and 36 the instrument of set tracker"));
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -1,0 +1,226 @@
+// With p the body's place and r the way from it to where the row has it, rows in their order:
+//   r_i = a + A x (p_i - c) + [i >= k] (b + B x (p_i - c))
+// which is a rigid motion fitted to the rows before k and another to those after.
+#include "constraints/estimation/frame_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "constraints/estimation/lock_slip.h"
+#include "kinematics/readable.h"
+#include "kinematics/rotation.h"
+
+namespace selfcal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Motion = Eigen::Matrix<double, 3, 6>;  ///< what a rigid motion moves a point by
+
+constexpr double kShare = 0.4;     ///< of the squares, that a step explains
+constexpr double kSharp = 0.6;     ///< of the step, that comes from the rows before to those after
+constexpr int kBeside = 10;        ///< rows on either side that must show it
+constexpr int kMostSplits = 500;   ///< tried of a long set
+constexpr int kMostPlaced = 1000;  ///< rows at which another explanation is tried
+constexpr double kPlainly = 0.8;   ///< of the squares that the best other explanation leaves
+constexpr double kAsMuch = 0.97;   ///< of the squares explained: another explains as much
+constexpr double kDifference = 1e-5;  ///< rad or m, for derivatives
+
+struct Row {
+  int row = 0;
+  Vector3d at, way;
+};
+
+/// Least squares of a rigid motion over some rows: normal equations that add up.
+struct Sums {
+  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+  Vector6d b = Vector6d::Zero();
+  double squares = 0;
+
+  void add(const Motion& J, const Vector3d& way) {
+    A += J.transpose() * J;
+    b += J.transpose() * way;
+    squares += way.squaredNorm();
+  }
+  Sums operator-(const Sums& other) const {
+    return {A - other.A, b - other.b, squares - other.squares};
+  }
+  Vector6d motion() const {
+    return (A + 1e-9 * Eigen::Matrix<double, 6, 6>::Identity()).ldlt().solve(b);
+  }
+  double left() const { return std::max(0.0, squares - b.dot(motion())); }
+};
+
+bool gives_positions(const Set& set) {
+  const std::vector<Quantity> equations = set.method->equations();
+  return set.method->touches() == TouchedSurface::none && !set.method->paired() &&
+         std::ranges::count(equations, Quantity::length) == 3;
+}
+
+/// Rows of a set in their order, without those put aside.
+std::vector<Row> rows_of_set(const DataSet& data, const std::vector<RowFigure>& figures, int set) {
+  std::vector<const RowFigure*> by_row(static_cast<std::size_t>(data.rows.rows()), nullptr);
+  for (const RowFigure& each : figures)
+    if (each.set == set && !each.rejected && each.way_after.allFinite() && each.at.allFinite())
+      by_row[static_cast<std::size_t>(each.row)] = &each;
+  std::vector<Row> rows;
+  for (const int row : rows_in_time(data.rows, set))
+    if (const RowFigure* each = by_row[static_cast<std::size_t>(row)])
+      rows.push_back({row, each->at, each->way_after});
+  return rows;
+}
+
+Motion motion_of(const Vector3d& from_middle) {
+  Motion J;
+  J << Matrix3d::Identity(), -skew(from_middle);
+  return J;
+}
+
+struct Split {
+  std::size_t at = 0;  ///< the first row after it
+  double left = 0;     ///< squares
+  Vector6d before, step;
+};
+
+class SetSteps {
+ public:
+  explicit SetSteps(std::vector<Row> rows) : rows_(std::move(rows)) {
+    for (const Row& each : rows_) middle_ += each.at / static_cast<double>(rows_.size());
+    sums_.resize(rows_.size() + 1);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      sums_[i + 1] = sums_[i];
+      sums_[i + 1].add(motion_of(rows_[i].at - middle_), rows_[i].way);
+    }
+  }
+
+  double without() const { return sums_.back().left(); }
+
+  Split best() const {
+    const std::size_t fewest = kFewestBesideStep, last = rows_.size() - fewest;
+    const std::size_t stride = 1 + (last - fewest) / kMostSplits;
+    Split best{0, HUGE_VAL, {}, {}};
+    const auto look = [&](std::size_t at) {
+      const Sums after = sums_.back() - sums_[at];
+      const double left = sums_[at].left() + after.left();
+      if (left < best.left) best = {at, left, sums_[at].motion(), after.motion()};
+    };
+    for (std::size_t at = fewest; at <= last; at += stride) look(at);
+    const std::size_t near = best.at;
+    for (std::size_t at = std::max(fewest, near - std::min(near, stride));
+         at <= std::min(last, near + stride); ++at)
+      look(at);
+    best.step -= best.before;
+    return best;
+  }
+
+  /// Share of the step that the rows right after it show and those right before it do not.
+  double sharpness(const Split& split) const {
+    return shown(split, split.at, split.at + kBeside) - shown(split, split.at - kBeside, split.at);
+  }
+
+  /// Least squares that are left when, in place of the frame, the tool shifts at the same row, or
+  /// the zero of one joint does.
+  double left_otherwise(const Split& split, const Robot& robot, const Eigen::VectorXd& xi,
+                        const DataSet& data, int set) const {
+    const auto joints = static_cast<Eigen::Index>(robot.joints().size());
+    const std::size_t stride = 1 + rows_.size() / kMostPlaced;
+    std::vector<std::size_t> some;
+    for (std::size_t i = 0; i < rows_.size(); i += stride) some.push_back(i);
+    // Columns: the rigid motion of all, then what each alternative moves the rows by. The point
+    // that is seen may lie anywhere in the body.
+    const Body body = data.sets[static_cast<std::size_t>(set)].method->body();
+    Eigen::MatrixXd rigid(3 * some.size(), 6), turn(3 * some.size(), 3),
+        readings(3 * some.size(), 4 * joints);
+    Eigen::VectorXd ways(3 * some.size());
+    Eigen::VectorXd after(3 * some.size());
+    for (std::size_t s = 0; s < some.size(); ++s) {
+      const Row& row = rows_[some[s]];
+      const auto at = static_cast<Eigen::Index>(3 * s);
+      const Eigen::VectorXd q = data.rows.q.row(row.row).transpose();
+      rigid.middleRows<3>(at) = motion_of(row.at - middle_);
+      turn.middleRows<3>(at) = locate(robot, xi, q, body).R;
+      for (Eigen::Index j = 0; j < joints; ++j) {
+        Eigen::VectorXd more = q, less = q;
+        more[j] += kDifference;
+        less[j] -= kDifference;
+        const Location up = locate(robot, xi, more, body), down = locate(robot, xi, less, body);
+        readings.block<3, 4>(at, 4 * j) << (up.p - down.p) / (2 * kDifference),
+            (up.R - down.R) / (2 * kDifference);
+      }
+      ways.segment<3>(at) = row.way;
+      after.segment<3>(at).setConstant(some[s] >= split.at ? 1 : 0);
+    }
+    const auto left = [&](const Eigen::MatrixXd& columns) {
+      Eigen::MatrixXd all(ways.size(), 6 + 2 * columns.cols());
+      all << rigid, columns, after.asDiagonal() * columns;
+      return (ways - all * all.completeOrthogonalDecomposition().solve(ways)).squaredNorm();
+    };
+    double least = left(turn);
+    for (Eigen::Index j = 0; j < joints; ++j)
+      least = std::min(least, left(readings.middleCols(4 * j, 4)));
+    return least * static_cast<double>(stride);
+  }
+
+  const Row& row(std::size_t i) const { return rows_[i]; }
+
+ private:
+  double shown(const Split& split, std::size_t from, std::size_t to) const {
+    double along = 0, squares = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const Motion J = motion_of(rows_[i].at - middle_);
+      const Vector3d step = J * split.step;
+      along += step.dot(rows_[i].way - J * split.before);
+      squares += step.squaredNorm();
+    }
+    return squares > 0 ? along / squares : 0;
+  }
+
+  std::vector<Row> rows_;
+  Vector3d middle_ = Vector3d::Zero();
+  std::vector<Sums> sums_;
+};
+
+std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,
+                                     const DataSet& data, const std::vector<RowFigure>& figures,
+                                     int set) {
+  std::vector<Row> rows = rows_of_set(data, figures, set);
+  if (rows.size() < 2 * kFewestBesideStep) return std::nullopt;
+  const SetSteps steps(std::move(rows));
+  const double without = steps.without();
+  const Split split = steps.best();
+  if (!(split.left < (1 - kShare) * without) || steps.sharpness(split) < kSharp)
+    return std::nullopt;
+  const double otherwise = steps.left_otherwise(split, robot, xi, data, set);
+  if (split.left > kPlainly * otherwise || without - otherwise > kAsMuch * (without - split.left))
+    return std::nullopt;
+  return FrameStep{data.sets[static_cast<std::size_t>(set)].name,
+                   steps.row(split.at - 1).row,
+                   steps.row(split.at).row,
+                   split.step.head<3>().norm(),
+                   split.step.tail<3>().norm(),
+                   1 - split.left / without};
+}
+
+}  // namespace
+
+std::vector<FrameStep> frame_steps(const Robot& robot, const Eigen::VectorXd& xi,
+                                   const DataSet& data, const std::vector<RowFigure>& rows) {
+  std::vector<FrameStep> steps;
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
+    if (gives_positions(data.sets[static_cast<std::size_t>(s)]))
+      if (auto step = step_of_set(robot, xi, data, rows, s)) steps.push_back(*std::move(step));
+  return steps;
+}
+
+std::string step_words(const FrameStep& step) {
+  return "between rows " + std::to_string(step.before + 1) + " and " +
+         std::to_string(step.after + 1) + " the instrument of set " + step.set +
+         " or the robot's base was moved, by " + in_readable_unit(step.shift, "m") + " and " +
+         in_readable_unit(step.turn, "rad") + " (that alone explains " +
+         with_figures("%.0f %%", 100 * step.share) +
+         " of the squares that calibration leaves): give the rows before and after it as two sets";
+}
+
+}  // namespace selfcal
