@@ -131,7 +131,7 @@ TEST(TurnAxisOfMarkers, SaysWhatItLacks) {
   EXPECT_THAT(turn_axis(one).problem, testing::HasSubstr("two rows"));
   EXPECT_THAT(turn_axis(few).problem, testing::HasSubstr("three markers"));
   EXPECT_THAT(turn_axis(line).problem, testing::HasSubstr("in a line"));
-  EXPECT_THAT(turn_axis(still).problem, testing::HasSubstr("turns through 9 mrad only"));
+  EXPECT_THAT(turn_axis(still).problem, testing::HasSubstr("turns through 9.425 mrad only"));
   EXPECT_THAT(turn_axis(half).problem, testing::HasSubstr("whole or half turns"));
   EXPECT_THAT(turn_axis(otherwise).problem, testing::HasSubstr("turned otherwise"));
 }
