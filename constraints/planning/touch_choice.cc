@@ -218,7 +218,7 @@ double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angl
 TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
-                           const Workspace& workspace, Random& random) {
+                           const Workspace& workspace, Random& random, const Progress& progress) {
   TouchChoice choice;
   if (candidates.empty()) return choice;
   const Kinds kinds = kinds_of(candidates, counts.fit);
@@ -227,7 +227,7 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
   choose_one_by_one(design, kinds, wanted, kinds.share);
   // What a socket out of reach leaves goes to the others.
   choose_one_by_one(design, kinds, wanted, std::vector<int>(kinds.set.size(), INT_MAX));
-  add_and_drop(design);
+  add_and_drop(design, progress);
   choice.fit = design.chosen();
   // A socket or nest that nothing identifies judges nothing.
   std::set<std::pair<int, int>> identified;

@@ -11,6 +11,7 @@
 
 #include "constraints/methods/data_set.h"
 #include "constraints/methods/method.h"
+#include "constraints/progress.h"
 #include "constraints/workspace.h"
 #include "kinematics/robot.h"
 
@@ -47,7 +48,8 @@ struct TouchChoice {
 TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
-                           const Workspace& workspace, Random& random);
+                           const Workspace& workspace, Random& random,
+                           const Progress& progress = {});
 
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.

@@ -155,7 +155,8 @@ std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
                                  const std::vector<TouchTarget>& targets,
                                  const std::vector<std::vector<PlannedTouch>>& usable,
-                                 const Workspace& workspace, double share, Random& random) {
+                                 const Workspace& workspace, double share, Random& random,
+                                 const Progress& progress) {
   std::vector<PossibleTouch> candidates;
   std::vector<PlannedTouch> touches;
   TouchCounts counts{std::vector<int>(sets.size(), 0), std::vector<int>(sets.size(), 0)};
@@ -168,7 +169,8 @@ std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
       touches.push_back(each);
     }
   }
-  const TouchChoice choice = choose_touches(robot, xi, sets, candidates, counts, workspace, random);
+  const TouchChoice choice =
+      choose_touches(robot, xi, sets, candidates, counts, workspace, random, progress);
   std::vector<PlannedTouch> chosen;
   for (const int i : choice.fit) chosen.push_back(touches[i]);
   for (const int i : choice.check) {
@@ -258,7 +260,7 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   }
   tell("choosing touches", 0);
   const std::vector<PlannedTouch> chosen =
-      choose(robot, xi, sets, targets, usable, workspace, options.check, random);
+      choose(robot, xi, sets, targets, usable, workspace, options.check, random, progress);
   tell("ordering touches", 0);
   plan.touches =
       order({robot, xi, obstacles, options.apart, options.home, options.speed}, sets, chosen);

@@ -134,5 +134,20 @@ TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
   EXPECT_LT(with.workspace.rms, with.endpoint.rms);
 }
 
+TEST(TouchPlan, IsGivenUpWhileItsTouchesAreExchanged) {
+  PlannedCell cell;
+  cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.3, 12).plane({1.05, 0, 0.8}, {-1, 0.1, 0}, 0.3, 12);
+  struct GivenUp {};
+  std::vector<std::string> stages;
+  const Progress give_up = [&](std::string_view stage, double) {
+    stages.emplace_back(stage);
+    if (stage == "exchanging configurations") throw GivenUp();
+  };
+  EXPECT_THROW(plan_touches(rx90(), values(rx90()), cell.sets, cell.targets, cell.obstacles, {},
+                            cell.options, give_up),
+               GivenUp);
+  EXPECT_EQ(stages.back(), "exchanging configurations");
+}
+
 }  // namespace
 }  // namespace selfcal
