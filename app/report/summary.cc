@@ -201,6 +201,13 @@ std::string headline(const Solution& solution) {
   if (check.rows > 0 && check.rms_without_rejected < 0.9 * check.rms_after)
     figures +=
         with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+  const bool files_first = std::ranges::any_of(
+      solution.warnings, [](const std::string& each) { return each.starts_with(kFilesFirst); });
+  if (files_first && solution.verdict.answer != Answer::improved)
+    return std::string(solution.verdict.answer == Answer::not_improved ? "Not improved"
+                                                                       : "Not determined") +
+           ": rows and robot file do not belong together as they are" +
+           (figures.empty() ? std::string() : "; " + figures) + ".";
   switch (solution.verdict.answer) {
     case Answer::improved:
       return "Improved: " + figures + ".";
