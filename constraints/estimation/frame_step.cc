@@ -19,12 +19,10 @@ using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Motion = Eigen::Matrix<double, 3, 6>;  ///< what a rigid motion moves a point by
 
-constexpr double kShare = 0.4;     ///< of the squares, that a step explains
 constexpr double kSharp = 0.6;     ///< of the step, that comes from the rows before to those after
 constexpr int kBeside = 10;        ///< rows on either side that must show it
 constexpr int kMostSplits = 500;   ///< tried of a long set
 constexpr int kMostPlaced = 1000;  ///< rows at which another explanation is tried
-constexpr double kPlainly = 0.8;   ///< of the squares that the best other explanation leaves
 constexpr double kAsMuch = 0.97;   ///< of the squares explained: another explains as much
 constexpr double kDifference = 1e-5;  ///< rad or m, for derivatives
 
@@ -184,16 +182,17 @@ class SetSteps {
 
 std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,
                                      const DataSet& data, const std::vector<RowFigure>& figures,
-                                     int set) {
+                                     int set, const StepBounds& bounds) {
   std::vector<Row> rows = rows_of_set(data, figures, set);
   if (rows.size() < 2 * kFewestBesideStep) return std::nullopt;
   const SetSteps steps(std::move(rows));
   const double without = steps.without();
   const Split split = steps.best();
-  if (!(split.left < (1 - kShare) * without) || steps.sharpness(split) < kSharp)
+  if (!(split.left < (1 - bounds.share) * without) || steps.sharpness(split) < kSharp)
     return std::nullopt;
   const double otherwise = steps.left_otherwise(split, robot, xi, data, set);
-  if (split.left > kPlainly * otherwise || without - otherwise > kAsMuch * (without - split.left))
+  if (split.left > bounds.plainly * otherwise ||
+      without - otherwise > kAsMuch * (without - split.left))
     return std::nullopt;
   return FrameStep{data.sets[static_cast<std::size_t>(set)].name,
                    steps.row(split.at - 1).row,
@@ -206,11 +205,13 @@ std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& 
 }  // namespace
 
 std::vector<FrameStep> frame_steps(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const DataSet& data, const std::vector<RowFigure>& rows) {
+                                   const DataSet& data, const std::vector<RowFigure>& rows,
+                                   const StepBounds& bounds) {
   std::vector<FrameStep> steps;
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
     if (gives_positions(data.sets[static_cast<std::size_t>(s)]))
-      if (auto step = step_of_set(robot, xi, data, rows, s)) steps.push_back(*std::move(step));
+      if (auto step = step_of_set(robot, xi, data, rows, s, bounds))
+        steps.push_back(*std::move(step));
   return steps;
 }
 

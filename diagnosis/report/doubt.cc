@@ -19,6 +19,7 @@ namespace {
 /// exchanged may be moved as far as one likes.
 constexpr double kImpossible = 20;
 constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
+constexpr double kTooFar = 3;        ///< of the usual largest drift: a step may be taken for one
 constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
 constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
@@ -58,18 +59,32 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
   return {};
 }
 
+bool drifts_too_far(const std::vector<CauseResult>& named) {
+  return std::ranges::any_of(named, [](const CauseResult& each) {
+    return each.effect == "base_drift" &&
+           std::ranges::any_of(each.parameters, [](const NamedValue& v) {
+             return std::abs(v.value) - 2 * v.sigma > kTooFar * v.usual_most;
+           });
+  });
+}
+
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
-std::string moved_between_rows(const LinearisedModel& view, const DataSet& data) {
+std::string moved_between_rows(const LinearisedModel& view, const DataSet& data,
+                               const Diagnosis& diagnosis) {
   const Solution calibrated = identify(view.geometry(), data);
-  return calibrated.frame_steps.empty() ? "" : step_words(calibrated.frame_steps.front());
+  std::vector<FrameStep> steps = calibrated.frame_steps;
+  if (steps.empty() && drifts_too_far(diagnosis.named))
+    steps = frame_steps(view.geometry(), calibrated.values, data, calibrated.residual.rows,
+                        kSuspectedStep);
+  return steps.empty() ? "" : step_words(steps.front());
 }
 
 }  // namespace
 
 std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis) {
+  if (std::string why = moved_between_rows(view, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
-  if (std::string why = moved_between_rows(view, data); !why.empty()) return why;
   return diagnosis.verdict.effect == kNone ? beyond_sheet(view, data) : std::string();
 }
 
