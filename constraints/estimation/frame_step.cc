@@ -86,31 +86,18 @@ class SetSteps {
  public:
   explicit SetSteps(std::vector<Row> rows) : rows_(std::move(rows)) {
     for (const Row& each : rows_) middle_ += each.at / static_cast<double>(rows_.size());
-    sums_.resize(rows_.size() + 1);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      sums_[i + 1] = sums_[i];
-      sums_[i + 1].add(motion_of(rows_[i].at - middle_), rows_[i].way);
-    }
+    for (const Row& each : rows_) all_.add(motion_of(each.at - middle_), each.way);
   }
 
-  double without() const { return sums_.back().left(); }
+  double without() const { return all_.left(); }
 
+  /// Of every so many splits, then of those beside the best of them.
   Split best() const {
     const std::size_t fewest = kFewestBesideStep, last = rows_.size() - fewest;
     const std::size_t stride = 1 + (last - fewest) / kMostSplits;
-    Split best{0, HUGE_VAL, {}, {}};
-    const auto look = [&](std::size_t at) {
-      const Sums after = sums_.back() - sums_[at];
-      const double left = sums_[at].left() + after.left();
-      if (left < best.left) best = {at, left, sums_[at].motion(), after.motion()};
-    };
-    for (std::size_t at = fewest; at <= last; at += stride) look(at);
-    const std::size_t near = best.at;
-    for (std::size_t at = std::max(fewest, near - std::min(near, stride));
-         at <= std::min(last, near + stride); ++at)
-      look(at);
-    best.step -= best.before;
-    return best;
+    const std::size_t near = best_of(fewest, last, stride).at;
+    return best_of(std::max(fewest, near - std::min(near, stride)), std::min(last, near + stride),
+                   1);
   }
 
   /// Share of the step that the rows right after it show and those right before it do not.
@@ -164,6 +151,20 @@ class SetSteps {
   const Row& row(std::size_t i) const { return rows_[i]; }
 
  private:
+  Split best_of(std::size_t first, std::size_t last, std::size_t stride) const {
+    Split best{0, HUGE_VAL, {}, {}};
+    Sums before;
+    for (std::size_t at = 0; at <= last; ++at) {
+      if (at >= first && (at - first) % stride == 0) {
+        const Sums after = all_ - before;
+        if (const double left = before.left() + after.left(); left < best.left)
+          best = {at, left, before.motion(), after.motion() - before.motion()};
+      }
+      before.add(motion_of(rows_[at].at - middle_), rows_[at].way);
+    }
+    return best;
+  }
+
   double shown(const Split& split, std::size_t from, std::size_t to) const {
     double along = 0, squares = 0;
     for (std::size_t i = from; i < to; ++i) {
@@ -177,7 +178,7 @@ class SetSteps {
 
   std::vector<Row> rows_;
   Vector3d middle_ = Vector3d::Zero();
-  std::vector<Sums> sums_;
+  Sums all_;
 };
 
 std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,
