@@ -14,10 +14,11 @@ Result<DdsParticipant> DdsParticipant::open(std::uint32_t domain, const std::str
   dds_qset_entity_name(qos.get(), name.c_str());
   const dds_entity_t handle = dds_create_participant(domain, qos.get(), nullptr);
   if (handle < 0)
-    return dds_failed("cannot join domain " + std::to_string(domain) +
-                          " (does CYCLONEDDS_URI name an interface that is there, and is there room "
-                          "for one more program on this computer, MaxAutoParticipantIndex?)",
-                      handle);
+    return dds_failed(
+        "cannot join domain " + std::to_string(domain) +
+            " (does CYCLONEDDS_URI name an interface that is there, and is there room "
+            "for one more program on this computer, MaxAutoParticipantIndex?)",
+        handle);
   return DdsParticipant(DdsEntity(handle));
 }
 
