@@ -15,6 +15,7 @@
 #include "constraints/estimation/judgement.h"
 #include "constraints/identifiability/gauge.h"
 #include "constraints/statistics.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -24,17 +25,25 @@ constexpr double kSlipCollapse = 0.2;
 constexpr double kWithin = 0.1;       // of what tolerances leave: less is not looked into
 constexpr double kLeastGross = 2e-3;  // m or rad: less is no slip
 constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
+constexpr double kLeastZero = 0.02;   // rad or m: less is found by calibration
 constexpr int kFitSteps = 60;
 constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
 
+/// What may move beside the base and the sets' own unknowns.
+struct Moves {
+  bool tool = true;
+  int zero_of = -1;  ///< a joint, whose zero may be anywhere
+};
+
 struct Misfit {
   double left = 0, tool_moved = 0;
+  double zero_moved = 0;  ///< rad or m, of the joint that was asked for
   bool lengths = true, any = false;
   std::vector<std::string> angles = {};  ///< what is told of sets whose angles do not fit
 };
 
-/// How far base and tool alone bring the robot to the rows.
-Misfit misfit(const Robot& robot, const DataSet& data, bool tool_moves) {
+/// How far base and tool alone, and what else moves, bring the robot to the rows.
+Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
   Misfit result;
   const Equations equations(robot, data, Use::fit);
   Prior prior;
@@ -42,12 +51,18 @@ Misfit misfit(const Robot& robot, const DataSet& data, bool tool_moves) {
   prior.sigma.resize(prior.centre.size());
   const auto& parameters = robot.parameters();
   for (size_t i = 0; i < parameters.size(); ++i) {
-    const bool moves = is_placed(parameters[i]) && (tool_moves || parameters[i].part != Part::tool);
-    prior.free.push_back(moves && parameters[i].free && parameters[i].tolerance > 0);
+    const bool placed =
+        is_placed(parameters[i]) && (moves.tool || parameters[i].part != Part::tool);
+    prior.free.push_back(placed && parameters[i].free && parameters[i].tolerance > 0);
     prior.sigma[static_cast<Eigen::Index>(i)] = kWide * parameters[i].tolerance;
   }
   for (const auto& notes : {held_base(robot, equations), held_orientation(robot, equations)})
     for (const Note& note : notes) prior.free[find_parameter(robot, note.parameter)] = 0;
+  const int zero = moves.zero_of < 0 ? -1 : robot.variable_parameter(moves.zero_of);
+  if (zero >= 0) {
+    prior.free[static_cast<size_t>(zero)] = 1;
+    prior.sigma[zero] = robot.joints()[static_cast<size_t>(moves.zero_of)].range() / 2;
+  }
   State start{values(robot), {}, {}};
   equations.start(start);
   FitRule rule;
@@ -60,8 +75,9 @@ Misfit misfit(const Robot& robot, const DataSet& data, bool tool_moves) {
   result.any = !lengths.empty() || !angles.empty();
   result.lengths = !lengths.empty();
   if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
-  if (tool_moves) result.angles = gross_angles(robot, data, judged, judged);
+  if (moves.tool) result.angles = gross_angles(robot, data, judged, judged);
   result.tool_moved = tool_moved(robot, placed.state.xi);
+  if (zero >= 0) result.zero_moved = placed.state.xi[zero] - prior.centre[zero];
   return result;
 }
 
@@ -78,7 +94,8 @@ double expected_misfit(const Robot& robot, bool lengths) {
   return std::sqrt(squares);
 }
 
-/// The slips of the rows: signs and exchanges of joints, degrees, millimetres, exchanged columns.
+/// The slips of the rows: signs, gear ratios and exchanges of joints, degrees, millimetres,
+/// exchanged columns.
 std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
   std::vector<Slip> list;
   const auto add = [&](std::string what, auto&& change) {
@@ -91,6 +108,11 @@ std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
   for (Eigen::Index j = 0; j < n; ++j)
     add(joints[j].name + " is read with the other sign (or its gear turns the other way)",
         [j](Observations& o) { o.q.col(j) *= -1; });
+  for (const double turns : {0.5, 2.0})
+    for (Eigen::Index j = 0; j < n; ++j)
+      add("the readings of " + joints[j].name + " are " + (turns < 1 ? "twice" : "half") +
+              " what it moves (its gear ratio)",
+          [j, turns](Observations& o) { o.q.col(j) *= turns; });
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index k = 0; k < j; ++k)
       if (joints[j].quantity == joints[k].quantity)
@@ -128,6 +150,24 @@ DataSet part_of(const DataSet& data) {
   return few;
 }
 
+/// What is left where the zero of one joint may be anywhere: of those that it then is elsewhere.
+std::vector<TriedSlip> moved_zeros(const Robot& robot, const DataSet& data) {
+  std::vector<TriedSlip> list;
+  for (int j = 0; j < static_cast<int>(robot.joints().size()); ++j) {
+    const Joint& joint = robot.joints()[static_cast<size_t>(j)];
+    const Misfit left = misfit(robot, data, {.zero_of = j});
+    if (!left.any || std::abs(left.zero_moved) < kLeastZero) continue;
+    const bool angle = joint.quantity == Quantity::angle;
+    const double moved = angle ? left.zero_moved * 180 / std::numbers::pi : 1e3 * left.zero_moved;
+    list.push_back({"the zero of " + joint.name + " is " + plain_figure(std::abs(moved)) +
+                        (angle ? " degrees" : " mm") +
+                        " from where the robot's file has it, so that its mastering is lost or the "
+                        "readings count from elsewhere",
+                    left.left});
+  }
+  return list;
+}
+
 /// What each slip leaves, best first.
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
                              const std::vector<Slip>& others) {
@@ -137,9 +177,10 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
   for (const Slip& slip : slips) {
     DataSet changed = data;
     if (slip.rows) changed.rows = *slip.rows;
-    const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, true);
+    const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, {});
     if (left.any) list.push_back({slip.what, left.left});
   }
+  std::ranges::move(moved_zeros(robot, data), std::back_inserter(list));
   std::ranges::stable_sort(list, {}, &TriedSlip::left);
   return list;
 }
@@ -163,13 +204,13 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
                      const std::vector<Slip>& others) {
   FirstLook look;
   const DataSet data = part_of(whole);
-  const Misfit given = misfit(*robot, data, true);
+  const Misfit given = misfit(*robot, data, {});
   if (!given.any) return look;
   look.lengths = given.lengths;
   look.left = given.left;
   look.tool_moved = given.tool_moved;
   look.expected = expected_misfit(*robot, given.lengths);
-  look.tool_held = misfit(*robot, data, false).left;
+  look.tool_held = misfit(*robot, data, {.tool = false}).left;
   if (!given.angles.empty()) look.found = given.angles.front();
   const double least = std::max(kLeastGross, kWithin * look.expected);
   const double gross = gross_misfit(*robot, given.lengths);

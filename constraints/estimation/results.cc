@@ -51,6 +51,8 @@ void report_groups(const Equations& equations, int set, const Fit& fit, const Ei
   }
 }
 
+constexpr double kMisstated = 3;  // times the data sheet's noise, or a part of it
+
 std::string ratio(double a, double b) { return format_number(std::round(a / b * 10) / 10); }
 
 }  // namespace
@@ -158,10 +160,15 @@ void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
       solution.warnings.push_back("set " + set.name +
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
-    if (data.sets[s].noise > 0 && set.noise_sigma > 3 * data.sets[s].noise)
+    if (data.sets[s].noise > 0 && set.noise_sigma > kMisstated * data.sets[s].noise)
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, data.sets[s].noise) +
           " times as much as its data sheet says: the geometry does not " + "explain them all");
+    if (data.sets[s].noise > kMisstated * set.noise_sigma && set.noise_sigma > 0)
+      solution.warnings.push_back(
+          "set " + set.name + ": its data sheet's noise is " +
+          ratio(data.sets[s].noise, set.noise_sigma) +
+          " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
     if (set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma)
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, set.repeat_sigma) +

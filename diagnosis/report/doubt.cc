@@ -19,10 +19,11 @@ namespace {
 /// exchanged may be moved as far as one likes.
 constexpr double kImpossible = 20;
 constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
-constexpr double kTooFar = 3;        ///< of the usual largest drift: a step may be taken for one
-constexpr double kBeyondSheet = 10;  ///< of the data sheet's noise
-constexpr double kConfirmed = 0.3;   ///< of the noise: repeats that show so much confirm it
-constexpr double kWithdrawn = 0.95;  ///< probability of `unknown` that is left then
+constexpr double kTooFar = 3;          ///< of the usual largest drift: a step may be taken for one
+constexpr double kBeyondSheet = 10;    ///< of the data sheet's noise
+constexpr double kConfirmed = 0.3;     ///< of the noise: repeats that show so much confirm it
+constexpr double kHardlyCloses = 0.8;  ///< of what calibration leaves is still there: little gain
+constexpr double kWithdrawn = 0.95;    ///< probability of `unknown` that is left then
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
@@ -59,6 +60,12 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
   return {};
 }
 
+/// What is named closes little: noise, or what is taken for it, is nearly all of what is left.
+bool hardly_closes(const Diagnosis& diagnosis) {
+  return diagnosis.named.empty() ||
+         diagnosis.gap.rms_after > kHardlyCloses * diagnosis.gap.rms_before;
+}
+
 bool drifts_too_far(const std::vector<CauseResult>& named) {
   return std::ranges::any_of(named, [](const CauseResult& each) {
     return each.effect == "base_drift" &&
@@ -85,7 +92,8 @@ std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Dia
   if (std::string why = moved_between_rows(view, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
-  return diagnosis.verdict.effect == kNone ? beyond_sheet(view, data) : std::string();
+  const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();
+  return !settled && hardly_closes(diagnosis) ? beyond_sheet(view, data) : std::string();
 }
 
 void withdraw(const std::string& doubt, Diagnosis& diagnosis) {

@@ -37,7 +37,7 @@ constexpr Known kKnown[] = {{"set", CellKind::text},
                             {"nx", CellKind::number},
                             {"ny", CellKind::number},
                             {"nz", CellKind::number},
-                            {"temperature", CellKind::number, Dimension::temperature},
+                            {"temperature", CellKind::celsius, Dimension::temperature},
                             {"time", CellKind::number, Dimension::time},
                             {"noise_factor", CellKind::number}};
 

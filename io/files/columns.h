@@ -21,6 +21,7 @@ enum class CellKind {
   number,    ///< finite, or empty
   metres,    ///< a number that is a place in a workshop
   distance,  ///< the same, never negative
+  celsius,   ///< a number that is a temperature of a robot at work
 };
 
 struct Column {

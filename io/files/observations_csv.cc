@@ -40,6 +40,8 @@ Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
                                   static_cast<Eigen::Index>(width));
 }
 
+constexpr double kOftenBack = 0.1;  // of the rows: sets that follow each other are fewer
+
 class RowReader {
  public:
   /// `configurations`: rows need no measurement.
@@ -105,6 +107,10 @@ class RowReader {
       ignored += (ignored.empty() ? "" : ", ") + name;
     }
     if (!ignored.empty()) notices.push_back("unknown columns are ignored: " + ignored);
+    if (static_cast<double>(times_back_) > kOftenBack * static_cast<double>(time_.size()))
+      notices.push_back("the times go back " + std::to_string(times_back_) +
+                        " times from one row to the next: right where the rows were sorted by "
+                        "something else, wrong where the times were");
     if (auto outside = numbers_.outside_limits_notice()) notices.push_back(std::move(*outside));
     for (const std::string& set : labels_.sets_without_rows()) {
       notices.push_back("set '" + set + "' has no rows");
@@ -186,7 +192,11 @@ class RowReader {
       const double factor = numbers_.value(*layout_.noise_factor);
       noise_factor_.push_back(std::isnan(factor) ? 1 : factor);
     }
-    if (layout_.time) time_.push_back(numbers_.value(*layout_.time));
+    if (layout_.time) {
+      const double time = numbers_.value(*layout_.time);
+      if (!time_.empty() && time < time_.back()) ++times_back_;
+      time_.push_back(time);
+    }
     if (layout_.repeat) repeat_.push_back(labels.repeat);
     set_.push_back(static_cast<int>(labels.set));
     group_.push_back(labels.group);
@@ -207,6 +217,7 @@ class RowReader {
   std::vector<double> q_, position_, orientation_, normal_;
   std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
   std::vector<std::vector<double>> measured_;  // per column that a method brings along
+  std::size_t times_back_ = 0;                 // rows that were taken before the row above them
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
   std::unordered_set<std::size_t> seen_;  // the rows' cells, hashed

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kRounding = 1e-3;   // of the limits' range
 constexpr double kFarOutside = 0.1;  // of the limits' range
+constexpr double kColdest = -100;    // degrees Celsius: a freezer's robots work at -30
+constexpr double kHottest = 150;  // a motor's winding switches off; kelvin of a workshop are more
 
 /// How far beyond the joint's limits, 0 inside or without limits.
 double excess(const Joint& joint, double reading) {
@@ -41,6 +43,12 @@ std::string likely_slip(const Joint& joint, double reading) {
 std::optional<std::string> metres_fault(double value) {
   if (std::abs(value) <= kFarthestPlace) return std::nullopt;
   return format_number(value) + " is too large, metres expected (millimetres?)";
+}
+
+std::optional<std::string> celsius_fault(double value) {
+  if (value >= kColdest && value <= kHottest) return std::nullopt;
+  return format_number(value) + " is no temperature of a robot at work, degrees Celsius expected" +
+         (value > kHottest ? " (kelvin?)" : "");
 }
 
 std::optional<std::string> joint_fault(const Joint& joint, double reading) {

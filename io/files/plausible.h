@@ -12,6 +12,9 @@ namespace selfcal {
 /// Why `value` (m) is no place or distance in a workshop; nothing when it may be.
 std::optional<std::string> metres_fault(double value);
 
+/// Why `value` (degrees Celsius) is no temperature of a robot at work; nothing when it may be.
+std::optional<std::string> celsius_fault(double value);
+
 /// Why `reading` cannot be one of the joint: many turns, or beyond the limits by more than a tenth
 /// of their range. Readings a little beyond are common and allowed.
 std::optional<std::string> joint_fault(const Joint& joint, double reading);

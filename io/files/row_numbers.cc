@@ -34,6 +34,10 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
     const Unit& unit = layout_->columns[i].unit;
     values_[i] = *number * unit.factor + unit.offset;
     if (kind == CellKind::number) continue;
+    if (kind == CellKind::celsius) {
+      if (auto fault = celsius_fault(values_[i])) return RowFault{std::move(*fault), i};
+      continue;
+    }
     if (auto fault = metres_fault(values_[i])) return RowFault{std::move(*fault), i};
     if (kind == CellKind::distance && values_[i] < 0)
       return RowFault{"a distance is never negative", i};

@@ -144,6 +144,18 @@ TEST_F(DataCheck, SaysWhichJointHasTheOtherSign) {
   expect_likely_wrong("j3 is read with the other sign");
 }
 
+TEST_F(DataCheck, SaysWhichJointsZeroIsElsewhere) {
+  change_rows({"q3"}, [](auto& q) { q[0] += 10 * std::numbers::pi / 180; });
+  free_of_limits();
+  expect_likely_wrong("the zero of j3 is 10.1 degrees from where the robot's file has it");
+}
+
+TEST_F(DataCheck, SaysWhichReadingsAreTwiceWhatTheJointMoves) {
+  change_rows({"q4"}, [](auto& q) { q[0] *= 2; });
+  free_of_limits();
+  expect_likely_wrong("the readings of j4 are twice what it moves (its gear ratio)");
+}
+
 TEST_F(DataCheck, SaysWhichJointsAreExchanged) {
   change_rows({"q2", "q3"}, [](auto& q) { std::swap(q[0], q[1]); });
   expect_likely_wrong("the columns of j2 and j3 are exchanged");

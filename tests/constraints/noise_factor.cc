@@ -1,4 +1,5 @@
-// A row that is less certain than its set weighs less.
+// A row that is less certain than its set weighs less; a data sheet's noise that is not the rows'.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "constraints/estimation/identification.h"
@@ -64,6 +65,21 @@ TEST(NoiseFactor, KeepsUncertainRowsFromSpoilingTheOthers) {
   DataSet unsaid = data;
   unsaid.rows.noise_factor.resize(0);
   EXPECT_LT(error(data), 0.8 * error(unsaid));
+}
+
+TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
+  const Simulated simulated = touches();
+  const auto told_with = [&](double stated) {
+    DataSet data = simulated.data;
+    for (Set& set : data.sets) set.noise = stated;
+    return identify(rx90(), data, {}, {}).warnings;
+  };
+  using testing::Contains;
+  using testing::HasSubstr;
+  EXPECT_THAT(told_with(2e-5), testing::Not(Contains(HasSubstr("data sheet"))));
+  EXPECT_THAT(told_with(2e-3),
+              Contains(HasSubstr("times what its rows scatter by: is `noise` in metres")));
+  EXPECT_THAT(told_with(2e-6), Contains(HasSubstr("times as much as its data sheet says")));
 }
 
 }  // namespace

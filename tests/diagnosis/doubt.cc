@@ -1,8 +1,11 @@
 // Rows and files that nothing may be named from, and those that look like them.
+#include "diagnosis/report/doubt.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/evidence/linearised_model.h"
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {
@@ -48,6 +51,21 @@ TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {
   const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
   EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
   EXPECT_THAT(diagnosis.why, HasSubstr("state a noise of 0.02 mm"));
+}
+
+TEST(Doubt, NamesNothingThatHardlyClosesWhatSoMuchNoiseLeaves) {
+  Rows rows;
+  rows.disturb(50 * kTrackerNoise);
+  const DiagnosisOptions options = quick();
+  const LinearisedModel view(rows.robot, rows.data, options, {});
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = "joint_compliance";
+  diagnosis.named = {{.effect = "joint_compliance", .where = {"j2"}}};
+  diagnosis.gap.rms_before = 1e-3;
+  diagnosis.gap.rms_after = 0.9e-3;
+  EXPECT_THAT(doubt_of(view, rows.data, diagnosis), HasSubstr("state a noise of 0.02 mm"));
+  diagnosis.gap.rms_after = 0.5e-3;
+  EXPECT_EQ(doubt_of(view, rows.data, diagnosis), "");
 }
 
 TEST(Doubt, BelievesTheRepeatsWhereTheySayThatTheNoiseIsSo) {

@@ -15,6 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 /// A method with two columns that no other knows.
@@ -198,6 +199,14 @@ TEST_F(ObservationsCsv, RefusesMillimetresForMetres) {
               HasSubstr("a distance is never negative"));
 }
 
+TEST_F(ObservationsCsv, RefusesKelvinForDegreesCelsius) {
+  EXPECT_EQ(error("set,q1,q2,temperature\ntable,0,0,22.5\ntable,0,0,295.65\n"),
+            "observations.csv: row 2: column temperature: 295.65 is no temperature of a robot at "
+            "work, degrees Celsius expected (kelvin?)");
+  EXPECT_THAT(error("set,q1,q2,temperature\ntable,0,0,-1000\n"),
+              EndsWith("degrees Celsius expected"));
+}
+
 TEST_F(ObservationsCsv, RefusesDegreesAndReadingsFarOutsideTheLimits) {
   EXPECT_EQ(error("set,q1,q2\ntable,1.9,0\ntable,90,0\n"),
             "observations.csv: row 2: column q1: 90 is more than four turns (degrees instead of "
@@ -277,6 +286,17 @@ TEST_F(ObservationsCsv, TakesTheOrderOfTheRowsForTheTimeWhereTheFileHasNone) {
   EXPECT_FALSE(with->data.order_is_time);
   EXPECT_EQ(with->data.rows.time[2], 7);
   EXPECT_TRUE(std::isnan(with->data.rows.time[1]));
+}
+
+TEST_F(ObservationsCsv, NotesTimesThatGoBackAgainAndAgain) {
+  EXPECT_THAT(notices("set,q1,q2,time\ntable,2,0,5\ntable,0,1,3\ntable,1,1,7\ntable,1,0,4\n"),
+              ElementsAre(StartsWith("observations.csv: the times go back 2 times")));
+  std::string two_sets = "set,q1,q2,time\n";
+  for (int set = 0; set < 2; ++set)
+    for (int row = 0; row < 10; ++row)
+      two_sets +=
+          std::string("table,1,0.") + std::to_string(row) + "," + std::to_string(row) + "\n";
+  EXPECT_THAT(notices(two_sets), IsEmpty());
 }
 
 TEST_F(ObservationsCsv, NamesUnknownColumnsInOneNotice) {
