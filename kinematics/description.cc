@@ -11,6 +11,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kinematics/readable.h"
+
 namespace selfcal {
 namespace {
 
@@ -131,8 +133,8 @@ bool Fields::has(std::string_view key) { return node(key) != nullptr; }
 std::string Fields::text(std::string_view key, std::string fallback) {
   const Node* value = node(key);
   if (value == nullptr) return fallback;
-  if (value->kind == Node::Kind::text) return value->text;
-  fail(key, "a text");
+  if (value->kind == Node::Kind::text && !has_control(value->text)) return value->text;
+  fail(key, value->kind == Node::Kind::text ? "a text without control characters" : "a text");
   return fallback;
 }
 
@@ -256,7 +258,7 @@ std::vector<std::string> Fields::texts(std::string_view key) {
   std::vector<std::string> texts;
   bool all_texts = value->kind == Node::Kind::list;
   for (const Node& item : value->items) {
-    all_texts = all_texts && item.kind == Node::Kind::text;
+    all_texts = all_texts && item.kind == Node::Kind::text && !has_control(item.text);
     texts.push_back(item.text);
   }
   if (all_texts) return texts;

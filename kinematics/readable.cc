@@ -33,6 +33,14 @@ std::string written_out(std::string text) {
   return text;
 }
 
+/// Bytes of the control character at the start of `text`, which is not empty; 0 of another one.
+std::size_t length_of_control(std::string_view text) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (at(0) < 0x20 || at(0) == 0x7F) return 1;
+  // U+0080 to U+009F, an escape's second form among them.
+  return at(0) == 0xC2 && text.size() > 1 && at(1) < 0xA0 ? 2 : 0;
+}
+
 }  // namespace
 
 std::string with_figures(const char* format, double a, double b, double c, double d) {
@@ -82,6 +90,22 @@ std::string in_readable_unit(double value, const std::string& unit) {
   const ReadableUnit readable = readable_unit(unit, std::abs(value));
   const std::string figure = plain_figure(readable.factor * value);
   return readable.name.empty() ? figure : figure + " " + readable.name;
+}
+
+bool has_control(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (length_of_control(text.substr(i)) > 0) return true;
+  return false;
+}
+
+std::string shown(std::string_view text) {
+  std::string harmless;
+  while (!text.empty()) {
+    const std::size_t control = text.front() == '\n' ? 0 : length_of_control(text);
+    harmless += control > 0 ? '?' : text.front();
+    text.remove_prefix(std::max<std::size_t>(control, 1));
+  }
+  return harmless;
 }
 
 }  // namespace selfcal

@@ -1,7 +1,9 @@
-// Numbers for people: no powers of ten, lengths in mm, angles in mrad, ratios in ppm.
+// What people read: numbers without powers of ten, lengths in mm, angles in mrad, ratios in ppm;
+// texts of others without what a terminal obeys.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace selfcal {
 
@@ -24,5 +26,12 @@ ReadableUnit readable_unit(const std::string& unit, double size);
 
 /// "0.0458 mrad": a value of that unit (SI).
 std::string in_readable_unit(double value, const std::string& unit);
+
+/// True where `text` (UTF-8) has a character that a terminal obeys rather than shows: a line's end,
+/// an escape. No name has one.
+bool has_control(std::string_view text);
+
+/// `text` as a terminal may have it: lines kept, other control characters as '?'.
+std::string shown(std::string_view text);
 
 }  // namespace selfcal

@@ -6,6 +6,7 @@
 #include "constraints/estimation/first_look.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -94,6 +95,16 @@ double expected_misfit(const Robot& robot, bool lengths) {
   return std::sqrt(squares);
 }
 
+/// Some joint would turn by more than once: its readings may be degrees. Below, readings that are
+/// made 57 times smaller would fit touches ever better, for the robot would hardly move.
+bool beyond_a_turn(const Robot& robot, const Observations& rows) {
+  for (Eigen::Index j = 0; j < rows.q.cols(); ++j)
+    if (robot.joints()[static_cast<size_t>(j)].quantity == Quantity::angle &&
+        rows.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi)
+      return true;
+  return false;
+}
+
 /// The slips of the rows: signs, gear ratios and exchanges of joints, degrees, millimetres,
 /// exchanged columns.
 std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
@@ -118,19 +129,31 @@ std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
       if (joints[j].quantity == joints[k].quantity)
         add("the columns of " + joints[k].name + " and " + joints[j].name + " are exchanged",
             [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
-  add("the joint readings are degrees", [&](Observations& o) {
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (joints[j].quantity == Quantity::angle) o.q.col(j) *= std::numbers::pi / 180;
-  });
+  if (beyond_a_turn(robot, rows))
+    add("the joint readings are degrees", [&](Observations& o) {
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (joints[j].quantity == Quantity::angle) o.q.col(j) *= std::numbers::pi / 180;
+    });
   if (rows.position.rows() == 0) return list;
   static constexpr std::pair<const char*, double> kUnits[] = {
       {"micrometres", 1e-6}, {"millimetres", 1e-3}, {"centimetres", 1e-2}, {"inches", 0.0254}};
   for (const auto& [unit, metres] : kUnits)
     add(std::string("the measured positions are ") + unit,
         [metres](Observations& o) { o.position *= metres; });
-  // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
-  add("two of the columns x, y and z are exchanged, or one has the other sign",
-      [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
+  static constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
+  if (rows.orientation.rows() == 0) {
+    // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
+    add("two of the columns x, y and z are exchanged, or one has the other sign",
+        [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
+    return list;
+  }
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    add(std::string("the column ") + kAxes[a] + " has the other sign",
+        [a](Observations& o) { o.position.col(a) *= -1; });
+    for (Eigen::Index b = 0; b < a; ++b)
+      add(std::string("the columns ") + kAxes[b] + " and " + kAxes[a] + " are exchanged",
+          [a, b](Observations& o) { o.position.col(a).swap(o.position.col(b)); });
+  }
   return list;
 }
 

@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Motion = Eigen::Matrix<double, 3, 6>;  ///< what a rigid motion moves a point by
 
+constexpr double kShare = 0.4;     ///< of the squares that calibration leaves, explained by it
+constexpr double kPlainly = 0.8;   ///< of the squares that another explanation leaves, at most left
 constexpr double kSharp = 0.6;     ///< of the step, that comes from the rows before to those after
 constexpr int kBeside = 10;        ///< rows on either side that must show it
 constexpr int kMostSplits = 500;   ///< tried of a long set
@@ -183,17 +185,16 @@ class SetSteps {
 
 std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,
                                      const DataSet& data, const std::vector<RowFigure>& figures,
-                                     int set, const StepBounds& bounds) {
+                                     int set) {
   std::vector<Row> rows = rows_of_set(data, figures, set);
   if (rows.size() < 2 * kFewestBesideStep) return std::nullopt;
   const SetSteps steps(std::move(rows));
   const double without = steps.without();
   const Split split = steps.best();
-  if (!(split.left < (1 - bounds.share) * without) || steps.sharpness(split) < kSharp)
+  if (!(split.left < (1 - kShare) * without) || steps.sharpness(split) < kSharp)
     return std::nullopt;
   const double otherwise = steps.left_otherwise(split, robot, xi, data, set);
-  if (split.left > bounds.plainly * otherwise ||
-      without - otherwise > kAsMuch * (without - split.left))
+  if (split.left > kPlainly * otherwise || without - otherwise > kAsMuch * (without - split.left))
     return std::nullopt;
   return FrameStep{data.sets[static_cast<std::size_t>(set)].name,
                    steps.row(split.at - 1).row,
@@ -206,13 +207,11 @@ std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& 
 }  // namespace
 
 std::vector<FrameStep> frame_steps(const Robot& robot, const Eigen::VectorXd& xi,
-                                   const DataSet& data, const std::vector<RowFigure>& rows,
-                                   const StepBounds& bounds) {
+                                   const DataSet& data, const std::vector<RowFigure>& rows) {
   std::vector<FrameStep> steps;
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
     if (gives_positions(data.sets[static_cast<std::size_t>(s)]))
-      if (auto step = step_of_set(robot, xi, data, rows, s, bounds))
-        steps.push_back(*std::move(step));
+      if (auto step = step_of_set(robot, xi, data, rows, s)) steps.push_back(*std::move(step));
   return steps;
 }
 

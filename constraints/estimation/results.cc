@@ -51,7 +51,15 @@ void report_groups(const Equations& equations, int set, const Fit& fit, const Ei
   }
 }
 
+constexpr double kRedundant = 3;  // equations an unknown: fewer are met whatever the noise
 constexpr double kMisstated = 3;  // times the data sheet's noise, or a part of it
+
+double unknowns(const Fit& fit, const Solution& solution) {
+  double count = static_cast<double>(
+      std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
+  for (const auto& own : fit.state.nuisance) count += static_cast<double>(own.size());
+  return count;
+}
 
 std::string ratio(double a, double b) { return format_number(std::round(a / b * 10) / 10); }
 
@@ -149,6 +157,7 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
 }
 
 void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
+  const bool redundant = fit.at.equations > kRedundant * unknowns(fit, solution);
   for (size_t s = 0; s < data.sets.size(); ++s) {
     const SetResult& set = solution.sets[s];
     if (!set.identifies) continue;
@@ -164,7 +173,7 @@ void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, data.sets[s].noise) +
           " times as much as its data sheet says: the geometry does not " + "explain them all");
-    if (data.sets[s].noise > kMisstated * set.noise_sigma && set.noise_sigma > 0)
+    if (redundant && data.sets[s].noise > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
           "set " + set.name + ": its data sheet's noise is " +
           ratio(data.sets[s].noise, set.noise_sigma) +

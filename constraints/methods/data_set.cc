@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "constraints/methods/maker.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 
@@ -130,6 +131,8 @@ std::vector<Set> read_sets(const Node& node, Problems& problems) {
     return sets;
   }
   for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    if (has_control(node.keys[i]))
+      problems.add(node.items[i].place, "sets: a name with a control character");
     if (node.keys[i].empty()) problems.add(node.items[i].place, "sets: a set has no name");
     sets.push_back(make_set(node.keys[i], node.items[i], problems));
   }

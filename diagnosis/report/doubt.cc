@@ -10,6 +10,8 @@
 #include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"
 #include "diagnosis/search/causes.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -19,6 +21,9 @@ namespace {
 /// exchanged may be moved as far as one likes.
 constexpr double kImpossible = 20;
 constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
+/// What a moved instrument may be taken for.
+constexpr std::array<std::string_view, 4> kMoves = {"base_drift", "tool_shift", "zero_shift",
+                                                    "fixture_shift"};
 constexpr double kTooFar = 3;          ///< of the usual largest drift: a step may be taken for one
 constexpr double kBeyondSheet = 10;    ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;     ///< of the noise: repeats that show so much confirm it
@@ -75,14 +80,32 @@ bool drifts_too_far(const std::vector<CauseResult>& named) {
   });
 }
 
+/// The steps that are left when what was found and stays the same from row to row is in the model.
+std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& view, const DataSet& data,
+                                               const Correction& found) {
+  Correction stays;
+  std::ranges::copy_if(found, std::back_inserter(stays), [](const FoundEffect& each) {
+    return std::ranges::find(kMoves, each.entry.find("effect")->text) == kMoves.end();
+  });
+  Problems problems;
+  const std::shared_ptr<const Robot> robot =
+      correct(view.shared_geometry(), entries_of(stays), view.site(), problems);
+  expects(robot != nullptr, "what was found is effects that the robot can have");
+  Options options;
+  for (const FoundEffect& each : stays)
+    options.effect_sigma.insert(options.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
+  for (const Parameter& p : robot->parameters())
+    if (p.part == Part::effect) options.free.push_back(p.name);
+  const Solution calibrated = identify(*robot, data, options);
+  return frame_steps(*robot, calibrated.values, data, calibrated.residual.rows);
+}
+
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
 std::string moved_between_rows(const LinearisedModel& view, const DataSet& data,
                                const Diagnosis& diagnosis) {
-  const Solution calibrated = identify(view.geometry(), data);
-  std::vector<FrameStep> steps = calibrated.frame_steps;
+  std::vector<FrameStep> steps = identify(view.geometry(), data).frame_steps;
   if (steps.empty() && drifts_too_far(diagnosis.named))
-    steps = frame_steps(view.geometry(), calibrated.values, data, calibrated.residual.rows,
-                        kSuspectedStep);
+    steps = steps_beside_what_stays(view, data, diagnosis.found);
   return steps.empty() ? "" : step_words(steps.front());
 }
 

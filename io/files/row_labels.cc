@@ -2,6 +2,8 @@
 // name.
 #include "io/files/row_labels.h"
 
+#include "kinematics/readable.h"
+
 namespace selfcal {
 
 LabelReader::LabelReader(std::vector<Set>& sets) : sets_(sets) {
@@ -20,7 +22,7 @@ tl::expected<Labels, RowFault> LabelReader::read(Cells cells, int row) {
   if (auto fault = read_set(cells, labels)) return tl::unexpected(std::move(*fault));
   if (auto fault = read_part(cells, labels)) return tl::unexpected(std::move(*fault));
   if (auto fault = read_repeat(cells, row, labels)) return tl::unexpected(std::move(*fault));
-  read_group(cells, labels);
+  if (auto fault = read_group(cells, labels)) return tl::unexpected(*fault);
   count(labels);
   return labels;
 }
@@ -61,9 +63,10 @@ std::optional<RowFault> LabelReader::read_repeat(Cells cells, int row, Labels& l
                   layout_->repeat};
 }
 
-void LabelReader::read_group(Cells cells, Labels& labels) {
-  if (!layout_->group || cells[*layout_->group].empty()) return;
+std::optional<RowFault> LabelReader::read_group(Cells cells, Labels& labels) {
+  if (!layout_->group || cells[*layout_->group].empty()) return std::nullopt;
   const std::string_view name = cells[*layout_->group];
+  if (has_control(name)) return RowFault{"a name with a control character", layout_->group};
   SetState& state = states_[labels.set];
   auto found = state.groups.find(name);
   if (found == state.groups.end()) {
@@ -73,6 +76,7 @@ void LabelReader::read_group(Cells cells, Labels& labels) {
     state.group_rows.push_back(0);
   }
   labels.group = found->second;
+  return std::nullopt;
 }
 
 void LabelReader::count(Labels& labels) {

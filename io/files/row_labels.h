@@ -60,7 +60,7 @@ class LabelReader {
   };
 
   std::optional<RowFault> read_set(Cells cells, Labels& labels) const;
-  void read_group(Cells cells, Labels& labels);
+  std::optional<RowFault> read_group(Cells cells, Labels& labels);
   std::optional<RowFault> read_part(Cells cells, Labels& labels) const;
   std::optional<RowFault> read_repeat(Cells cells, int row, Labels& labels);
   void count(Labels& labels);

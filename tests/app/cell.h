@@ -1,4 +1,4 @@
-// The real program: run to its end, or as a service of a simulated cell of a test's own.
+// The real program as a service of a simulated cell of a test's own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,19 +10,9 @@
 #include <vector>
 
 #include "tests/support/process.h"
+#include "tests/support/program.h"
 
 namespace selfcal {
-
-struct Ran {
-  int status = -1;
-  std::string out;  ///< standard output and error
-};
-
-/// Runs `script`, which has no single quotes, in bash.
-Ran run_in_bash(const std::string& script);
-
-/// Runs the program to its end; `arguments` as a shell reads them. `quiet`: without standard error.
-Ran run_selfcal(const std::string& arguments, bool quiet = false);
 
 /// A folder with the example cell, in a DDS domain of the test's own on the loopback interface.
 class CellTest : public ::testing::Test {

@@ -299,6 +299,11 @@ TEST_F(ObservationsCsv, NotesTimesThatGoBackAgainAndAgain) {
   EXPECT_THAT(notices(two_sets), IsEmpty());
 }
 
+TEST_F(ObservationsCsv, RefusesNamesThatATerminalWouldObey) {
+  EXPECT_EQ(error("set,group,q1,q2\ntable,le\x1b[31mft,0,0\n"),
+            "observations.csv: row 1: column group: a name with a control character");
+}
+
 TEST_F(ObservationsCsv, NamesUnknownColumnsInOneNotice) {
   EXPECT_THAT(notices("set,operator,q1,q2,X,m1,q01,time\ntable,Bo,0,0,a,b,c,17\n"),
               ElementsAre("observations.csv: unknown columns are ignored: operator, X, m1, q01"));

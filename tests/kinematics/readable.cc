@@ -30,5 +30,19 @@ TEST(Readable, GivesUnitsThatAPersonReads) {
   EXPECT_EQ(in_readable_unit(20, "s"), "20 s");
 }
 
+TEST(Readable, HidesWhatATerminalWouldObey) {
+  for (const std::string_view text : {"\x1b[31m", "a\nb", "\r", "\x7f",
+                                      "\xC2\x9B"
+                                      "31m"})
+    EXPECT_TRUE(has_control(text)) << text;
+  for (const std::string_view text : {"", "wall 2", "Stäubli RX-90", "°C", "日本"}) {
+    EXPECT_FALSE(has_control(text)) << text;
+    EXPECT_EQ(shown(text), text);
+  }
+  EXPECT_EQ(shown("a\x1b[31mb\nc\xC2\x9B"
+                  "d"),
+            "a?[31mb\nc?d");
+}
+
 }  // namespace
 }  // namespace selfcal
