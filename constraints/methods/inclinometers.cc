@@ -4,15 +4,11 @@
 //   r = (atan2(v_y, v_z) - alpha, atan2(-v_x, |v_y, v_z|) - beta),   dv = R^T (z x turn)
 // The heading about the vertical is not seen.
 #include <cmath>
-#include <numbers>
 
 #include "constraints/methods/maker.h"
 
 namespace selfcal {
 namespace {
-
-/// An angle within half a turn of zero.
-double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
 class Inclinometers final : public Method {
  public:

@@ -1,7 +1,9 @@
 // What a method's maker gets: the set's entry in the file and the names of its groups so far.
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +36,9 @@ Apart read_apart(Fields& fields);
 
 /// Unit vector of `key`, or nothing when the key is missing; a zero vector is a problem.
 std::optional<Eigen::Vector3d> read_direction(Fields& fields, std::string_view key);
+
+/// An angle within half a turn of zero.
+inline double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
 /// Writes G = d(a . body position + ...) for one equation: components 0 to 2 linear, 3 to 5
 /// angular.

@@ -121,7 +121,7 @@ std::pair<std::vector<int>, Eigen::VectorXd> MarginalLikelihood::unfold(
 double MarginalLikelihood::of_noise(double left, double freedom) const {
   left = std::max(left, 1e-300);
   const double log = -freedom / 2 * std::log(left);
-  if (least() <= 0) return log;
+  if (least() <= 0 || freedom <= 0) return log;
   const double value = left / least();
   const double surely = freedom + 10 * std::sqrt(2 * freedom) + 50;  // where the probability is 1
   return value > surely ? log : log + log_chi_square_below(value, freedom);

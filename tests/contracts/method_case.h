@@ -46,6 +46,11 @@ inline std::vector<MethodCase> method_cases() {
        " point: unknown}"},
       {"FixedPointDistanceOfAllUnknown",
        "s: {method: fixed-point-distance, offset: unknown, scale: unknown, point: unknown}", true},
+      {"Bearing", "s: {method: bearing}", true},
+      {"BearingFromAnUnknownStation", "s: {method: bearing, frame: unknown}", true},
+      {"BearingOfAnUnknownPoint", "s: {method: bearing, point: unknown}", true},
+      {"BearingOfAnUnknownPointFromAnUnknownStation",
+       "s: {method: bearing, frame: unknown, point: unknown}", true},
       {"PositionConstraint", "s: {method: position-constraint}", true},
       {"PositionConstraintWithGroupsApart",
        "s: {method: position-constraint, apart: [{groups: [a, b], distance: 0.3, noise: 1.0e-4}]}"},
@@ -175,6 +180,9 @@ inline Instance random_instance(const MethodCase& each, Random& random) {
     made.groups.conservativeResize(values.size(), kGroups);
     made.groups.col(g) = values;
   }
+  // From a station far off, every location is in nearly the same direction.
+  while (method.frame_unknown() && made.angle(made.evaluate(), 0) > kLargestAngle)
+    made.nuisance = method.through(random_location(random), nullptr, random);
   for (int lane = 0; lane < kLanes; ++lane)
     while (made.angle(made.evaluate(), lane) > kLargestAngle)
       place(made.now, lane, random_location(random));

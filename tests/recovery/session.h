@@ -28,10 +28,12 @@ struct SetPart {
   Node node;
   int rows;
   int rows_per_group = 6;
+  double noise_times = 1;  ///< of the session's noise
 };
 
 /// Rows of every part on `machine` (which may be KDL's) with parameters `xi`; touches scatter by
-/// `noise` (m), instruments by `noise` and noise / 0.2 m in angle; every third row is `check`.
+/// `noise` (m), instruments by `noise` (m; rad of measured angles) and noise / 0.2 m in
+/// orientation; every third row is `check`.
 inline Session make_session(const Robot& machine, const Eigen::VectorXd& xi,
                             const std::vector<SetPart>& parts, double noise, Random& random) {
   Session session;
@@ -47,11 +49,12 @@ inline Session make_session(const Robot& machine, const Eigen::VectorXd& xi,
     request.rows = parts[s].rows;
     request.rows_per_group = parts[s].rows_per_group;
     const std::vector<Quantity> quantities = session.data.sets[s].method->equations();
-    request.residual = [&normal, &random, quantities, noise](int) {
+    const double sigma = noise * parts[s].noise_times;
+    request.residual = [&normal, &random, quantities, sigma](int) {
       Eigen::VectorXd r(static_cast<Eigen::Index>(quantities.size()));
       for (size_t a = 0; a < quantities.size(); ++a)
         r[static_cast<Eigen::Index>(a)] =
-            normal(random) * (quantities[a] == Quantity::angle ? noise / 0.2 : noise);
+            normal(random) * (quantities[a] == Quantity::angle ? sigma / 0.2 : sigma);
       return r;
     };
     requests.push_back(request);
@@ -61,12 +64,16 @@ inline Session make_session(const Robot& machine, const Eigen::VectorXd& xi,
   for (int i = 0; i < rows.rows(); ++i) {
     rows.check[i] = i % 3 == 2;
     if (noise == 0 || session.data.sets[rows.set[i]].method->constrains()) continue;
-    for (int c = 0; c < 3; ++c) rows.position(i, c) += noise * normal(random);
-    const double drawn = normal(random);  // for every row, whatever its method measures
-    for (auto& [name, column] : rows.measured) column[i] += noise * drawn;
+    const double sigma = noise * parts[static_cast<size_t>(rows.set[i])].noise_times;
+    for (int c = 0; c < 3; ++c) rows.position(i, c) += sigma * normal(random);
+    double drawn = normal(random);  // for every row, whatever its method measures
+    for (const MeasuredColumn& each : session.data.sets[rows.set[i]].method->measures()) {
+      rows.column(each.name)[i] += sigma * drawn;
+      drawn = normal(random);
+    }
     const auto q = rows.orientation.row(i);
     const Eigen::Vector3d turn(normal(random), normal(random), normal(random));
-    const Eigen::Quaterniond turned(exp_rotation(noise / 0.2 * turn) *
+    const Eigen::Quaterniond turned(exp_rotation(sigma / 0.2 * turn) *
                                     Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix());
     rows.orientation.row(i) << turned.w(), turned.x(), turned.y(), turned.z();
   }

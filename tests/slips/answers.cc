@@ -32,14 +32,18 @@ constexpr std::size_t kRows = 200;  // of a set: more say the same, later
 const std::map<std::string, std::vector<std::string>> kSound = {
     {"motoman-tracker", {"link_compliance", "joint_compliance", "base_drift"}},
     {"ipa-ur10-random", {"transmission_error", "joint_coupling", "joint_compliance"}},
-    {"motoman-planes", {"base_drift"}},
+    {"motoman-planes", {"base_drift", "plane_form_error"}},
     {"mukca-panda-1", {"link_compliance", "base_drift"}},
     {"rx90-planes", {}},
 };
 
-constexpr std::string_view kProgress[] = {"weighing the causes", "asking noise the same question",
-                                          "practising on simulated sessions", "closing the gap",
-                                          "done"};
+constexpr std::string_view kProgress[] = {"weighing the causes",
+                                          "asking noise the same question",
+                                          "practising on simulated sessions",
+                                          "closing the gap",
+                                          "done",
+                                          "judging by folds",
+                                          "identifying from another start"};
 
 constexpr std::string_view kTelling[] = {"Look at",   "data sheet's noise", "instrument",
                                          "check the", "times go back",      "in every digit"};
@@ -142,6 +146,10 @@ TEST_P(Slips, NeverNameACauseThatIsNotThere) {
   }
   std::vector<std::string> allowed = kSound.at(slip.set);
   std::ranges::copy(slip.may_name, std::back_inserter(allowed));
+  if (!std::filesystem::exists(folder_ / "diagnosed/diagnosis.json")) {
+    EXPECT_EQ(ran.status, 1) << ran.out;  // too few rows
+    return;
+  }
   const json diagnosis = json_of(folder_ / "diagnosed/diagnosis.json");
   for (const json& named : diagnosis.at("verdict").at("named"))
     EXPECT_THAT(allowed, Contains(named.at("effect").get<std::string>())) << ran.out;

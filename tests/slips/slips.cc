@@ -394,7 +394,8 @@ std::vector<Slip> of_simulated_touches() {
        "Look at the files first"},
       {"rx90-planes", "kelvin", temperature([](double) { return 294.3; }), "(kelvin?)",
        "(kelvin?)"},
-      {"rx90-planes", "three rows", first_rows(3), "Not determined", ""},
+      {"rx90-planes", "three rows", first_rows(3), "Not determined",
+       "too few rows for a diagnosis"},
   };
 }
 
