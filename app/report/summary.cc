@@ -181,6 +181,9 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         (solution.gauge.empty() ? "." : ", and a known length for the scale."));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
+  else if (solution.verdict.answer == Answer::not_determined)
+    steps.push_back(
+        "Mend what the verdict and the warnings name: until then nothing of it is to be used.");
   else if (solution.converged)
     steps.push_back(
         "The result is a candidate: look at the changes, then use "

@@ -83,4 +83,9 @@ std::string TransitionStep::touch_name() const {
          std::to_string(s_.steps);
 }
 
+/// A session begins with the release of whatever lock is engaged.
+std::string TransitionStep::release_name() const {
+  return (s_.engaged ? "after " : "before ") + touch_name();
+}
+
 }  // namespace selfcal

@@ -156,9 +156,10 @@ void TransitionStep::read() {
 void TransitionStep::refused() {
   if (s_.state != ServiceState::collecting) return;
   const std::string what = s_.phase == Phase::lock      ? "the lock for "
-                           : s_.phase == Phase::release ? "the lock's release after "
+                           : s_.phase == Phase::release ? "the lock's release "
                                                         : "motion to ";
-  fault(what + touch_name() + " was refused: " + event_.why);
+  fault(what + (s_.phase == Phase::release ? release_name() : touch_name()) +
+        " was refused: " + event_.why);
 }
 
 }  // namespace selfcal

@@ -33,6 +33,7 @@ class TransitionStep {
   void enter(Phase phase);
   void fault(const std::string& why);
   std::string touch_name() const;
+  std::string release_name() const;
 
   // transition_sessions.cc
   void test();

@@ -42,7 +42,7 @@ void TransitionStep::tick_collecting() {
     case Phase::visit:
       return late(limits_.approach, "the way to " + touch_name() + " with the lock engaged");
     case Phase::release:
-      return late(limits_.lock, "the lock stays closed: its release after " + touch_name());
+      return late(limits_.lock, "the lock stays closed: its release " + release_name());
     case Phase::none:
       return;
   }

@@ -1,6 +1,7 @@
 // Sessions of a platform whose passive joints are locked one after another, and whose locks slip.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/cell.h"
@@ -19,11 +20,28 @@ ResultMessage lock_session(Cell& cell) {
   return cell.results.empty() ? ResultMessage{} : cell.results.back();
 }
 
-CellOptions lock_cell(const std::string& slips) {
+CellOptions lock_cell(const std::string& slips, const std::string& faults = {}) {
   CellOptions options;
   options.robot = "stewart_lock";
-  options.machine = "lock_time: 0.3, lock_slips: [" + slips + "]";
+  options.machine = "lock_time: 0.3, lock_slips: [" + slips + "]" +
+                    (faults.empty() ? "" : ", faults: [" + faults + "]");
   return options;
+}
+
+/// A session that a fault ends: until the service stands still and says `why`.
+void expect_a_fault(const std::string& fault, const std::string& why) {
+  Cell cell(lock_cell("", fault));
+  cell.start_service();
+  ASSERT_TRUE(cell.start_session());
+  EXPECT_TRUE(cell.until(
+      [&] {
+        return std::ranges::any_of(cell.statuses, [&](const StatusMessage& each) {
+          return each.state == "fault" && each.why.find(why) != std::string::npos;
+        });
+      },
+      60 * kSecond))
+      << why;
+  EXPECT_TRUE(cell.results.empty());
 }
 
 /// Largest error of an identified parameter over its sigma.
@@ -68,6 +86,15 @@ TEST(LockSession, AsksAPersonWhenALockSlipsAgainAndAgain) {
   const ResultMessage result = lock_session(cell);
   EXPECT_THAT(cell.log(), HasSubstr("its lock slipped again and again; all of it is put aside"));
   EXPECT_EQ(result.decision, "candidate") << result.why;
+}
+
+TEST(LockSession, StopsWhereALockIsRefusedComesTooLateOrOpensByItself) {
+  expect_a_fault("{what: lock_refuse, at: 0}", "the lock for configuration 1 of 90 was refused");
+  expect_a_fault("{what: lock_late, at: 0}",
+                 "its release before configuration 1 of 90 took longer");
+  expect_a_fault("{what: lock_open, at: 0}",
+                 "the lock's confirmation by the trigger for configuration 1 of 90 took longer");
+  expect_a_fault("{what: lock_open, at: 60}", "the lock opened by itself at configuration ");
 }
 
 }  // namespace

@@ -301,7 +301,7 @@ std::vector<Slip> of_locations() {
            v = {v[3], v[0], v[1], v[2]};
          });
        },
-       "check the order of the quaternion", "check the order of the quaternion"},
+       "the quaternions are read in another order", "the quaternions are read in another order"},
       {"ipa-ur10-random",
        "a zero lost by 10 degrees",
        offset("q3", 10),
