@@ -78,6 +78,7 @@ Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A) {
 }
 
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  if (B.size() == 0) return B;
   if (!large(L, B)) return L.triangularView<Eigen::Lower>().solve(B);
   Eigen::MatrixXd X = B;
   solve_in_place(CblasNoTrans, L, X);
@@ -85,6 +86,7 @@ Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) 
 }
 
 Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  if (B.size() == 0) return B;
   if (!large(L, B)) return L.transpose().triangularView<Eigen::Upper>().solve(B);
   Eigen::MatrixXd X = B;
   solve_in_place(CblasTrans, L, X);

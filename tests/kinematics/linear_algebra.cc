@@ -143,5 +143,14 @@ TEST(Triangles, AreSolvedAlikeOnBothSidesOfTheSizeFromWhichALibraryDoes) {
     }
 }
 
+TEST(LinearAlgebra, SolvesForNoColumnsAtAll) {
+  for (const int n : {3, 300}) {
+    const Eigen::MatrixXd L = Eigen::MatrixXd::Identity(n, n), none(n, 0);
+    EXPECT_EQ(solve_lower(L, none).size(), 0);
+    EXPECT_EQ(solve_lower_transposed(L, none).cols(), 0);
+    EXPECT_EQ(transposed_product(L, none).rows(), n);
+  }
+}
+
 }  // namespace
 }  // namespace selfcal
