@@ -3,12 +3,13 @@
 // and in size (a few lines of aliases can stand for billions of nodes).
 #include "io/files/yaml.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <memory>
 #include <set>
+#include <sstream>
 #include <utility>
-#include <vector>
 
 #include "io/files/file.h"
 #include "io/files/utf8.h"
@@ -76,30 +77,65 @@ class Converter {
   int nodes_ = 0;
 };
 
-/// The documents in `text`. yaml-cpp takes the file's end for the end of an open quotation, but
-/// refuses the mark of a new document inside one: such a mark goes below the text.
-std::vector<YAML::Node> load(std::string_view text) {
-  std::string marked(text);
-  if (!text.ends_with('\n')) marked += '\n';
-  std::vector<YAML::Node> documents = YAML::LoadAll(marked + "---\n");
-  if (!documents.empty()) documents.pop_back();
-  return documents;
+/// `text` as yaml-cpp is to read it: it takes the file's end for the end of an open quotation, but
+/// refuses the mark of a new document inside one, so such a mark goes below the text.
+std::string marked(std::string_view text) {
+  return std::string(text) + (text.ends_with('\n') ? "" : "\n") + "---\n";
+}
+
+/// Counts documents, and where the last one begins.
+class Documents : public YAML::EventHandler {
+ public:
+  int count = 0;
+  YAML::Mark last = YAML::Mark::null_mark();
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    ++count;
+    last = mark;
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// Notes the problem unless `text`, marked, has one document. May throw, as yaml-cpp does. At what
+/// begins no value, a comma between no brackets, it begins one document after the other.
+void expect_one_document(const std::string& text, Converter& converter) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Documents documents;
+  for (int before = -1; parser.HandleNextDocument(documents); before = documents.last.pos)
+    if (documents.last.pos == before)
+      return converter.problems().add(converter.place(documents.last),
+                                      "is not valid YAML: expected `key: value` lines");
+  const Place whole = converter.place(YAML::Mark::null_mark());
+  if (documents.count > 2)
+    converter.problems().add(whole,
+                             "expected one document, got " + std::to_string(documents.count - 1));
 }
 
 /// May throw, as yaml-cpp does.
-Node parse_document(std::string_view text, Converter& converter) {
-  const std::vector<YAML::Node> documents = load(text);
+Node parse_document(const std::string& text, Converter& converter) {
   Node whole;
   whole.place = converter.place(YAML::Mark::null_mark());
   Problems& problems = converter.problems();
-  if (documents.size() > 1) {
-    problems.add(whole.place, "expected one document, got " + std::to_string(documents.size()));
-  } else if (documents.empty() || documents.front().IsNull()) {
+  expect_one_document(text, converter);
+  if (problems.any()) return whole;
+  const YAML::Node document = YAML::Load(text);
+  if (document.IsNull()) {
     problems.add(whole.place, "is empty");
-  } else if (!documents.front().IsMap()) {
-    problems.add(converter.place(documents.front().Mark()), "expected `key: value` lines");
+  } else if (!document.IsMap()) {
+    problems.add(converter.place(document.Mark()), "expected `key: value` lines");
   } else {
-    whole = converter.convert(documents.front(), 1);
+    whole = converter.convert(document, 1);
   }
   return whole;
 }
@@ -111,7 +147,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& name) {
   Problems& problems = converter.problems();
   if (!is_text(text)) return bad_input(name + ": expected UTF-8 text, got other bytes");
   try {
-    Node node = parse_document(text, converter);
+    Node node = parse_document(marked(text), converter);
     if (!problems.any()) return node;
   } catch (const YAML::Exception& exception) {
     problems.add(converter.place(exception.mark), "is not valid YAML: " + exception.msg);

@@ -95,6 +95,10 @@ TEST(Yaml, RefusesAFileWithoutAMapping) {
   EXPECT_EQ(yaml_error("# nothing\n"), "f.yaml: is empty");
   EXPECT_EQ(yaml_error("- 1\n- 2\n"), "f.yaml:1: expected `key: value` lines");
   EXPECT_EQ(yaml_error("text\n"), "f.yaml:1: expected `key: value` lines");
+  // yaml-cpp reads one document after the other here, and never comes to the end.
+  for (const char* text : {", [", ",srrv:", ","})
+    EXPECT_THAT(yaml_error(text), HasSubstr("f.yaml:1: is not valid YAML")) << text;
+  EXPECT_THAT(yaml_error("a: 1\n---\n]\n"), StartsWith("f.yaml:"));
   EXPECT_EQ(yaml_error(std::string_view("\xFF\xFE\0a", 4)),
             "f.yaml: expected UTF-8 text, got other bytes");
 }
