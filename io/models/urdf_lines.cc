@@ -1,10 +1,16 @@
 // urdfdom names no lines; TinyXML, on which it stands, knows them.
 #include "io/models/urdf_lines.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstring>
+#include <string_view>
 
 namespace selfcal {
 namespace {
+
+/// Levels of elements: TinyXML, and all that reads its tree, calls itself for each.
+constexpr int kDeepest = 200;
 
 std::string at_line(const std::string& file, int line) {
   return line > 0 ? file + ":" + std::to_string(line) : file;
@@ -25,9 +31,55 @@ const TiXmlElement* first_xacro(const TiXmlElement& element) {
   return nullptr;
 }
 
+/// Place behind the next `end` from `from` on; the text's end without one.
+std::size_t behind(const std::string& text, std::size_t from, std::string_view end) {
+  const std::size_t found = text.find(end, from);
+  return found == std::string::npos ? text.size() : found + end.size();
+}
+
+/// Place behind the tag that begins at `from`; its quotations may hold anything.
+std::size_t behind_tag(const std::string& text, std::size_t from) {
+  char quote = 0;
+  for (std::size_t i = from; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == 0 && c == '>') return i + 1;
+    if (quote == 0 && (c == '"' || c == '\''))
+      quote = c;
+    else if (c == quote)
+      quote = 0;
+  }
+  return text.size();
+}
+
+/// The place where elements nest deeper than kDeepest; the text's end without one.
+std::size_t too_deep(const std::string& text) {
+  int depth = 0;
+  std::size_t i = text.find('<');
+  for (std::size_t next = 0; i < text.size(); i = text.find('<', next)) {
+    const std::string_view rest = std::string_view(text).substr(i);
+    const unsigned char first = rest.size() > 1 ? static_cast<unsigned char>(rest[1]) : ' ';
+    if (rest.starts_with("<!--")) {
+      next = behind(text, i, "-->");
+    } else if (rest.starts_with("<![CDATA[")) {
+      next = behind(text, i, "]]>");
+    } else if (std::isalpha(first) || first == '_' || first > 126) {
+      next = behind_tag(text, i);
+      if (text[next - 2] != '/' && ++depth > kDeepest) return i;
+    } else {
+      next = behind(text, i, ">");
+      if (first == '/') --depth;
+    }
+  }
+  return text.size();
+}
+
 }  // namespace
 
 Result<UrdfLines> UrdfLines::of(const std::string& text, const std::string& file) {
+  if (const auto place = static_cast<std::ptrdiff_t>(too_deep(text)); place < std::ssize(text))
+    return bad_input(
+        at_line(file, 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'))) +
+        ": elements nest deeper than " + std::to_string(kDeepest) + " levels");
   TiXmlDocument document;
   document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error())

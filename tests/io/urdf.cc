@@ -13,6 +13,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double kSame = 1e-9;  // m, rad: what is asked of a conversion
 
@@ -232,6 +233,19 @@ TEST(Urdf, IsRefusedWithTheLine) {
                           urdf_joint({"y", "revolute", "a", "c", ""}) + "</robot>";
   EXPECT_THAT(why(two), HasSubstr("has 2 ends: b, c; choose one with --tip"));
   EXPECT_EQ(why(two, {"b", "c"}), "accepted");
+}
+
+// Whoever reads the tree calls a function for each level.
+TEST(Urdf, IsRefusedWhereItNestsWithoutEnd) {
+  const auto nested = [](int levels) {
+    std::string text = "<robot name='r'>\n<!-- <a> --><b c='/>'/>\n";
+    for (int i = 0; i < levels; ++i) text += "<d e='/>'>";
+    for (int i = 0; i < levels; ++i) text += "</d>";
+    return text + "</robot>";
+  };
+  EXPECT_THAT(read_urdf(nested(100'000), "f.urdf", {}).error().what,
+              HasSubstr("f.urdf:3: elements nest deeper than 200 levels"));
+  EXPECT_THAT(read_urdf(nested(199), "f.urdf", {}).error().what, Not(HasSubstr("nest")));
 }
 
 TEST(RobotFile, RefusesAUrdfAndNamesTheCommandThatTurnsItIntoOne) {
