@@ -86,6 +86,9 @@ const DbcSignal* read_signal(Fields& f, const Dbc* dbc, CanJoint& joint) {
   return signal;
 }
 
+constexpr double kFinestCount = 1e-15, kCoarsestCount = 1e3;  // rad or m for a count
+constexpr double kMostCounts = 0x1p52;                        // that a double holds exactly
+
 double turn(Fields& f) {
   if (!f.has("pitch")) return 2 * std::numbers::pi;
   return f.positive("pitch", 1);
@@ -107,11 +110,18 @@ double read_step(Fields& f, const DbcSignal* signal) {
 void read_meaning(Fields& f, const DbcSignal* signal, CanJoint& joint) {
   const int sign = f.integer("sign", 1, -1, 1);
   if (sign == 0) f.fail("sign", "1 or -1");
-  joint.scale.step = read_step(f, signal) * (sign < 0 ? -1 : 1);
-  joint.scale.zero = whole(f, "zero", 0, -0x1p52, 0x1p52);
+  const double step = read_step(f, signal);
+  if (!(std::abs(step) >= kFinestCount && std::abs(step) <= kCoarsestCount))
+    f.fail(signal ? "signal" : "counts_per_turn", "a count of 1e-15 to 1000 rad or m");
+  joint.scale.step = step * (sign < 0 ? -1 : 1);
+  joint.scale.zero = whole(f, "zero", 0, -kMostCounts, kMostCounts);
   // physical = raw * factor + offset is nothing at raw = -offset / factor. Half a count is lost
   // where that is no whole number: a shift of the zero, which calibration finds.
-  if (signal) joint.scale.zero -= std::llround(signal->offset / signal->factor);
+  const double at_zero = signal ? -signal->offset / signal->factor : 0;
+  if (!(std::abs(at_zero) <= kMostCounts))
+    f.fail("signal", "an offset of at most 2^52 counts");
+  else
+    joint.scale.zero += std::llround(at_zero);
   joint.wraps_at = f.has("wraps_at") ? whole(f, "wraps_at", 2, 2, 0x1p48) : 0;
   if (static_cast<double>(joint.wraps_at) > std::ldexp(1.0, joint.field.bits))
     f.fail("wraps_at", "at most what its bits can count");

@@ -99,6 +99,8 @@ constexpr const char* kDbc = R"(BO_ 496 Axes: 8 DRIVE
  SG_ Two : 16|16@1+ (0.5,0) [0|0] "" PC
  SG_ Three m0 : 32|8@1+ (1,0) [0|0] "" PC
  SG_ Four : 32|32@1- (1,0) [0|0] "" PC
+ SG_ Five : 0|8@1+ (1e-9,1e100) [0|0] "" PC
+ SG_ Six : 0|8@1+ (1e-320,0) [0|0] "" PC
 SIG_VALTYPE_ 496 Four : 1;
 )";
 
@@ -172,6 +174,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongSettings{"Multiplexed", "{message: Axes, signal: Three, unit: deg}",
                       "not multiplexed"},
         WrongSettings{"Floating", "{message: Axes, signal: Four, unit: deg}", "not floating point"},
+        WrongSettings{"FarZero", "{message: Axes, signal: Five, unit: deg}", "at most 2^52 counts"},
+        WrongSettings{"FineStep", "{message: Axes, signal: Six, unit: deg}", "1e-15 to 1000 rad"},
+        WrongSettings{"CoarseStep", "{id: 1, counts_per_turn: 1.0e-300}", "1e-15 to 1000 rad"},
         WrongSettings{"NoUnit", "{message: Axes, signal: One}", "'unit' is missing"},
         WrongSettings{"Unit", "{message: Axes, signal: One, unit: grad}",
                       "deg, rad, m, mm or counts"}),
