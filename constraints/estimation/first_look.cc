@@ -139,7 +139,7 @@ std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
       {"micrometres", 1e-6}, {"millimetres", 1e-3}, {"centimetres", 1e-2}, {"inches", 0.0254}};
   for (const auto& [unit, metres] : kUnits)
     add(std::string("the measured positions are ") + unit,
-        [metres](Observations& o) { o.position *= metres; });
+        [scale = metres](Observations& o) { o.position *= scale; });
   static constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
   if (rows.orientation.rows() == 0) {
     // Any two columns: what tells the exchanges apart is a turn of the base, which may move.

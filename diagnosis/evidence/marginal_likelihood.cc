@@ -201,9 +201,10 @@ Eigen::VectorXd MarginalLikelihood::log_evidences_of(const Eigen::MatrixXd& Y) c
 double MarginalLikelihood::gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
                                           const std::vector<int>& out) const {
   if (out.empty() || terms.empty()) return 0;
-  const auto [columns, D] = unfold(terms);
+  const auto unfolded = unfold(terms);
+  const auto& D = unfolded.second;
   Eigen::MatrixXd seen(y.size(), D.size() + 1);  // the terms, then y
-  seen << fixed_->rows->C(Eigen::all, columns) * D.asDiagonal(), y;
+  seen << fixed_->rows->C(Eigen::all, unfolded.first) * D.asDiagonal(), y;
   const Eigen::MatrixXd X = beyond_geometry(seen);
   // An equation left out is one with an unknown of its own.
   Eigen::MatrixXd alone = Eigen::MatrixXd::Zero(y.size(), static_cast<Eigen::Index>(out.size()));

@@ -71,8 +71,8 @@ class Search {
     std::ranges::sort(visited_, [](const Visit& a, const Visit& b) {
       return std::tuple(a.key(), -a.log_weight) < std::tuple(b.key(), -b.log_weight);
     });
-    const auto same = std::ranges::unique(visited_, {}, &Visit::key);
-    visited_.erase(same.begin(), same.end());
+    const auto same = [](const Visit& a, const Visit& b) { return a.key() == b.key(); };
+    visited_.erase(std::unique(visited_.begin(), visited_.end(), same), visited_.end());
   }
 
   /// Every candidate alone in every structure; the structures that do best go on.
