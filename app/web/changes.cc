@@ -50,7 +50,7 @@ std::string name_at(const ChangeJson& parameter) {
 
 /// The entries of a result.json under "parameters".
 ChangeJson parameters_of(const std::string& result) {
-  const ChangeJson json = ChangeJson::parse(result, nullptr, false);
+  const ChangeJson json = foreign_json(result);
   const bool whole = json.is_object() && json.contains("parameters");
   return whole && json["parameters"].is_array() ? json["parameters"] : ChangeJson();
 }
@@ -87,6 +87,18 @@ ChangeJson changes_of_result(const std::string& result) {
   std::ranges::stable_sort(changes, std::greater<>(),
                            [](const ParameterChange& each) { return std::abs(each.change); });
   return changes_json(changes);
+}
+
+ChangeJson sets_of_result(const ChangeJson& result) {
+  const ChangeJson::json_pointer from("/residual/check/by_set");
+  if (!result.is_object() || !result.contains(from) || !result[from].is_array()) return nullptr;
+  auto sets = ChangeJson::array();
+  for (const ChangeJson& each : result[from])
+    sets.push_back({{"name", text_at(each, "name")},
+                    {"rows", finite(number_at(each, "rows"))},
+                    {"before", finite(number_at(each, "rms_before"))},
+                    {"after", finite(number_at(each, "rms_after"))}});
+  return sets;
 }
 
 }  // namespace selfcal

@@ -1,4 +1,4 @@
-// By how much parameters change when a result is accepted or given up.
+// By how much parameters change when a result is accepted or given up, and what its sets say.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -20,5 +20,9 @@ nlohmann::ordered_json changes_between(const std::shared_ptr<const Robot>& from,
 
 /// The same of a result.json, from the maker's figures; null when it is none.
 nlohmann::ordered_json changes_of_result(const std::string& result);
+
+/// [{"name", "rows", "before", "after"}, …]: rms by set on rows kept aside, of what result.json
+/// says under "residual"; null when it says nothing. It may come from anybody in the domain.
+nlohmann::ordered_json sets_of_result(const nlohmann::ordered_json& result);
 
 }  // namespace selfcal

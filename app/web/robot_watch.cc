@@ -16,19 +16,6 @@ constexpr Nanoseconds kJointsLast = 2 * kSecond;   // after the last joint state
 constexpr Nanoseconds kStoreLate = kSecond;        // what was told of is in the store by then
 constexpr Nanoseconds kStoreEvery = 15 * kSecond;  // the log grows without being told of
 
-/// rms by set on rows kept aside, before and after: of a result.json's residual.
-WatchJson sets_of_result(const WatchJson& result) {
-  const WatchJson::json_pointer from("/residual/check/by_set");
-  if (!result.is_object() || !result.contains(from)) return nullptr;
-  auto sets = WatchJson::array();
-  for (const WatchJson& each : result[from])
-    sets.push_back({{"name", each.value("name", "")},
-                    {"rows", each.value("rows", 0)},
-                    {"before", each.contains("rms_before") ? each["rms_before"] : WatchJson()},
-                    {"after", each.contains("rms_after") ? each["rms_after"] : WatchJson()}});
-  return sets;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<RobotWatch>> RobotWatch::open(const DdsParticipant& participant,
@@ -100,9 +87,9 @@ void RobotWatch::note(const ProgressMessage& progress) {
 void RobotWatch::note(const ResultMessage& result) {
   WatchJson json = to_json(result);
   json["sets"] = sets_of_result(json["result"]);
-  json["warnings"] = json["result"].is_object() && json["result"].contains("warnings")
-                         ? json["result"]["warnings"]
-                         : WatchJson::array();
+  const bool warns = json["result"].is_object() && json["result"].contains("warnings") &&
+                     json["result"]["warnings"].is_array();
+  json["warnings"] = warns ? json["result"]["warnings"] : WatchJson::array();
   json["changes"] = changes_of_result(result.json);
   json.erase("result");
   board_.put(robot_, "result", json);

@@ -1,8 +1,9 @@
-// What every JSON writer needs of numbers and lists.
+// What every JSON writer needs of numbers and lists, and what a reader of others' JSON does.
 #pragma once
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace selfcal {
 
@@ -17,6 +18,20 @@ nlohmann::ordered_json array_of(const List& list, Convert convert) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const auto& each : list) array.push_back(convert(each));
   return array;
+}
+
+/// What `text` says that somebody else wrote; discarded where it is no JSON, or deeper than ours
+/// ever is: it is written out again by a function that calls itself for each level.
+inline nlohmann::ordered_json foreign_json(const std::string& text) {
+  using Json = nlohmann::ordered_json;
+  constexpr int kDeepest = 64;
+  bool too_deep = false;
+  const auto keep = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  Json json = Json::parse(text, keep, false);
+  return too_deep ? Json(Json::value_t::discarded) : json;
 }
 
 }  // namespace selfcal

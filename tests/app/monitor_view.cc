@@ -219,6 +219,14 @@ TEST(MessageJson, EmbedsTheResultAndHasNullForNoNumber) {
   EXPECT_THAT(line_of(to_json(collecting())), Not(HasSubstr("\n")));
 }
 
+// Anybody in the domain may send one, and it is written by a function that calls itself for each
+// level.
+TEST(MessageJson, PassesOverAResultThatNestsWithoutEnd) {
+  ResultMessage result;
+  result.json = std::string(200'000, '[') + std::string(200'000, ']');
+  EXPECT_EQ(to_json(result)["result"], nullptr);
+}
+
 TEST(Words, ReadAsAPersonSaysThem) {
   EXPECT_EQ(duration(45), "45 s");
   EXPECT_EQ(duration(200), "3 min 20 s");

@@ -184,5 +184,21 @@ TEST(Changes, OfAResultAreFromTheMakersFigures) {
   EXPECT_TRUE(changes_of_result(R"({"parameters": 3})").is_null());
 }
 
+// They come from anybody in the domain.
+TEST(Changes, OfSetsPassOverWhatIsNoneOfOurs) {
+  const auto sets = [](const std::string& by_set) {
+    const std::string text = R"({"residual": {"check": {"by_set": )" + by_set + "}}}";
+    return sets_of_result(nlohmann::ordered_json::parse(text)).dump();
+  };
+  EXPECT_EQ(sets(R"([{"name": "table", "rows": 3, "rms_before": 0.5, "rms_after": null}])"),
+            R"([{"name":"table","rows":3.0,"before":0.5,"after":null}])");
+  EXPECT_EQ(sets(R"([7, {"name": 5, "rows": "many"}])"),
+            R"([{"name":"","rows":null,"before":null,"after":null},)"
+            R"({"name":"","rows":null,"before":null,"after":null}])");
+  EXPECT_EQ(sets("3"), "null");
+  EXPECT_TRUE(sets_of_result({{"residual", 1}}).is_null());
+  EXPECT_TRUE(changes_of_result(std::string(200'000, '[')).is_null());
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -61,7 +61,7 @@ Json to_json(const ProgressMessage& progress) {
 }
 
 Json to_json(const ResultMessage& result) {
-  Json nuisance = Json::parse(result.json, nullptr, false);
+  Json nuisance = foreign_json(result.json);
   if (nuisance.is_discarded()) nuisance = nullptr;
   return Json::object({{"topic", "result"},
                        {"unix_ms", result.unix_ms},
