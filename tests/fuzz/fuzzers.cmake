@@ -1,0 +1,20 @@
+# A fuzzer, fuzz_NAME, from each tests/fuzz/NAME.cc. Preset fuzz instruments all that they link, which
+# takes long to compile: so each links to no more than it reads.
+set(fuzz_files data_set poses robot)
+set(fuzz_io can_frames dbc dh_table mjcf ur_kinematics urdf)
+set(fuzz_sim scenario)
+
+file(GLOB fuzz_sources RELATIVE ${PROJECT_SOURCE_DIR}/tests/fuzz CONFIGURE_DEPENDS tests/fuzz/*.cc)
+foreach(source IN LISTS fuzz_sources)
+  string(REPLACE ".cc" "" name ${source})
+  set(layer app)
+  foreach(lower IN ITEMS files io sim)
+    if(name IN_LIST fuzz_${lower})
+      set(layer ${lower})
+    endif()
+  endforeach()
+  add_executable(fuzz_${name} tests/fuzz/${source})
+  target_link_libraries(fuzz_${name} PRIVATE selfcal_${layer})
+  target_precompile_headers(fuzz_${name} REUSE_FROM selfcal_kinematics)
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+endforeach()
