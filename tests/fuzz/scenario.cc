@@ -9,7 +9,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kMostRows = 24;
+constexpr int kMostRows = 8;
 
 bool is_small(const Scenario& scenario) {
   int rows = 0;
