@@ -15,14 +15,23 @@ namespace {
   " FROM session LEFT JOIN text ON text.id = session.config "
 constexpr int kDamagedSession = 11, kDamagedConfig = 12;
 
+/// The number after that of every session that any table speaks of: of a damaged store rows may be
+/// left whose session is lost. A touch has its session from bit 20 of its id on.
+#define SELFCAL_NEXT_SESSION                                                             \
+  "(SELECT 1 + ifnull(max(n), 0) FROM (SELECT max(id) AS n FROM session UNION ALL "      \
+  "SELECT max(session) FROM plan UNION ALL SELECT max(session) FROM posture UNION ALL "  \
+  "SELECT max(id) >> 20 FROM touch UNION ALL SELECT max(session) FROM result UNION ALL " \
+  "SELECT max(session) FROM json UNION ALL SELECT max(session) FROM slot))"
+
 Result<std::int64_t> add_session(sqlite3* database, const SessionRecord& session,
                                  std::size_t steps) {
   Result<std::int64_t> config = keep_text(database, session.config);
   if (!config) return config;
   Result<std::int64_t> id = sqlite::integer(
       database,
-      "INSERT INTO session(kind, reason, model_hash, config_hash, config, seed, state,"
-      " started_ms, ended_ms, steps) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) RETURNING id",
+      "INSERT INTO session(id, kind, reason, model_hash, config_hash, config, seed, state,"
+      " started_ms, ended_ms, steps) VALUES(" SELFCAL_NEXT_SESSION
+      ", ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) RETURNING id",
       {session.kind, session.reason, session.model_hash, session.config_hash, *config,
        static_cast<std::int64_t>(session.seed), static_cast<std::int64_t>(session.state),
        session.started_ms, session.ended_ms, static_cast<std::int64_t>(steps)});

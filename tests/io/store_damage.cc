@@ -101,6 +101,21 @@ TEST(StoreDamage, AnyBrokenPageIsSetAsideOrAnswered) {
   }
 }
 
+// Its plan, its touches and its result may be left, and a slot that came from it.
+TEST(StoreDamage, ASessionNeverGetsTheNumberOfOneThatIsLost) {
+  const Scratch scratch;
+  std::string bytes = bytes_of_sessions(scratch);
+  const std::size_t table = bytes.find("CREATE TABLE session (");
+  ASSERT_NE(table, std::string::npos);
+  bytes[table] = 'X';
+  scratch.write("selfcal.db", bytes);
+  std::filesystem::remove(scratch.folder() / "selfcal.db-wal");
+  const auto again = Store::open(scratch.folder());
+  ASSERT_TRUE(again.has_value()) << again.error().what;
+  EXPECT_TRUE(again->store->sessions(10)->empty());
+  EXPECT_EQ(whole_session(*again->store, 3), 5);
+}
+
 TEST(StoreVersion, ANewerStoreIsRefusedAndLeftAlone) {
   const Scratch scratch;
   whole_session(*opened(scratch.folder()), 3);
