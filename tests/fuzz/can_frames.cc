@@ -21,12 +21,14 @@ std::vector<std::string> joint_names(const Node& settings) {
   return names;
 }
 
-/// A count as the field has room for it.
-std::int64_t cut_to(const BitField& field, std::int64_t count) {
-  const int over = 64 - field.bits;
+/// `raw` is what a counter that begins anew, or a field of so many bits, has of `count`.
+bool is_same_count(const CanJoint& joint, std::int64_t raw, std::int64_t count) {
+  if (const std::int64_t turn = joint.wraps_at; turn > 0)
+    return (raw % turn + turn) % turn == (count % turn + turn) % turn;
+  const int over = 64 - joint.field.bits;
   const auto up = static_cast<std::uint64_t>(count) << over;
-  return field.is_signed ? static_cast<std::int64_t>(up) >> over
-                         : static_cast<std::int64_t>(up >> over);
+  return raw == (joint.field.is_signed ? static_cast<std::int64_t>(up) >> over
+                                       : static_cast<std::int64_t>(up >> over));
 }
 
 void expect_meaning(const CanMap& map) {
@@ -44,7 +46,7 @@ void expect_round_trip(const CanMap& map, const std::vector<std::int64_t>& count
     promise(well_formed(message, frame), "its own frame is malformed");
     if (message.joints.size() > 1) continue;  // fields may overlap
     const auto joint = static_cast<std::size_t>(message.joints.front());
-    promise(raw_counts(map.joints[joint], frame) == cut_to(map.joints[joint].field, counts[joint]),
+    promise(is_same_count(map.joints[joint], raw_counts(map.joints[joint], frame), counts[joint]),
             "a count reads back otherwise");
   }
 }

@@ -36,6 +36,8 @@ void try_identify(Bytes bytes) {
   const auto loaded = small_data_set(bytes);
   if (!loaded) return;
   const Robot& robot = *loaded->robot;
+  std::erase_if(options.fix,
+                [&](const std::string& name) { return match_parameters(robot, name).empty(); });
   const Engagements found = identify_engagements(robot, loaded->data, options);
   const Solution& solution = found.solution;
   expect_known(solution);
