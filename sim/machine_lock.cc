@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/sampling/contact.h"
 #include "kinematics/rotation.h"
 #include "sim/machine.h"

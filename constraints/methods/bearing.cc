@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "constraints/methods/maker.h"
-#include "constraints/methods/seen_point.h"
+#include "constraints/methods/shared/seen_point.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "constraints/methods/maker.h"
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {

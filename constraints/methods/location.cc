@@ -3,8 +3,8 @@
 // in the device's axes, F the world unless `frame: unknown`. r_R is u alpha of 11.41 and 11.42 with
 // the sign of model minus measurement, exact for large angles: dr_R = Jl^-1(r_R) R_F^T (delta -
 // dphi_F).
-#include "constraints/methods/device_frame.h"
 #include "constraints/methods/maker.h"
+#include "constraints/methods/shared/device_frame.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
 

@@ -2,8 +2,8 @@
 // against the shared pose rather than row against row, so that groups may have any size):
 //   r_p = P - p_C,   r_R = log(R R_C^T)
 //   dr_p = dP - dp_C,  dr_R = Jl^-1(r_R) delta - Jr^-1(r_R) dphi_C
-#include "constraints/methods/device_frame.h"
 #include "constraints/methods/maker.h"
+#include "constraints/methods/shared/device_frame.h"
 #include "constraints/statistics.h"
 #include "kinematics/rotation.h"
 

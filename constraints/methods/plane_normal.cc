@@ -3,7 +3,7 @@
 //   r = n . (P_j - P_i),   dr = n . (Psi_j - Psi_i) dxi + (P_j - P_i) . dn
 // The normal is known (inclinometers) unless it is left out, and then an unknown of two freedoms.
 #include "constraints/methods/maker.h"
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 
 namespace selfcal {
 namespace {

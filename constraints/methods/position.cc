@@ -2,7 +2,7 @@
 // device's axes, which are the world's unless `frame: unknown`; with `point: unknown` of a target
 // that is fixed to the last moving link. r = v - x (see seen_point.h).
 #include "constraints/methods/maker.h"
-#include "constraints/methods/seen_point.h"
+#include "constraints/methods/shared/seen_point.h"
 
 namespace selfcal {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "constraints/methods/maker.h"
-#include "constraints/methods/shared_point.h"
+#include "constraints/methods/shared/shared_point.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {

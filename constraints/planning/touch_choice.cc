@@ -7,7 +7,7 @@
 #include <set>
 
 #include "constraints/identifiability/endpoint_sigma.h"
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/planning/detmax.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"

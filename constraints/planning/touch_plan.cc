@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "constraints/identifiability/endpoint_sigma.h"
-#include "constraints/methods/shared_point.h"
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/shared_point.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/planning/touch_choice.h"
 #include "constraints/planning/tour.h"
 #include "constraints/sampling/contact.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/sampling/newton.h"
 #include "constraints/sampling/random_poses.h"
 

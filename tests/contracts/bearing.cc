@@ -1,7 +1,7 @@
 // Bearings of a theodolite, worked by hand: rows, their derivatives and where the station starts.
 #include <gtest/gtest.h>
 
-#include "constraints/methods/device_frame.h"
+#include "constraints/methods/shared/device_frame.h"
 #include "kinematics/rotation.h"
 #include "tests/contracts/method_case.h"
 

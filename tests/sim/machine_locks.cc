@@ -1,7 +1,7 @@
 // Locks of the simulated platform: how they engage, open, hold and slip.
 #include <gmock/gmock.h>
 
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "tests/sim/machine_cell.h"
 
 namespace selfcal {

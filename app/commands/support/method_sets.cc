@@ -4,7 +4,7 @@
 #include <memory>
 #include <sstream>
 
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/sampling/random_poses.h"
 
 namespace selfcal {

@@ -1,5 +1,5 @@
 // The device's pose: registration by Kabsch (singular value decomposition of the cross covariance).
-#include "constraints/methods/device_frame.h"
+#include "constraints/methods/shared/device_frame.h"
 
 #include "kinematics/rotation.h"
 

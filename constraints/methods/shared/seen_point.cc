@@ -1,6 +1,6 @@
 // With w = R_F a: dr = w . (dP - dp_F) + (w x (P - p_F)) . dphi_F, and of an unknown point
 // w . dP = w . dp_L + (R_L s x w) . dphi_L + (R_L^T w) . ds.
-#include "constraints/methods/seen_point.h"
+#include "constraints/methods/shared/seen_point.h"
 
 #include "constraints/methods/maker.h"
 

@@ -5,7 +5,7 @@
 // R_L ds.
 #pragma once
 
-#include "constraints/methods/device_frame.h"
+#include "constraints/methods/shared/device_frame.h"
 
 namespace selfcal {
 

@@ -1,5 +1,5 @@
 // Unit normals: tangents, retraction, total least squares.
-#include "constraints/methods/unit_normal.h"
+#include "constraints/methods/shared/unit_normal.h"
 
 #include "kinematics/linear_algebra.h"
 
