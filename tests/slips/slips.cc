@@ -248,7 +248,7 @@ std::vector<Slip> of_a_tracker() {
       {"motoman-tracker", "30 percent off by 100 mm", false_places(0.3, 0.1), "Not improved",
        "state a noise of 0.01 mm"},
       {"motoman-tracker", "10 percent off by 1 m", false_places(0.1, 1), "Not determined",
-       "state a noise of 0.01 mm"},
+       "look at the rows and files first"},
       {"motoman-tracker", "noise stated 100 times too small",
        data_set("noise: 1.0e-5", "noise: 1.0e-7"), "times as much as its data sheet says", ""},
       {"motoman-tracker", "noise stated in millimetres", data_set("noise: 1.0e-5", "noise: 1.0e-2"),
@@ -301,7 +301,7 @@ std::vector<Slip> of_locations() {
            v = {v[3], v[0], v[1], v[2]};
          });
        },
-       "the quaternions are read in another order", "the quaternions are read in another order"},
+       "the quaternions are read in another order", "look at the rows and files first"},
       {"ipa-ur10-random",
        "a zero lost by 10 degrees",
        offset("q3", 10),
