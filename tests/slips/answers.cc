@@ -82,7 +82,9 @@ void note(const char* command, const Slip& slip, const Ran& ran) {
 class Slips : public testing::TestWithParam<Slip> {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / plain(GetParam().set + GetParam().name);
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              plain(std::string("slips_") +
+                    testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     if (GetParam().set == "rx90-planes") {
