@@ -97,6 +97,10 @@ Result<std::string> to_urdf(const Node& robot, const ConvertArguments& arguments
   const auto made = urdf_like(*text, arguments.like, *original, *chain);
   if (!made) return tl::unexpected(made.error());
   note_left_out(made->left_out);
+  note(
+      "give it to the driver as robot_description: its origins hold the offsets of the joints, "
+      "too, so no kinematics file "
+      "and no offsets beside it; calibration elements are left as they are");
   return made->text;
 }
 
@@ -136,7 +140,9 @@ Result<std::string> to_ur(const Node& robot, const ConvertArguments& arguments) 
   const Eigen::Isometry3d tool = chain->chain.joints.back().X_WJ.inverse() * chain->chain.X_WT;
   if ((tool.matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() > 1e-12)
     note("left out: the tool's correction, for the file ends at wrist_3");
-  note("give it to the driver as kinematics_params_file, and no corrected URDF beside it");
+  note(
+      "give it to the driver as kinematics_params_file: it holds the offsets of the joints, too, "
+      "so no corrected URDF and no offsets beside it");
   return ur_kinematics_text(chain->chain, original->hash);
 }
 

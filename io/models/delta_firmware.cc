@@ -1,6 +1,8 @@
 //   carriage height at the endstop = height above the bed + sqrt(arm^2 - radius^2)
 // so that a tower's endstop comes to e = endstop - sqrt(rod^2 - radius^2) above our base plane.
 // RepRapFirmware parts e into H, the mean, and M666, the rest; Klipper has it as position_endstop.
+// Marlin backs off each endstop by its M666, which is never positive, and stands at H then: H is
+// the least e, M666 = H - e (its set_axis_is_at_home and homeaxis; M665.cpp for the letters).
 #include "io/models/delta_firmware.h"
 
 #include <cmath>
@@ -23,8 +25,66 @@ std::string rounded(double value) {
 }
 
 /// Degrees from where firmwares have the tower, within half a turn.
-double trim(const Delta& delta, int t) {
-  return std::remainder(delta.value[index(t, kAngle)] / kDegree - kTowerAngles[t], 360);
+double trim(const Eigen::VectorXd& xi, int t) {
+  return std::remainder(xi[index(t, kAngle)] / kDegree - kTowerAngles[t], 360);
+}
+
+/// What firmwares are told, mm and degrees.
+struct FirmwareNumbers {
+  double radius = 0;
+  Eigen::Vector3d rod, trim, stop;  ///< stop: e above
+};
+
+FirmwareNumbers numbers_of(const Eigen::VectorXd& xi) {
+  FirmwareNumbers n;
+  for (int t = 0; t < kTowers; ++t) n.radius += 1e3 * xi[index(t, kRadius)] / kTowers;
+  for (int t = 0; t < kTowers; ++t) {
+    n.rod[t] = 1e3 * xi[index(t, kRod)];
+    n.trim[t] = trim(xi, t);
+    n.stop[t] = 1e3 * xi[index(t, kEndstop)] - std::sqrt(n.rod[t] * n.rod[t] - n.radius * n.radius);
+  }
+  return n;
+}
+
+/// " X1.0000 Y2.0000 Z3.0000"
+std::string lettered(const Eigen::Vector3d& v, const char* letters) {
+  std::string text;
+  for (int t = 0; t < kTowers; ++t) text += " " + std::string(1, letters[t]) + rounded(v[t]);
+  return text;
+}
+
+std::string reprap_lines(const FirmwareNumbers& n) {
+  return "M665 L" + rounded(n.rod[0]) + ":" + rounded(n.rod[1]) + ":" + rounded(n.rod[2]) + " R" +
+         rounded(n.radius) + " H" + rounded(n.stop.mean()) + lettered(n.trim, "XYZ") + "\nM666" +
+         lettered(n.stop.array() - n.stop.mean(), "XYZ") + "\n";
+}
+
+std::string marlin_lines(const FirmwareNumbers& n) {
+  const double height = n.stop.minCoeff(), rod = n.rod.mean();
+  return "M665 L" + rounded(rod) + " R" + rounded(n.radius) + " H" + rounded(height) +
+         lettered(n.trim, "XYZ") + lettered(n.rod.array() - rod, "ABC") + "\nM666" +
+         lettered(height - n.stop.array(), "XYZ") + "\n";
+}
+
+std::string klipper_lines(const FirmwareNumbers& n) {
+  std::string text = "[printer]\ndelta_radius: " + rounded(n.radius) + "\n";
+  for (int t = 0; t < kTowers; ++t)
+    text += "\n[stepper_" + std::string(1, "abc"[t]) +
+            "]\nposition_endstop: " + rounded(n.stop[t]) + "\narm_length: " + rounded(n.rod[t]) +
+            "\nangle: " + rounded(kTowerAngles[t] + n.trim[t]) + "\n";
+  return text;
+}
+
+/// `lines`, and behind comment signs those of the `before`, which undo them.
+std::string with_undo(const std::string& lines, const std::string& before, char sign) {
+  const std::string comment = std::string(1, sign) + " ";
+  std::string text = lines + comment + "To undo it, the maker's figures:\n";
+  for (std::size_t at = 0; at < before.size();) {
+    const std::size_t end = before.find('\n', at);
+    if (end > at) text += comment + before.substr(at, end - at) + "\n";
+    at = end + 1;
+  }
+  return text;
 }
 
 std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
@@ -51,37 +111,20 @@ std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
 }  // namespace
 
 Result<FirmwareText> delta_firmware(const Delta& delta, const std::string& file) {
-  double radius = 0, height = 0;
-  for (int t = 0; t < kTowers; ++t) {
-    if (std::abs(trim(delta, t)) > kMostTrim)
-      return bad_input(file + ": " + tower_name(t) + " stands " + rounded(trim(delta, t)) +
+  for (int t = 0; t < kTowers; ++t)
+    if (std::abs(trim(delta.value, t)) > kMostTrim)
+      return bad_input(file + ": " + tower_name(t) + " stands " + rounded(trim(delta.value, t)) +
                        " degrees from where firmwares have it (210, 330, 90 in this order)");
-    radius += delta.value[index(t, kRadius)] / kTowers;
-  }
-  double e[kTowers];
-  for (int t = 0; t < kTowers; ++t) {
-    const double rod = delta.value[index(t, kRod)];
-    e[t] = delta.value[index(t, kEndstop)] - std::sqrt(rod * rod - radius * radius);
-    height += e[t] / kTowers;
-  }
-  std::string arms, trims, stops, steppers;
-  for (int t = 0; t < kTowers; ++t) {
-    const std::string axis(1, "XYZ"[t]), rod = rounded(1e3 * delta.value[index(t, kRod)]);
-    arms += (t > 0 ? ":" : "") + rod;
-    trims += " " + axis + rounded(trim(delta, t));
-    stops += " " + axis + rounded(1e3 * (e[t] - height));
-    steppers += "\n[stepper_" + std::string(1, "abc"[t]) +
-                "]\nposition_endstop: " + rounded(1e3 * e[t]) + "\narm_length: " + rod +
-                "\nangle: " + rounded(kTowerAngles[t] + trim(delta, t)) + "\n";
-  }
+  const FirmwareNumbers now = numbers_of(delta.value), before = numbers_of(delta.nominal);
   FirmwareText out;
   out.text =
-      "; RepRapFirmware (config.g). Heights are above the base plane: take the bed's off.\n"
-      "M665 L" +
-      arms + " R" + rounded(1e3 * radius) + " H" + rounded(1e3 * height) + trims + "\nM666" +
-      stops + "\n\n# Klipper (printer.cfg)\n[printer]\ndelta_radius: " + rounded(1e3 * radius) +
-      "\n" + steppers;
-  out.left_out = firmware_lacks(delta, radius);
+      "; RepRapFirmware (config.g). Heights are above the base plane: take the bed's off.\n" +
+      with_undo(reprap_lines(now), reprap_lines(before), ';') +
+      "\n; Marlin, then G28 and M500. Heights as above. A B C are the rods' trims; where M665 "
+      "has none\n; (B is the calibration radius there), leave them out.\n" +
+      with_undo(marlin_lines(now), marlin_lines(before), ';') + "\n# Klipper (printer.cfg)\n" +
+      with_undo(klipper_lines(now), klipper_lines(before), '#');
+  out.left_out = firmware_lacks(delta, now.radius * 1e-3);
   return out;
 }
 

@@ -1,5 +1,6 @@
-// A linear delta as the firmwares of printers are told of it: RepRapFirmware's M665 and M666, and
-// Klipper's printer.cfg. What the numbers mean there is in kinematics/robots/README.md.
+// A linear delta as the firmwares of printers are told of it: M665 and M666 of RepRapFirmware and,
+// with other meanings, of Marlin, and Klipper's printer.cfg; each with the maker's figures to undo
+// it. What the numbers mean there is in kinematics/robots/README.md.
 #pragma once
 
 #include <string>

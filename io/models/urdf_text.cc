@@ -16,6 +16,14 @@ using Eigen::Vector3d;
 
 constexpr double kUnmoved = 1e-11;  // m, rad: an origin that keeps its digits
 
+// <calibration rising falling> is where a homing switch is (urdf's JointCalibration), which a
+// corrected origin does not move.
+constexpr const char* kWhereItIs =
+    " Calibrated by selfcal: the origins of the joints hold all of it, their offsets included. "
+    "Give "
+    "the driver no kinematics file and no joint offsets beside them; a calibration element tells "
+    "where a homing switch is, and is as it was. ";
+
 std::string three_numbers(const Vector3d& v) {
   const Vector3d unsigned_zeros = v.array() + 0.0;
   std::string text;
@@ -144,6 +152,13 @@ Result<UrdfText> urdf_like(const std::string& text, const std::string& file, con
     if (element && !unmoved(X, before)) set_origin(*element, X);
     parent = poses[s];
     parent_before = read.steps[s].X_WC;
+  }
+  if (TiXmlElement* root = document.RootElement()) {
+    const TiXmlComment note(kWhereItIs);
+    if (TiXmlNode* first = root->FirstChild())
+      root->InsertBeforeChild(first, note);
+    else
+      root->InsertEndChild(note);
   }
   out.text = printed_xml(document);
   return out;

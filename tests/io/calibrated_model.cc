@@ -105,6 +105,21 @@ TEST(CalibratedUrdf, KeepsTheOriginsThatNothingMoves) {
   const auto made = urdf_like(kArm, "arm.urdf", *read, chain);
   ASSERT_TRUE(made);
   EXPECT_THAT(made->text, HasSubstr("<origin xyz=\"0.5 0 0.02\" rpy=\"0 0 0.002\""));
+  EXPECT_THAT(made->text, HasSubstr("the origins of the joints hold all of it"));
+}
+
+TEST(CalibratedUrdf, LeavesTheHomingSwitchesWhereTheyAre) {
+  std::string text = kArm;
+  text.insert(text.find("<axis xyz=\"0 1 0\"/>"), "<calibration rising=\"0.25\"/>");
+  const auto read = read_urdf(text, "arm.urdf", {});
+  ASSERT_TRUE(read);
+  serial::Model model = frames_of(read->chain);
+  for (serial::Frame& frame : model.frames)
+    if (frame.motion == serial::Motion::revolute) frame.value[serial::kTheta] += 0.01;
+  const auto made = urdf_like(text, "arm.urdf", *read, corrected_chain(read->chain, model));
+  ASSERT_TRUE(made);
+  EXPECT_THAT(made->text, HasSubstr("<calibration rising=\"0.25\" />"));
+  EXPECT_EQ(*urdf::parseURDF(made->text)->getJoint("j2")->calibration->rising, 0.25);
 }
 
 TEST(CalibratedUrdf, LeavesOutTheToolOfAnotherRobotAndSaysSo) {
@@ -296,6 +311,44 @@ towers:
                 2e-4);
     EXPECT_NEAR(number_after(made->text, "arm_length: ", stepper), L, 1e-9);
   }
+}
+
+// By Marlin's own sums (module/delta.cpp, motion.cpp): each carriage meets its endstop, backs off
+// by M666, and all three then stand where the nozzle is at (0, 0, H).
+TEST(DeltaFirmware, HasTheCarriagesWhereMarlinPutsThem) {
+  const std::string text = R"(robot: d
+kind: linear-delta
+towers:
+  - {radius: 0.105, angle: 3.667, rod: 0.2153, endstop: 0.5821, limits: [-0.35, 0]}
+  - {radius: 0.105, angle: 5.7596, rod: 0.2155, endstop: 0.5825, limits: [-0.35, 0]}
+  - {radius: 0.105, angle: 1.57, rod: 0.2151, endstop: 0.5818, limits: [-0.35, 0]}
+)";
+  Problems problems;
+  auto delta = linear_delta::read(*parse_yaml(text, "d.yaml"), problems);
+  delta.nominal[linear_delta::index(0, linear_delta::kRod)] = 0.2140;
+  const auto made = delta_firmware(delta, "d.yaml");
+  ASSERT_TRUE(made);
+  const auto robot = robot_of(text, "d.yaml");
+  const Eigen::Vector3d q(-0.20, -0.21, -0.19);
+  const Eigen::Vector3d p = 1e3 * locate(**robot, values(**robot), q).p;
+  const size_t marlin = made->text.find("; Marlin"), line = made->text.find("\nM665", marlin),
+               stops = made->text.find("\nM666", line);
+  ASSERT_NE(stops, std::string::npos);
+  const double L = number_after(made->text, " L", line), R = number_after(made->text, " R", line),
+               H = number_after(made->text, " H", line);
+  for (int t = 0; t < 3; ++t) {
+    const std::string axis = std::string(" ") + "XYZ"[t], arm = std::string(" ") + "ABC"[t];
+    const double rod = L + number_after(made->text, arm, line);
+    const double angle =
+        (std::array{210, 330, 90}[t] + number_after(made->text, axis, line)) * M_PI / 180;
+    const double adjustment = number_after(made->text, axis, stops);
+    EXPECT_LE(adjustment, 0) << "Marlin refuses positive ones";
+    const double at_endstop = H + std::sqrt(rod * rod - R * R) - adjustment;
+    const Eigen::Vector3d c(R * std::cos(angle), R * std::sin(angle), at_endstop + 1e3 * q[t]);
+    EXPECT_NEAR((p - c).norm(), rod, 3e-4) << "three numbers written to 0.1 um";
+  }
+  const size_t undo = made->text.find("; To undo it", stops);
+  EXPECT_NEAR(number_after(made->text, " A", undo), 214.0 - (214.0 + 215.5 + 215.1) / 3, 1e-4);
 }
 
 TEST(DeltaFirmware, NamesWhatItLacksAndRefusesOtherTowers) {
