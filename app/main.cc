@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_robot(app, status);
   add_data(app, status);
   add_serve(app, status);
+  add_bridge(app, status);
   add_monitor(app, status);
   add_command(app, status);
   add_history(app, status);

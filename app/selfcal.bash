@@ -12,7 +12,7 @@ _selfcal() {
     return
   fi
   case $COMP_CWORD:$command in
-    1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve monitor command history report --help --version" ;;
+    1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve bridge monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
     *:diagnose) words="--sim --tool --since --next --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
@@ -26,6 +26,7 @@ _selfcal() {
     2:data) words="check --help" ;;
     *:data) words="--help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
+    *:bridge) words="--action --touch --acceleration --patience --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --web --allow-commands --token --help" ;;
     2:command) words="start check abort accept reject rollback --help" ;;
     *:command) words="--robot --domain --wait --json --help" ;;

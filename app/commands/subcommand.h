@@ -33,6 +33,7 @@ void add_robot(CLI::App& app, int& status);
 void add_robot_convert(CLI::App& robot, int& status);
 void add_data(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
+void add_bridge(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
 void add_command(CLI::App& app, int& status);
 void add_history(CLI::App& app, int& status);

@@ -52,7 +52,7 @@ DdsQosHandle to_library(const DdsQos& qos, const char* type_hash) {
     dds_qset_resource_limits(handle.get(), kMostKept, DDS_LENGTH_UNLIMITED, kMostKept);
   }
   const std::string data = std::string("typehash=") + type_hash + ";";
-  dds_qset_userdata(handle.get(), data.data(), data.size());
+  if (*type_hash) dds_qset_userdata(handle.get(), data.data(), data.size());
   return handle;
 }
 

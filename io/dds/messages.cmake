@@ -36,6 +36,15 @@ foreach(stem IN LISTS stems)
   list(APPEND generated_sources ${stem}.c ${stem}.h)
 endforeach()
 
+# The services of an action, which no .msg file describes.
+set(action ${PROJECT_SOURCE_DIR}/io/dds/ros/follow_joint_trajectory.idl)
+add_custom_command(
+  OUTPUT ${generated}/follow_joint_trajectory.c ${generated}/follow_joint_trajectory.h
+  COMMAND ${IDLC} -f case-sensitive -x final -t -I ${generated} -o ${generated} ${action}
+  DEPENDS ${action} ${idl_files}
+  COMMENT "Compiling follow_joint_trajectory.idl" VERBATIM)
+list(APPEND generated_sources ${generated}/follow_joint_trajectory.c ${generated}/follow_joint_trajectory.h)
+
 add_library(selfcal_messages STATIC ${generated_sources})
 set_target_properties(selfcal_messages PROPERTIES UNITY_BUILD OFF)
 target_include_directories(selfcal_messages SYSTEM PUBLIC ${generated})

@@ -40,7 +40,8 @@ inline constexpr DdsQos kSensorReader{.reliable = false, .depth = 1024};
 
 using DdsQosHandle = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-/// The library's form, with `type_hash` as the user data by which ROS tells types apart.
+/// The library's form, with `type_hash`, unless it is empty, as the user data by which ROS tells
+/// types apart.
 DdsQosHandle to_library(const DdsQos& qos, const char* type_hash);
 
 }  // namespace selfcal

@@ -26,6 +26,8 @@ TEST(TypeHash, IsThePublishedOneOfEveryKnownType) {
             "RIHS01_b0e3e692ea2d54a8af2f4ef1930e81556a2db55216b771f8a7d2724ed47bf0e4");
   EXPECT_EQ(type_hash(all, "diagnostic_msgs/KeyValue"),
             "RIHS01_d68081eaa540288c5440753baecef0c4e16e81a5f78ad68902ded5100413bb42");
+  EXPECT_EQ(type_hash(all, "std_msgs/Bool"),
+            "RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9");
   EXPECT_EQ(type_hash(all, "std_msgs/Header"),
             "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01");
   EXPECT_EQ(type_hash(all, "std_msgs/String"),

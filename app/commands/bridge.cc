@@ -1,0 +1,109 @@
+// selfcal bridge CONFIG.yaml: a trajectory controller of ROS 2 as the robot of a service.
+#include <cstdio>
+#include <memory>
+
+#include "app/bridge/motion_bridge.h"
+#include "app/bridge/touch_relay.h"
+#include "app/commands/subcommand.h"
+#include "app/commands/support/signals.h"
+#include "app/service/config.h"
+#include "io/dds/time_mapping.h"
+
+namespace selfcal {
+namespace {
+
+struct BridgeArguments {
+  std::string config, action, touch;
+  double acceleration = 1, patience = 2;
+};
+
+/// The last sample of those that have come, as readings.
+void look(EncoderSource& encoders, std::vector<EncoderSample>& samples, MotionBridge& bridge) {
+  const EncoderSample& last = samples.back();
+  std::vector<double> q(last.joints);
+  for (int j = 0; j < last.joints; ++j) {
+    const EncoderScale& scale = encoders.scales()[j];
+    q[j] = static_cast<double>(last.counts[j] - scale.zero) * scale.step;
+  }
+  bridge.see(std::move(q), last.time);
+}
+
+Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) {
+  Wakeup wakeup;
+  const auto participant = DdsParticipant::open(static_cast<std::uint32_t>(config.domain),
+                                                "selfcal bridge " + config.id);
+  if (!participant) return tl::unexpected(participant.error());
+  auto service = DdsRobotSide::open(*participant, {.robot = config.id}, wakeup);
+  if (!service) return tl::unexpected(service.error());
+  auto action = TrajectoryAction::open(*participant, arguments.action, config.joint_names, wakeup);
+  if (!action) return tl::unexpected(action.error());
+  auto encoders = config.encoders->open({*participant, wakeup});
+  if (!encoders) return tl::unexpected(encoders.error());
+  std::unique_ptr<TouchRelay> touch;
+  if (!arguments.touch.empty()) {
+    auto trigger = config.trigger->open_sender({*participant, wakeup, {}});
+    if (!trigger) return tl::unexpected(trigger.error());
+    auto relay = TouchRelay::open(*participant, arguments.touch, *std::move(trigger), wakeup);
+    if (!relay) return tl::unexpected(relay.error());
+    touch = *std::move(relay);
+  }
+  std::fprintf(
+      stderr, "bridge of robot %s on DDS domain %d: action %s, encoders on %s, trigger %s\n",
+      config.id.c_str(), config.domain, arguments.action.c_str(), config.encoders->source().c_str(),
+      touch ? ("from topic " + arguments.touch).c_str() : "not its own");
+  MotionBridge bridge({.acceleration = arguments.acceleration,
+                       .patience = nanoseconds(arguments.patience),
+                       .action = arguments.action},
+                      config.robot->joints(), **service, **action);
+  std::vector<EncoderSample> samples;
+  while (!told_to_stop()) {
+    samples.clear();
+    if (auto taken = (*encoders)->take(samples); !taken) return taken;
+    if (!samples.empty()) look(**encoders, samples, bridge);
+    if (touch)
+      if (auto passed = touch->turn(monotonic_now()); !passed) return passed;
+    if (auto turned = bridge.turn(monotonic_now()); !turned) return turned;
+    wakeup.wait(5 * kMillisecond);
+  }
+  bridge.give_up();
+  return {};
+}
+
+int bridge_command(const BridgeArguments& arguments) {
+  const auto config = load_config(arguments.config);
+  if (!config) return tell(config.error());
+  if (!arguments.touch.empty() && config->trigger->stamped_by() == StampedBy::kernel)
+    return wrong_usage("--touch needs a trigger of kind dds, and the configuration's is " +
+                       config->trigger->source());
+  listen_to_signals();
+  const auto ran = run_bridge(arguments, *config);
+  return ran ? kDone : tell(ran.error());
+}
+
+}  // namespace
+
+void add_bridge(CLI::App& app, int& status) {
+  auto arguments = std::make_shared<BridgeArguments>();
+  CLI::App* command =
+      app.add_subcommand("bridge", "A trajectory controller of ROS 2 as the robot of a service");
+  command->add_option("CONFIG", arguments->config, "The service's CONFIG.yaml")->required();
+  command
+      ->add_option("--action", arguments->action,
+                   "Name of the controller's action control_msgs/action/FollowJointTrajectory")
+      ->required();
+  command->add_option("--touch", arguments->touch,
+                      "Topic of std_msgs/Bool (true: in contact) that becomes the trigger");
+  command
+      ->add_option("--acceleration", arguments->acceleration,
+                   "Largest acceleration of a joint (rad/s^2 or m/s^2)")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->capture_default_str();
+  command
+      ->add_option("--patience", arguments->patience,
+                   "How long the controller may be away or silent (s)")
+      ->check(CLI::Range(0.05, 60.0))
+      ->capture_default_str();
+  command->callback([arguments, &status] { status = bridge_command(*arguments); });
+}
+
+}  // namespace selfcal

@@ -1,0 +1,274 @@
+// The bridge between a service's motion port and a controller of the test's.
+#include "app/bridge/motion_bridge.h"
+
+#include <gmock/gmock.h>
+
+#include "app/bridge/touch_relay.h"
+#include "io/dds/motion.h"
+#include "io/dds/names.h"
+#include "io/dds/senders.h"
+#include "io/dds/trigger.h"
+#include "tests/bridge/controller.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+using Outcome = MotionReply::Outcome;
+
+constexpr const char* kAction = "/arm/follow_joint_trajectory";
+
+class Bridged : public DdsTest {
+ protected:
+  Bridged() {
+    joints[0].name = "a";
+    joints[1].name = "b";
+    joints[0].lower = joints[1].lower = -2;
+    joints[0].upper = joints[1].upper = 2;
+    bridge.emplace(MotionBridgeOptions{.acceleration = 1,
+                                       .patience = 300 * kMillisecond,
+                                       .slack = 300 * kMillisecond,
+                                       .action = kAction},
+                   joints, *robot, *action);
+  }
+  void SetUp() override {
+    ASSERT_TRUE(eventually([&] { return motion->connected() && robot->connected(); }));
+  }
+  void start_controller() {
+    controller.emplace(participant, kAction, wakeup);
+    ASSERT_TRUE(eventually([&] { return action->connected(); }));
+  }
+  /// Turns the bridge, the joints standing at `here`, until the test has what it waits for.
+  bool turning(const std::function<bool()>& holds) {
+    return eventually([&] {
+      if (joints_speak) bridge->see(here, monotonic_now());
+      must(bridge->turn(monotonic_now()));
+      if (controller) controller->hear();
+      must(motion->take(replies));
+      return holds();
+    });
+  }
+  bool told(Outcome outcome) {
+    return turning([&] { return !replies.empty() && replies.back().outcome == outcome; });
+  }
+  void ask(MoveKind kind = MoveKind::travel, std::vector<double> q = {1, 0}) {
+    must(motion->request({.id = ++id, .kind = kind, .label = "", .q = std::move(q), .speed = 0.5}));
+  }
+  /// A move that the controller has accepted.
+  void begin_move() {
+    start_controller();
+    ask();
+    ASSERT_TRUE(turning([&] { return controller->goals.size() == 1; }));
+    controller->accept(controller->goals[0]);
+    ASSERT_TRUE(turning([&] { return controller->asked.size() == 1; }));
+    ASSERT_TRUE(told(Outcome::accepted));
+  }
+
+  std::vector<Joint> joints{2};
+  std::unique_ptr<DdsMotion> motion = must(DdsMotion::open(participant, "r", wakeup));
+  std::unique_ptr<DdsRobotSide> robot =
+      must(DdsRobotSide::open(participant, {.robot = "r"}, wakeup));
+  std::unique_ptr<TrajectoryAction> action =
+      must(TrajectoryAction::open(participant, kAction, {"a", "b"}, wakeup));
+  std::optional<MotionBridge> bridge;
+  std::optional<FakeController> controller;
+  std::vector<MotionReply> replies;
+  std::vector<double> here{0.5, 0};
+  bool joints_speak = true;
+  std::uint64_t id = 0;
+};
+
+TEST_F(Bridged, MakesAGoalOfARequestAndAReplyOfItsResult) {
+  begin_move();
+  EXPECT_EQ(controller->goals[0].joints, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(controller->goals[0].points.back().q, (std::vector<double>{1, 0}));
+  EXPECT_EQ(controller->asked[0].goal, controller->goals[0].goal);
+
+  controller->finish(controller->asked[0], 4);
+
+  ASSERT_TRUE(told(Outcome::done));
+  EXPECT_EQ(replies.back().id, id);
+}
+
+TEST_F(Bridged, CancelsTheGoalOfAStopUntilItEnds) {
+  begin_move();
+  must(motion->stop("contact"));
+  ASSERT_TRUE(turning([&] { return controller->cancels.size() >= 2; })) << "said again";
+  EXPECT_EQ(controller->cancels[0].goal, controller->goals[0].goal);
+  controller->confirm_cancel(controller->cancels[0]);
+  controller->finish(controller->asked[0], 5);
+
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_EQ(replies.back().why, "contact");
+}
+
+TEST_F(Bridged, CancelsAGoalThatWasAcceptedAfterTheStop) {
+  start_controller();
+  ask();
+  ASSERT_TRUE(turning([&] { return controller->goals.size() == 1; }));
+  must(motion->stop("contact"));
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  const std::size_t before = controller->cancels.size();
+  controller->accept(controller->goals[0]);
+  ASSERT_TRUE(
+      turning([&] { return controller->cancels.size() > before && !controller->asked.empty(); }));
+  controller->finish(controller->asked[0], 5);
+  ASSERT_TRUE(told(Outcome::stopped));
+}
+
+TEST_F(Bridged, KeepsTheNextMoveUntilTheStoppedOneHasEnded) {
+  begin_move();
+  must(motion->stop("contact"));
+  ask(MoveKind::retract, {0, 0});
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  EXPECT_EQ(controller->goals.size(), 1);
+  controller->finish(controller->asked[0], 5);
+  ASSERT_TRUE(turning([&] { return controller->goals.size() == 2; }));
+  EXPECT_EQ(controller->goals[1].points.back().q, (std::vector<double>{0, 0}));
+}
+
+TEST_F(Bridged, StopsWhateverMovesWhenItHasAskedForNothing) {
+  start_controller();
+  must(motion->stop("fault"));
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  EXPECT_EQ(controller->cancels[0].goal, GoalId{}) << "zeros: every goal";
+}
+
+TEST_F(Bridged, RefusesByNameWhatNobodyAnswers) {
+  ask();
+  ASSERT_TRUE(told(Outcome::refused));
+  EXPECT_EQ(replies.back().why, std::string("there is no action server ") + kAction);
+  start_controller();
+  ask();
+  ASSERT_TRUE(turning([&] { return replies.size() == 2; }));
+  EXPECT_THAT(replies.back().why, HasSubstr("does not answer"));
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); })) << "it may have begun";
+  ask();
+  ASSERT_TRUE(turning([&] { return controller->goals.size() == 2; }));
+  controller->accept(controller->goals[1], false);
+  ASSERT_TRUE(turning([&] { return replies.size() == 3; }));
+  EXPECT_THAT(replies.back().why, HasSubstr("rejected the goal"));
+}
+
+TEST_F(Bridged, RefusesByNameWhatTheRobotCannot) {
+  start_controller();
+  const auto why_of = [&](MoveKind kind, std::vector<double> q) {
+    replies.clear();
+    ask(kind, std::move(q));
+    EXPECT_TRUE(told(Outcome::refused));
+    return replies.empty() ? "" : replies.back().why;
+  };
+  EXPECT_THAT(why_of(MoveKind::seat, {1, 0}), HasSubstr("cannot seat"));
+  EXPECT_THAT(why_of(MoveKind::travel, {1}), HasSubstr("2 joints"));
+  EXPECT_THAT(why_of(MoveKind::travel, {1, 3}), HasSubstr("b cannot go to 3"));
+  EXPECT_THAT(why_of(MoveKind::travel, {1, std::nan("")}), HasSubstr("b cannot go"));
+  must(motion->request({.id = ++id, .label = "", .q = {1, 0}, .speed = 0}));
+  replies.clear();
+  ASSERT_TRUE(told(Outcome::refused));
+  EXPECT_THAT(replies.back().why, HasSubstr("speed"));
+  joints_speak = false;
+  bridge->see(here, monotonic_now() - kSecond);
+  EXPECT_THAT(why_of(MoveKind::travel, {1, 0}), HasSubstr("joint states have ceased"));
+  EXPECT_TRUE(controller->goals.empty());
+}
+
+TEST_F(Bridged, TellsTheControllersError) {
+  begin_move();
+  controller->finish(controller->asked[0], 6, -4, "joint a is 0.3 rad behind");
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_THAT(replies.back().why, HasSubstr("PATH_TOLERANCE_VIOLATED: joint a is 0.3 rad behind"));
+}
+
+TEST_F(Bridged, TellsAControllerThatGoesAndAMoveThatDoesNotEnd) {
+  begin_move();
+  controller.reset();
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_THAT(replies.back().why, HasSubstr("is gone"));
+  replies.clear();
+  here = {0.99, 0};
+  begin_move();
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_THAT(replies.back().why, HasSubstr("has not ended the move in time"));
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+}
+
+TEST_F(Bridged, StopsWhenTheJointStatesCease) {
+  begin_move();
+  joints_speak = false;
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  controller->finish(controller->asked[0], 5);
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_THAT(replies.back().why, HasSubstr("joint states have ceased"));
+}
+
+TEST_F(Bridged, StopsWhenTheServiceIsGone) {
+  begin_move();
+  motion.reset();
+  EXPECT_TRUE(eventually([&] {
+    bridge->see(here, monotonic_now());
+    must(bridge->turn(monotonic_now()));
+    controller->hear();
+    return !controller->cancels.empty();
+  }));
+}
+
+TEST_F(Bridged, BelievesNoReplyToAnother) {
+  start_controller();
+  ask();
+  ASSERT_TRUE(turning([&] { return controller->goals.size() == 1; }));
+  FakeController::Call other = controller->goals[0];
+  other.client += 1;
+  controller->accept(other, false);
+  other = controller->goals[0];
+  other.number += 1;
+  controller->accept(other, false);
+  controller->accept(controller->goals[0]);
+  ASSERT_TRUE(told(Outcome::accepted));
+}
+
+class Touched : public DdsTest {};
+
+TEST_F(Touched, BecomesTheTriggerWithTheMomentAtWhichItWasWritten) {
+  auto relay = must(TouchRelay::open(
+      participant, "/touch", must(DdsTriggerSender::open(participant, "trigger", wakeup)), wakeup));
+  auto levels =
+      must(DdsReader<dds::StampedBool>::open(participant, ros_topic("trigger"), kExchange));
+  std::optional<DdsWriter<dds::Bool>> touch =
+      must(DdsWriter<dds::Bool>::open(participant, ros_topic("touch"), {}, &wakeup));
+  ASSERT_TRUE(eventually(
+      [&] { return levels.matched() == 1 && relay->publishers() == 1 && touch->matched() == 1; }));
+  std::vector<std::pair<Nanoseconds, bool>> heard;
+  const auto hear = [&] {
+    must(relay->turn(monotonic_now()));
+    must(levels.take([&](const dds::StampedBool& level) {
+      heard.emplace_back(nanoseconds(level.header_.stamp_), level.data_);
+    }));
+  };
+  const dds::Bool open{false}, closed{true};
+  ASSERT_EQ(dds_write_ts(touch->handle(), &open, 5 * kSecond), 0);
+  ASSERT_EQ(dds_write_ts(touch->handle(), &closed, 6 * kSecond + 7), 0);
+  ASSERT_EQ(dds_write_ts(touch->handle(), &closed, 8 * kSecond), 0);
+  ASSERT_TRUE(eventually([&] {
+    hear();
+    return heard.size() >= 4;
+  })) << "repeated";
+  EXPECT_EQ(heard[0], std::pair(5 * kSecond, false));
+  EXPECT_EQ(heard[1], std::pair(6 * kSecond + 7, true));
+  EXPECT_EQ(heard[2], heard[1]) << "a repetition has the stamp of its change";
+
+  touch.reset();
+  ASSERT_TRUE(eventually([&] {
+    hear();
+    return relay->publishers() == 0;
+  }));
+  heard.clear();
+  const Nanoseconds since = monotonic_now();
+  ASSERT_TRUE(eventually([&] {
+    hear();
+    return monotonic_now() - since > 3 * kSecond / 10;
+  }));
+  EXPECT_LE(heard.size(), 1) << "nobody knows the level any more";
+}
+
+}  // namespace
+}  // namespace selfcal
