@@ -20,9 +20,8 @@ constexpr double kUnmoved = 1e-11;  // m, rad: an origin that keeps its digits
 // corrected origin does not move.
 constexpr const char* kWhereItIs =
     " Calibrated by selfcal: the origins of the joints hold all of it, their offsets included. "
-    "Give "
-    "the driver no kinematics file and no joint offsets beside them; a calibration element tells "
-    "where a homing switch is, and is as it was. ";
+    "Give the driver no kinematics file and no joint offsets beside them; a calibration element "
+    "tells where a homing switch is, and is as it was. ";
 
 std::string three_numbers(const Vector3d& v) {
   const Vector3d unsigned_zeros = v.array() + 0.0;
