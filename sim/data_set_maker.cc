@@ -17,6 +17,7 @@ Simulated make_data_set(const Scenario& scenario, const Robot& robot, Problems& 
   made.truth.xi = true_parameters(scenario, robot, problems);
   const std::optional<Compliance> compliance =
       true_compliance(scenario, robot, made.truth.xi, problems);
+  made.locked = locked_joints(scenario, robot, problems);
   if (problems.any()) return made;
   made.truth.nuisance = true_own_values(scenario, made.data.sets, robot, made.truth.xi, problems);
   if (problems.any()) return made;

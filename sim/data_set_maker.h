@@ -12,10 +12,11 @@
 namespace selfcal {
 
 struct Simulated {
-  DataSet data;                 ///< what a calibration sees
-  State truth;                  ///< the robot, own and group values
-  std::vector<int> false_rows;  ///< rows (from 0) that triggered wrongly, ascending
-  std::string unreached;        ///< why rows are missing; empty when all were taken
+  DataSet data;                          ///< what a calibration sees
+  State truth;                           ///< the robot, own and group values
+  std::vector<std::vector<int>> locked;  ///< by set, joints that are held
+  std::vector<int> false_rows;           ///< rows (from 0) that triggered wrongly, ascending
+  std::string unreached;                 ///< why rows are missing; empty when all were taken
 };
 
 /// Makes the data set of `scenario` with `robot` as the nominal robot. What the scenario asks of

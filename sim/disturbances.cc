@@ -105,7 +105,9 @@ class Disturber {
       Eigen::VectorXd wanted = drawn_residual(row);
       if (is_false) wanted += false_residual(row);
       Eigen::VectorXd q = made_.data.rows.q.row(row).transpose();
-      if (!move_to_residual(robot_, made_.data, made_.truth, row, wanted, q)) continue;
+      if (!move_to_residual(robot_, made_.data, made_.truth, row, wanted, q,
+                            made_.locked[made_.data.rows.set[row]]))
+        continue;
       made_.data.rows.q.row(row) = q.transpose();
       if (!method(row).measures().empty())
         method(row).measure(locate(robot_, made_.truth.xi, q, method(row).body()), {},

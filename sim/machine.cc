@@ -62,6 +62,9 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
   truth_.nuisance = true_own_values(scenario, sets_, *robot_, truth_.xi, problems);
   if (problems.any()) return;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
+    if (!scenario.sets[s].locked.empty())
+      problems.add(*scenario.sets[s].locked_place,
+                   "set " + sets_[s].name + " locked: a machine has every joint free");
     const std::optional<Plane> plane = true_plane(sets_, s, truth_.nuisance);
     const bool known = plane && plane->d;
     if (known && scenario.sets[s].within.radius <= 0)

@@ -106,6 +106,20 @@ Plan plan_rows(const Scenario& scenario, const DataSet& sampled) {
 
 }  // namespace
 
+std::vector<std::vector<int>> locked_joints(const Scenario& scenario, const Robot& robot,
+                                            Problems& problems) {
+  std::vector<std::vector<int>> locked(scenario.sets.size());
+  for (std::size_t s = 0; s < locked.size(); ++s)
+    for (const std::string& name : scenario.sets[s].locked) {
+      const int joint = find_joint(robot, name);
+      if (joint < 0)
+        problems.add(*scenario.sets[s].locked_place,
+                     "set " + scenario.sets[s].name + " locked: the robot has no joint " + name);
+      locked[s].push_back(joint);
+    }
+  return locked;
+}
+
 void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made) {
   DataSet sampled;
   sampled.sets = made.data.sets;
@@ -129,6 +143,7 @@ void take_rows(const Scenario& scenario, const Robot& robot, Simulated& made) {
     request.nuisance = std::move(nuisance);
     request.patch = wanted.within;
     request.places = wanted.places;
+    request.held = made.locked[s];
   }
   Random random = stream(scenario.seed, Draw::configurations);
   Sampled taken = sample_rows(robot, made.truth.xi, requests, random, sampled);

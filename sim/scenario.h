@@ -37,6 +37,8 @@
 //     within        everywhere                 {center: [x, y, z], radius: R}, m: where rows lie
 //     places        random                     where the sockets or nests really are, one a group:
 //                                              [x, y, z] or [x, y, z, qw, qx, qy, qz]
+//     locked        none                       joints that are held while the others move, each at
+//                                              one reading for the whole set, drawn: [j2]
 //   }
 // A plane is touched from the side of the world's origin unless `surface` or `outward` says
 // otherwise, a plane-normal from the side that its normal points at, a sphere from outside. A plane
@@ -89,6 +91,8 @@ struct SetScenario {
   std::vector<NamedNumber> truth;
   Patch within;
   std::vector<Location> places;
+  std::vector<std::string> locked;    ///< names of joints
+  std::optional<Place> locked_place;  ///< where they are named
 };
 
 struct Scenario {

@@ -10,8 +10,8 @@ namespace selfcal {
 namespace {
 
 const std::vector<std::string_view> kOwnKeys = {
-    "rows",  "rows_per_group", "noise_true", "noise_angle_true", "surface", "outward",
-    "truth", "within",         "places"};
+    "rows",    "rows_per_group", "noise_true", "noise_angle_true", "surface",
+    "outward", "truth",          "within",     "places",           "locked"};
 constexpr double kMostNoise = 0.1;  // m or rad
 
 }  // namespace
@@ -38,6 +38,8 @@ SetScenario read_set_scenario(const std::string& name, const Node& node, Problem
     set.within = read_patch(*within, "set " + name + " within", problems);
   if (const Node* places = fields.node("places"))
     set.places = read_places(*places, "set " + name + " places", problems);
+  set.locked = fields.texts("locked");
+  if (const Node* locked = fields.node("locked")) set.locked_place = locked->place;
   return set;
 }
 

@@ -12,13 +12,14 @@ constexpr double kFarthest = 0.3;  // rad or m: farther away it is another place
 }  // namespace
 
 bool move_to_residual(const Robot& robot, const DataSet& data, const State& truth, int row,
-                      const Eigen::VectorXd& wanted, Eigen::VectorXd& q) {
+                      const Eigen::VectorXd& wanted, Eigen::VectorXd& q,
+                      const std::vector<int>& held) {
   ConfigurationBlock block = block_of(q);
   Locations before;
   if (!robot.locate(block, truth.xi, data.sets[data.rows.set[row]].method->body(), before, nullptr)
            .closes())
     return false;
-  NewtonStep newton(robot, data, truth, row, before);
+  NewtonStep newton(robot, data, truth, row, before, held);
   for (int step = 0; step < kContactSteps; ++step) {
     newton.evaluate(block);
     if (!newton.closes(0)) return false;

@@ -69,6 +69,40 @@ TEST(DataSetMaker, GivesTouchesTheNoiseAskedFor) {
   EXPECT_NEAR(rms(residuals_at_truth(simulated)) / 2e-5, 1, tolerance(200));
 }
 
+TEST(DataSetMaker, HoldsTheJointsThatASetLocksWhateverTheNoise) {
+  const Simulated simulated =
+      made(kErrors +
+           "sets:\n"
+           "  tip: {method: position-constraint, rows: 24, noise_true: 2.0e-5, locked: [j2]}\n"
+           "  nest: {method: location-constraint, rows: 8, rows_per_group: 2}\n"
+           "  table: {method: plane, rows: 100, noise_true: 2.0e-5, locked: [j1, j3],\n"
+           "          surface: {point: [0.7, 0, 0.1], normal: [0, 0, 1]}}\n");
+  ASSERT_EQ(simulated.unreached, "");
+  const Observations& rows = simulated.data.rows;
+  const std::vector<std::vector<int>> locked = {{1}, {}, {0, 2}};
+  std::map<int, Eigen::RowVectorXd> first;
+  std::map<int, Eigen::RowVectorXd> widest;
+  for (int i = 0; i < rows.rows(); ++i) {
+    const auto at = first.emplace(rows.set[i], rows.q.row(i)).first;
+    auto& wide = widest.emplace(rows.set[i], Eigen::RowVectorXd::Zero(rows.q.cols())).first->second;
+    wide = wide.cwiseMax((rows.q.row(i) - at->second).cwiseAbs());
+  }
+  for (const auto& [set, wide] : widest)
+    for (int j = 0; j < wide.size(); ++j) {
+      const bool held = std::ranges::count(locked[static_cast<size_t>(set)], j) > 0;
+      EXPECT_EQ(wide[j] == 0, held) << "set " << set << " joint " << j + 1 << " " << wide[j];
+    }
+  std::vector<RowResidual> touches;
+  for (const RowResidual& each : residuals_at_truth(simulated))
+    if (simulated.data.sets[each.set].name == "table") touches.push_back(each);
+  EXPECT_NEAR(rms(touches) / 2e-5, 1, tolerance(100));
+}
+
+TEST(DataSetMaker, RefusesToLockAJointThatTheRobotHasNot) {
+  EXPECT_THAT(problem_of("robot: r\nsets: {t: {method: plane, locked: [elbow]}}\n"),
+              HasSubstr("set t locked: the robot has no joint elbow"));
+}
+
 TEST(DataSetMaker, MakesRowsThatSatisfyEveryMethodWhenThereIsNoNoise) {
   const Simulated simulated = made(
       kErrors +
