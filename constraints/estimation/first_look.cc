@@ -17,6 +17,7 @@
 #include "constraints/identifiability/gauge.h"
 #include "constraints/statistics.h"
 #include "kinematics/readable.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -24,9 +25,9 @@ namespace {
 constexpr double kGross = 2;
 constexpr double kSlipCollapse = 0.2;
 constexpr double kWithin = 0.1;       // of what tolerances leave: less is not looked into
-constexpr double kLeastGross = 2e-3;  // m or rad: less is no slip
+constexpr double kLeastGross = 2e-3;  // of the robot's size, or rad: less is no slip
 constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
-constexpr double kLeastZero = 0.02;   // rad or m: less is found by calibration
+constexpr double kLeastZero = 0.02;   // unit of readings: less is found by calibration
 constexpr int kFitSteps = 60;
 constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
 
@@ -176,10 +177,11 @@ DataSet part_of(const DataSet& data) {
 /// What is left where the zero of one joint may be anywhere: of those that it then is elsewhere.
 std::vector<TriedSlip> moved_zeros(const Robot& robot, const DataSet& data) {
   std::vector<TriedSlip> list;
+  const Eigen::ArrayXd units = units_of_readings(robot);
   for (int j = 0; j < static_cast<int>(robot.joints().size()); ++j) {
     const Joint& joint = robot.joints()[static_cast<size_t>(j)];
     const Misfit left = misfit(robot, data, {.zero_of = j});
-    if (!left.any || std::abs(left.zero_moved) < kLeastZero) continue;
+    if (!left.any || std::abs(left.zero_moved) < kLeastZero * units[j]) continue;
     const bool angle = joint.quantity == Quantity::angle;
     const double moved = angle ? left.zero_moved * 180 / std::numbers::pi : 1e3 * left.zero_moved;
     list.push_back({"the zero of " + joint.name + " is " + plain_figure(std::abs(moved)) +
@@ -235,7 +237,8 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;
   if (!given.angles.empty()) look.found = given.angles.front();
-  const double least = std::max(kLeastGross, kWithin * look.expected);
+  const double least =
+      std::max(kLeastGross * (given.lengths ? size_of(*robot) : 1), kWithin * look.expected);
   const double gross = gross_misfit(*robot, given.lengths);
   if (look.left < least && look.tool_held < gross) return look;
   look.tried = tried(*robot, data, others);

@@ -7,12 +7,13 @@
 #include "constraints/methods/shared/unit_normal.h"
 #include "constraints/sampling/newton.h"
 #include "constraints/sampling/random_poses.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kEnough = 8;      // lanes that reach the residual before the others are given up
-constexpr double kSame = 1e-6;  // farther apart, two configurations differ (rad, m)
+constexpr double kSame = 1e-6;  // units of readings: farther apart, two configurations differ
 constexpr int kTries = 60;      // blocks of starts before a place is given up
 
 class Sampler {
@@ -194,7 +195,7 @@ class Sampler {
   bool taken_before(const Eigen::ArrayXd& q, int row) const {
     const Observations& d = data_.rows;
     for (int i = row - 1; i >= 0 && d.set[i] == d.set[row] && d.group[i] == d.group[row]; --i)
-      if ((d.q.row(i).transpose().array() - q).abs().maxCoeff() < kSame) return true;
+      if (((d.q.row(i).transpose().array() - q) / units_).abs().maxCoeff() < kSame) return true;
     return false;
   }
 
@@ -228,6 +229,7 @@ class Sampler {
   const Eigen::VectorXd& xi_;
   Random& random_;
   DataSet& data_;
+  const Eigen::ArrayXd units_ = units_of_readings(robot_);
   Sampled sampled_;
   std::vector<std::pair<int, double>> locked_;  ///< joints and their readings, of the request
   struct Found {

@@ -1,13 +1,15 @@
 #include "constraints/sampling/contact.h"
 
 #include "constraints/sampling/newton.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kContactSteps = 30;
-constexpr double kMet = 1e-12;     // what is left of the wanted residual (m, rad)
-constexpr double kFarthest = 0.3;  // rad or m: farther away it is another place, not a little off
+constexpr double kMet = 1e-12;  // what is left of the wanted residual (m, rad)
+constexpr double kFarthest =
+    0.3;  // units of readings: farther away it is another place, not a little off
 
 }  // namespace
 
@@ -20,12 +22,13 @@ bool move_to_residual(const Robot& robot, const DataSet& data, const State& trut
            .closes())
     return false;
   NewtonStep newton(robot, data, truth, row, before, held);
+  const Eigen::ArrayXd units = units_of_readings(robot);
   for (int step = 0; step < kContactSteps; ++step) {
     newton.evaluate(block);
     if (!newton.closes(0)) return false;
     const Eigen::VectorXd miss = newton.miss(0, wanted);
     const Eigen::VectorXd there = block.q.row(0).matrix().transpose();
-    if (!((there - q).norm() < kFarthest)) return false;
+    if (!(((there - q).array() / units).matrix().norm() < kFarthest)) return false;
     if (miss.norm() < kMet) {
       q = there;
       return true;

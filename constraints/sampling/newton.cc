@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kNewtonSteps = 40;
-constexpr double kLongestStep = 0.5;  // rad or m
+constexpr double kLongestStep = 0.5;  // units of readings
 constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
 
 }  // namespace
@@ -68,6 +69,7 @@ Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
 
 std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
                                    ConfigurationBlock& block) {
+  const Eigen::ArrayXd units = units_of_readings(robot_);
   Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
   for (int at = 0; at < kNewtonSteps; ++at) {
     evaluate(block);
@@ -77,7 +79,8 @@ std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
       if (!closes(lane)) continue;  // lost
       if (left[lane] < kExact / 10) continue;
       Eigen::VectorXd dq = step(lane, off);
-      if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
+      const double length = (dq.array() / units).matrix().norm();
+      if (length > kLongestStep) dq *= kLongestStep / length;
       block.q.row(lane) += dq.transpose().array();
     }
     if ((left < kExact / 10).count() >= enough) break;

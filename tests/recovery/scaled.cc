@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "constraints/estimation/identification.h"
+#include "diagnosis/diagnosis.h"
 #include "io/files/robot_file.h"
 #include "tests/recovery/session.h"
 
@@ -98,6 +99,90 @@ TEST_P(Scaled, RobotsOfTenCentimetresAndTenMetresGetTheAnswerOfOneOfOneMetre) {
     }
   }
 }
+
+/// A file's robot with all its lengths, tolerances of 1 mm to `k` times them and ways of sliding
+/// joints `k` times as long.
+std::shared_ptr<const Robot> machine_of_size(std::string_view kind, double k) {
+  const auto m = [&](double length) { return format_number(k * length); };
+  std::string text;
+  if (kind == "linear-delta") {
+    text = "robot: printer\nkind: linear-delta\ntool: [0.0, 0.0, " + m(-0.02) + "]\ntowers:\n";
+    for (const double angle : {3.6652, 5.7596, 1.5708})
+      text += "  - {radius: " + m(0.105) + ", angle: " + format_number(angle) +
+              ", rod: " + m(0.2153) + ", endstop: " + m(0.4821) + ", limits: [" + m(-0.35) +
+              ", 0], tolerance: {radius: " + m(2e-3) + ", rod: " + m(2e-3) +
+              ", endstop: " + m(2e-3) + "}}\n";
+  } else {
+    const std::string believed = ", tolerance: {d: " + m(2e-3) + ", r: " + m(2e-3) + "}}\n";
+    const std::string placed = ", tolerance: {d: " + m(50e-3) + ", r: " + m(50e-3) + "}}\n";
+    text = "robot: slider\nkind: serial\nframes:\n  - {name: base, joint: fixed, r: " + m(0.4) +
+           placed + "  - {name: j1, joint: revolute, limits: [-2.5, 2.5]" + believed +
+           "  - {name: j2, joint: revolute, alpha: -pi/2, d: " + m(0.15) + ", limits: [-1.5, 1.5]" +
+           believed + "  - {name: j3, joint: prismatic, alpha: pi/2, r: " + m(0.5) + ", limits: [" +
+           m(-0.1) + ", " + m(0.3) + "]" + believed +
+           "  - {name: j4, joint: revolute, r: " + m(0.1) + ", limits: [-3, 3]" + believed +
+           "  - {name: j5, joint: revolute, alpha: pi/2, limits: [-2, 2]" + believed +
+           "  - {name: tool, joint: fixed, d: " + m(0.15) + ", r: " + m(0.12) + placed;
+  }
+  auto robot = selfcal::robot_of(text, "machine");
+  EXPECT_TRUE(robot.has_value()) << robot.error().what;
+  return std::move(*robot);
+}
+
+/// A session drawn anew on the machine of size `k`, and what is made of it.
+struct Measured {
+  Solution solution;
+  Diagnosis diagnosis;
+};
+Measured measured(std::string_view kind, double k) {
+  const auto robot = machine_of_size(kind, k);
+  Random random(11);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd truth = nominal_values(*robot);
+  for (Eigen::Index i = 0; i < truth.size(); ++i) {
+    const Parameter& p = robot->parameters()[static_cast<size_t>(i)];
+    const double moved = 1e-3 * normal(random);
+    if (p.free) truth[i] += (p.quantity == Quantity::length ? k : 1) * moved;
+  }
+  const std::string noise = format_number(20e-6 * k);
+  const Session session = make_session(
+      *robot, truth, {{"tracker", entry({{"method", "position"}, {"noise", noise.c_str()}}), 120}},
+      20e-6 * k, random);
+  EXPECT_EQ(session.unreached, "") << kind << " times " << k;
+  DataSet data = session.data;
+  data.target *= k;
+  DiagnosisOptions options;
+  options.resamples = 39;
+  options.practice = 0;
+  return {identify(*robot, data), diagnose(robot, data, options)};
+}
+
+class Measure : public testing::TestWithParam<const char*> {};
+
+TEST_P(Measure, IsThatOfTheRobotItselfInRowsAnswersAndCauses) {
+  const Measured one = measured(GetParam(), 1);
+  ASSERT_EQ(one.solution.verdict.answer, Answer::improved) << one.solution.verdict.why;
+  ASSERT_EQ(one.diagnosis.verdict.effect, "none");
+  for (const double k : {0.1, 10.0}) {
+    const Measured other = measured(GetParam(), k);
+    EXPECT_EQ(other.solution.verdict.answer, one.solution.verdict.answer)
+        << other.solution.verdict.why;
+    EXPECT_EQ(other.diagnosis.verdict.effect, one.diagnosis.verdict.effect);
+    // Configurations are drawn anew and rounded in another way: a thousandth of the figure.
+    EXPECT_NEAR(other.solution.endpoint.median / k, one.solution.endpoint.median,
+                1e-3 * one.solution.endpoint.median);
+    EXPECT_NEAR(other.solution.residual.check.rms_after / k, one.solution.residual.check.rms_after,
+                1e-3 * one.solution.residual.check.rms_after);
+    EXPECT_NEAR(other.diagnosis.gap.rms_before / k, one.diagnosis.gap.rms_before,
+                1e-3 * one.diagnosis.gap.rms_before);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Measure, testing::Values("slider", "linear-delta"),
+                         [](const auto& each) {
+                           return std::string(each.param) == "slider" ? "ArmWithASlidingJoint"
+                                                                      : "LinearDelta";
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Rows, Scaled, testing::Bool(), [](const auto& each) {
   return each.param ? "TouchesOfPlanes" : "PositionsOfATracker";
