@@ -63,6 +63,16 @@ TEST(LinearDeltaTouches, OfAKnownStepTellTheScales) {
             21 - 6);
 }
 
+// Lengths between printed points that were measured: the effector's place relative to another, so
+// the scales are told and all six motions of the towers together are not.
+TEST(LinearDeltaTouches, WithPrintedDistancesTellTheScales) {
+  EXPECT_EQ(told("print: {method: distance}\n", true), 21 - 6);
+  EXPECT_EQ(told("bed: {method: plane}\nprint: {method: distance}\n", false), 18 - 6);
+  EXPECT_EQ(told("bed: {method: plane}\nprint: {method: distance}\n", true), 21 - 6);
+  EXPECT_EQ(told("bed: {method: plane, plane: [0, 0, -10]}\nprint: {method: distance}\n", true),
+            21 - 3);
+}
+
 /// Touches of the bed by a printer that is off by its tolerances.
 struct Session {
   std::unique_ptr<Robot> robot = printer();
