@@ -36,6 +36,10 @@ std::vector<TrueSurface> true_surfaces(const Scenario& scenario, const std::vect
   return surfaces;
 }
 
+bool holds(const MachineFault& fault, Nanoseconds t) {
+  return seconds(t) >= fault.at && seconds(t) < fault.at + fault.duration;
+}
+
 /// True locations of the sockets and nests, one column a group.
 Eigen::MatrixXd true_groups(const SetScenario& scenario, const Method& method) {
   Eigen::MatrixXd groups;
@@ -78,6 +82,10 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
       if (sets_[s].groups.size() <= g) sets_[s].groups.push_back("g" + std::to_string(g));
   }
   if (problems.any()) return;
+  for (const MachineFault& fault : settings_.faults)
+    if (fault.what == MachineFault::What::misread && find_joint(*robot_, fault.joint) < 0)
+      problems.list.push_back("machine fault misread: the robot has no joint " + fault.joint);
+  if (problems.any()) return;
   surfaces_ = true_surfaces(scenario, sets_, truth_.nuisance);
   const double step = scenario.encoder_step > 0 ? scenario.encoder_step : kFinestStep;
   scales_.assign(robot_->joints().size(), {step, 0});
@@ -85,7 +93,7 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
 
 bool Machine::broken(MachineFault::What what, Nanoseconds t) const {
   return std::ranges::any_of(settings_.faults, [&](const MachineFault& fault) {
-    return fault.what == what && seconds(t) >= fault.at && seconds(t) < fault.at + fault.duration;
+    return fault.what == what && holds(fault, t);
   });
 }
 
@@ -99,7 +107,10 @@ EncoderSample Machine::sample(Nanoseconds t) const {
   EncoderSample sample;
   sample.time = t;
   sample.joints = static_cast<int>(scales_.size());
-  const Eigen::VectorXd q = path_.q(t);
+  Eigen::VectorXd q = path_.q(t);
+  for (const MachineFault& fault : settings_.faults)
+    if (fault.what == MachineFault::What::misread && holds(fault, t))
+      q[find_joint(*robot_, fault.joint)] += fault.by;
   for (int j = 0; j < sample.joints; ++j) sample.counts[j] = std::llround(q[j] / scales_[j].step);
   return sample;
 }
@@ -181,10 +192,22 @@ void Machine::request(const MotionRequest& request) {
     if (!joint.allows(request.q[j]))
       return refuse(joint.name + " cannot go to " + format_number(request.q[j]));
   }
+  if (const std::string why = cannot_stand(request); !why.empty()) return refuse(why);
   if (moving_) stop("another move was asked for");
   if (request.kind == MoveKind::lock || request.kind == MoveKind::release)
     return turn_lock(request);
   begin(request);
+}
+
+/// Of a machine with loops: why they do not close where it shall go.
+std::string Machine::cannot_stand(const MotionRequest& request) const {
+  if (!robot_->has_loops()) return {};
+  ConfigurationBlock block = block_of(Eigen::Map<const Eigen::VectorXd>(
+      request.q.data(), static_cast<Eigen::Index>(request.q.size())));
+  block.q = true_joints(block.q);
+  Locations X;
+  const Closure closure = robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
+  return closure.closes() ? "" : "it cannot stand there: " + closure.why[0];
 }
 
 void Machine::begin(const MotionRequest& request) {

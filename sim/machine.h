@@ -83,6 +83,7 @@ class Machine {
   };
 
   bool broken(MachineFault::What what, Nanoseconds t) const;
+  std::string cannot_stand(const MotionRequest& request) const;
   void begin(const MotionRequest& request);
   void reply(std::uint64_t id, MotionReply::Outcome outcome, std::string why);
   void pass_crossings(Nanoseconds until);

@@ -75,11 +75,12 @@ std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
   }
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, path.at(0).size()), kLanes};
   Locations X;
+  Closure closure;  // no surface is crossed where the robot cannot stand
   const auto locate = [&](double from, double to) {
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) = path.at(from + (to - from) * lane / (kLanes - 1.0)).transpose().array();
     block.q = true_joints(block.q);
-    robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
+    closure = robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
   };
   for (const TrueSurface& surface : surfaces_) {
     double off = contact_set_ == surface.set ? contact_offset_ : 0;
@@ -89,7 +90,7 @@ std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
       const double first = static_cast<double>(part) / kBlocks;
       locate(first, first + 1.0 / kBlocks);
       // The touch's own offset moves the crossing; the nearest true surface tells whose it is.
-      if (!drawn && surface.within.contains(X.p(kLanes - 1)) && outside(kLanes - 1) < 0.02) {
+      if (!drawn && closure.closes(kLanes - 1) && surface.within.contains(X.p(kLanes - 1)) && outside(kLanes - 1) < 0.02) {
         off = offset(request, surface.set);
         contact_offset_ = off;
         contact_set_ = surface.set;
@@ -98,6 +99,7 @@ std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
         continue;
       }
       for (int lane = 0; lane + 1 < kLanes; ++lane) {
+        if (!closure.closes(lane) || !closure.closes(lane + 1)) continue;
         const bool here = outside(lane) > 0, there = outside(lane + 1) > 0;
         if (here == there || !surface.within.contains(X.p(lane + 1))) continue;
         const double step = 1.0 / kBlocks / (kLanes - 1.0);

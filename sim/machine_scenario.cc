@@ -10,14 +10,15 @@ namespace selfcal {
 namespace {
 
 using What = MachineFault::What;
-constexpr std::array<std::pair<std::string_view, What>, 7> kFaults = {
+constexpr std::array<std::pair<std::string_view, What>, 8> kFaults = {
     {{"encoders", What::encoders},
      {"stuck", What::stuck},
      {"refuse", What::refuse},
      {"silent", What::silent},
      {"lock_refuse", What::lock_refuse},
      {"lock_late", What::lock_late},
-     {"lock_open", What::lock_open}}};
+     {"lock_open", What::lock_open},
+     {"misread", What::misread}}};
 
 MachineFault read_fault(const Node& node, Problems& problems) {
   Fields fields(node, "machine fault", problems);
@@ -30,9 +31,14 @@ MachineFault read_fault(const Node& node, Problems& problems) {
       known = true;
     }
   if (!known)
-    fields.fail("what", "encoders, stuck, refuse, silent, lock_refuse, lock_late or lock_open");
+    fields.fail("what",
+                "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or misread");
   fault.at = fields.number("at", 0, 0, 1e9);
   fault.duration = fields.number("for", 1e9, 0, 1e9);
+  if (fault.what == What::misread && known) {
+    fault.joint = fields.text("joint");
+    fault.by = fields.number("by");
+  }
   fields.refuse_unknown();
   return fault;
 }

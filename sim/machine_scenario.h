@@ -25,6 +25,7 @@
 //     lock_refuse     no lock is engaged
 //     lock_late       locks neither engage nor open
 //     lock_open       an engaged lock opens by itself
+//     misread         the encoder of `joint` reads `by` (rad or m) too much
 #pragma once
 
 #include <string>
@@ -35,9 +36,11 @@
 namespace selfcal {
 
 struct MachineFault {
-  enum class What { encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open };
+  enum class What { encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open, misread };
   What what = What::encoders;
   double at = 0, duration = 0;  ///< s
+  std::string joint = {};       ///< of misread
+  double by = 0;                ///< rad or m, of misread
 };
 
 struct MachineScenario {

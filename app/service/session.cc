@@ -28,11 +28,30 @@ int group_index(Set& set, const std::string& name) {
   return static_cast<int>(set.groups.size()) - 1;
 }
 
-/// Speed of the endpoint along the way out of the contact (m/s).
+/// Speed of the endpoint along the way out of the contact (m/s); 0 where the robot cannot stand, of
+/// which no equation comes either.
 double speed_out(const Robot& robot, const Reading& reading, const Eigen::Vector3d& outward) {
-  const Eigen::VectorXd step = kSpeedStep / 2 * reading.dq;
-  return outward.dot(endpoint(robot, reading.q + step) - endpoint(robot, reading.q - step)) /
-         kSpeedStep;
+  ConfigurationBlock ends = block_of(reading.q);
+  const Eigen::ArrayXd step = (kSpeedStep / 2 * reading.dq).array();
+  ends.q.row(0) += step.transpose();
+  ends.q.row(1) -= step.transpose();
+  Locations X;
+  if (!robot.locate(ends, values(robot), Body::endpoint, X, nullptr).closes()) return 0;
+  return outward.dot(X.p(0) - X.p(1)) / kSpeedStep;
+}
+
+/// Why a machine with loops cannot stand at these readings: one is out of its range, or the loops
+/// do not close in their assembly mode. Empty where it can.
+std::string cannot_stand(const Robot& robot, const Eigen::VectorXd& q) {
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+    if (!joint.allows(q[j]))
+      return joint.name + " reads " + format_number(std::round(q[j] * 1e6) / 1e6) +
+             ", out of its range";
+  }
+  Locations X;
+  const Closure closure = robot.locate(block_of(q), values(robot), Body::endpoint, X, nullptr);
+  return closure.closes(0) ? "" : "the assembly mode is lost: " + closure.why[0];
 }
 
 void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
@@ -312,6 +331,9 @@ DataSet joined(const DataSet& base, const DataSet& check) {
 TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
                           const StepRecord& step, const Reading& reading, double search,
                           double tolerance) {
+  if (const std::string why = robot.has_loops() ? cannot_stand(robot, reading.q) : "";
+      !why.empty())
+    return {TouchOutcome::outlier, why};
   const int set = set_index(meaning, step.set);
   const auto out_by = [&](const Eigen::VectorXd& from) {
     return meaning.outward[set].dot(endpoint(robot, reading.q) - endpoint(robot, from));
@@ -331,17 +353,8 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Deco
 }
 
 TouchRuling rule_on_visit(const Robot& robot, const Reading& reading) {
-  for (Eigen::Index j = 0; j < reading.q.size(); ++j) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-    if (!joint.allows(reading.q[j]))
-      return {TouchOutcome::outlier, joint.name + " reads " + format_number(reading.q[j]) +
-                                         ", out of its range under the lock"};
-  }
-  Locations X;
-  if (!robot.locate(block_of(reading.q), values(robot), Body::endpoint, X, nullptr).closes(0))
-    return {TouchOutcome::outlier,
-            "the legs do not meet at these readings: the assembly mode is lost"};
-  return {};
+  const std::string why = cannot_stand(robot, reading.q);
+  return why.empty() ? TouchRuling{} : TouchRuling{TouchOutcome::outlier, why};
 }
 
 Session lately(const Session& session, std::size_t step) {

@@ -74,7 +74,8 @@ std::vector<int> steps_of_rows(const Session& session, const Decoding& meaning);
 /// The fit rows of `base` and the rows of `check` as rows that judge; both have the same sets.
 DataSet joined(const DataSet& base, const DataSet& check);
 
-/// How a touch is judged before it is stored.
+/// How a touch is judged before it is stored: a machine with loops must be able to stand at the
+/// readings, and the end position lie near the surface, and near that of the touches before.
 struct TouchRuling {
   TouchOutcome outcome = TouchOutcome::taken;
   std::string why;
@@ -86,7 +87,7 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Deco
 /// Readings under a lock: legs within their lengths, and the loop closes in its assembly mode.
 TouchRuling rule_on_visit(const Robot& robot, const Reading& reading);
 
-/// Endpoint at readings `q` with the robot's own values (m, world).
+/// Endpoint at readings `q`, at which the robot's loops must close, with its own values (m, world).
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q);
 
 /// The session up to `step`, of each set the last touches alone: as many as tell where a surface

@@ -37,7 +37,7 @@ TEST(RuleOnVisit, PutsALegOutOfItsRangeAsideByName) {
   const TouchRuling ruling =
       rule_on_visit(*lock_config().robot, legs({0.8, 0.8, 1.2, 0.8, 0.8, 0.8}));
   EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
-  EXPECT_THAT(ruling.why, HasSubstr("reads 1.2, out of its range under the lock"));
+  EXPECT_THAT(ruling.why, HasSubstr("leg3 reads 1.2, out of its range"));
 }
 
 TEST(RuleOnVisit, PutsLegsThatDoNotMeetAside) {
@@ -46,6 +46,67 @@ TEST(RuleOnVisit, PutsLegsThatDoNotMeetAside) {
       rule_on_visit(*lock_config().robot, legs({0.56, 1.14, 0.56, 1.14, 0.56, 1.14}));
   EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
   EXPECT_THAT(ruling.why, HasSubstr("the assembly mode is lost"));
+}
+
+/// Touches of a plane above the platform by its probe.
+struct ProbedPlatform {
+  Config config;
+  Decoding meaning;
+  Session session;
+
+  ProbedPlatform() {
+    const auto loaded = load_text(
+        "robot: " + example("stewart.robot.yaml").string() +
+        "\nmotion: {home: [0.8, 0.8, 0.8, 0.8, 0.8, 0.8]}\nsets:\n"
+        "  top: {method: plane, noise: 2.0e-5, surface: {point: [0, 0, 0.95], normal: [0, 0, -1]}, "
+        "within: {center: [0, 0, 0.95], radius: 0.15}}\n");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    config = *loaded;
+    meaning = *read_meaning(meaning_text(config, kLegScales));
+    session.record.kind = "full";
+    StepRecord step;
+    step.set = "top";
+    step.touch.assign(6, 0.9);
+    session.plan = {step};
+  }
+  TouchRuling rule(std::initializer_list<double> lengths) const {
+    return rule_on_touch(*config.robot, session, meaning, session.plan[0], legs(lengths), 0.012,
+                         1e-4);
+  }
+};
+
+TEST(RuleOnTouchOfAPlatform, TakesItWhereItsLegsMeet) {
+  EXPECT_EQ(ProbedPlatform().rule({0.9, 0.9, 0.9, 0.9, 0.9, 0.9}).outcome, TouchOutcome::taken);
+}
+
+TEST(RuleOnTouchOfAPlatform, NamesALegOutOfItsRange) {
+  const TouchRuling ruling = ProbedPlatform().rule({0.9, 0.9, 1.2000001, 0.9, 0.9, 0.9});
+  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
+  EXPECT_EQ(ruling.why, "leg3 reads 1.2, out of its range");
+}
+
+TEST(RuleOnTouchOfAPlatform, NamesALostAssemblyModeAndNoPlaceOfTheEndpoint) {
+  // The platform's origin, where no location is, lies far before the plane.
+  const TouchRuling ruling = ProbedPlatform().rule({0.56, 1.14, 0.56, 1.14, 0.56, 1.14});
+  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(ruling.why, HasSubstr("the assembly mode is lost: no location of the platform"));
+}
+
+TEST(RowsOfAPlatform, AddNoNoiseForASpeedThatNobodyKnows) {
+  ProbedPlatform cell;
+  TouchRecord touch;
+  touch.outcome = TouchOutcome::taken;
+  touch.edge = kSecond;
+  touch.before.time = kSecond - 10 * kMillisecond;
+  touch.after.time = kSecond + 10 * kMillisecond;
+  touch.before.joints = touch.after.joints = 6;
+  for (int leg = 0; leg < 6; ++leg) {
+    touch.before.counts[leg] = leg % 2 == 0 ? 560000 : 1140000;
+    touch.after.counts[leg] = touch.before.counts[leg] + 1000;
+  }
+  cell.session.touches = {touch};
+  const DataSet data = rows_of(*cell.config.robot, cell.session, cell.meaning);
+  EXPECT_EQ(data.rows.factor(0), 1);
 }
 
 /// Visits of one lock; `engaged`: the moment of the engagement of each (s).

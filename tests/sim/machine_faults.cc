@@ -66,11 +66,33 @@ TEST(MachineFault, NeitherAnswersNorMovesWhileItIsSilent) {
   EXPECT_EQ(touched.samples.last().counts, before.counts);
 }
 
+TEST(MachineFault, LetsOneEncoderReadTooMuchForAWhile) {
+  Machine machine =
+      machine_of(table("faults: [{what: misread, joint: j3, by: 0.25, at: 0.5, for: 0.25}]"));
+  const auto off = [&](Nanoseconds t, int joint) {
+    return static_cast<double>(machine.sample(t).counts[joint]) * machine.scales()[joint].step -
+           home()[joint];
+  };
+  EXPECT_NEAR(off(kSecond / 4, 2), 0, 1e-9);  // steps of 1e-9 rad
+  EXPECT_NEAR(off(kSecond / 2, 2), 0.25, 1e-9);
+  EXPECT_NEAR(off(kSecond / 2, 1), 0, 1e-9);
+  EXPECT_NEAR(off(3 * kSecond / 4, 2), 0, 1e-9);
+}
+
+TEST(MachineFault, IsRefusedOfAJointThatTheRobotLacks) {
+  Problems problems;
+  const Machine machine(table("faults: [{what: misread, joint: j9, by: 0.25}]"),
+                        {std::shared_ptr<void>(), &rx90()}, home(), problems);
+  ASSERT_TRUE(problems.any());
+  EXPECT_THAT(problems.list.front(), testing::HasSubstr("the robot has no joint j9"));
+}
+
 TEST(MachineFault, IsRefusedWhenNobodyKnowsIt) {
   EXPECT_THAT(
       problem_of("robot: r\nmachine: {faults: [{what: rust, at: 0}]}\n"
                  "sets: {a: {method: plane}}\n"),
-      testing::HasSubstr("encoders, stuck, refuse, silent, lock_refuse, lock_late or lock_open"));
+      testing::HasSubstr(
+          "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or misread"));
 }
 
 TEST(Machine, WarmsUpAsItIsTold) {
