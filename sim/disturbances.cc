@@ -163,6 +163,11 @@ void disturb_readings(const Scenario& scenario, const std::optional<Compliance>&
   Eigen::MatrixXd& q = made.data.rows.q;
   for (Eigen::Index row = 0; compliance && row < q.rows(); ++row)
     q.row(row) = reading_of(*compliance, q.row(row).transpose()).transpose();
+  Random random = stream(scenario.seed, Draw::readings);
+  std::normal_distribution<double> normal;
+  for (Eigen::Index row = 0; row < q.rows(); ++row)
+    if (const double sigma = made.data.sets[made.data.rows.set[row]].noise_joints; sigma > 0)
+      for (double& reading : q.row(row)) reading += sigma * normal(random);
   if (const double step = scenario.encoder_step; step > 0) q = (q.array() / step).round() * step;
 }
 

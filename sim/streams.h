@@ -14,7 +14,8 @@ enum class Draw : unsigned {
   repeats,
   noise,
   false_rows,
-  check
+  check,
+  readings
 };
 
 /// The stream of one purpose; equal for equal seeds.

@@ -64,7 +64,9 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
     : robot_(robot),
       data_(data),
       conditions_matter_(!effects_of(robot).empty()),
-      plans_(data.sets.size()) {
+      plans_(data.sets.size()),
+      stated_(data.sets.size()),
+      independent_(data.sets.size()) {
   nuisance_end_ = robot_columns();
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) {
     make_plan(s, use);
@@ -76,6 +78,7 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
     if (!plans_[s].items.empty())
       known_end_ += static_cast<int>(data.sets[s].method->known_lengths().size());
   }
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) propagate_readings(s);
 }
 
 std::size_t Equations::items_of_all() const {
@@ -137,6 +140,7 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   method.evaluate(in, block.out);
   for (int lane = 0; !block.closure.closes() && lane < kLanes; ++lane)
     if (!block.closure.closes(lane)) block.out.clear(lane);
+  make_independent(set, first, block);
   block.G_axes.resize(kLanes, 0);
   if (!method.vectors()) return;
   robot_.locate(block.now, state.xi, Body::first_link, block.X_axes,
@@ -250,9 +254,18 @@ void Equations::beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W)
   }
   W.middleCols(columns(), kMotions) = M;
   const std::vector<KnownLength> known = method.known_lengths();
-  for (size_t i = 0; i < known.size(); ++i)
-    if (known[i].by_row)
-      W.col(columns() + kMotions + known_at_[set] + static_cast<Eigen::Index>(i)).setOnes();
+  Eigen::VectorXd by_length(equations);
+  for (int a = 0; a < equations; ++a)
+    by_length[a] = block.quantities[static_cast<size_t>(a)] == Quantity::length ? 1 : 0;
+  for (size_t i = 0; i < known.size(); ++i) {
+    if (!known[i].by_row) continue;
+    auto column = W.col(columns() + kMotions + known_at_[set] + static_cast<Eigen::Index>(i));
+    for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+      const Eigen::VectorXd by =
+          block.independent ? Eigen::VectorXd(block.independent[lane] * by_length) : by_length;
+      for (int a = 0; a < equations; ++a) column[a * kLanes + lane] = by[a];
+    }
+  }
 }
 
 State Equations::stepped(const State& state, const Linearised& at,

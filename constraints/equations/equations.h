@@ -135,6 +135,9 @@ class Equations {
   const Robot& robot() const { return robot_; }
   const DataSet& data() const { return data_; }
   const SetPlan& plan(int set) const { return plans_[set]; }
+  /// 1 sigma of a residual of the set as its data sheet says, 0 where it does not; with
+  /// noise_joints, what that adds up to on the rows here.
+  const Scale& stated(int set) const { return stated_[set]; }
   /// Rows of the use that are left out.
   const std::vector<OpenRow>& open_rows() const { return open_rows_; }
   /// Whether the robot can take the configurations of up to kLanes rows with parameters `xi`.
@@ -185,6 +188,10 @@ class Equations {
   std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;
   void evaluate(int set, int first, int count, const State& state, Block& block,
                 bool jacobian) const;
+  /// Finds what makes the equations of each row of a set with noise_joints independent.
+  void propagate_readings(int set);
+  /// Makes those of a block so.
+  void make_independent(int set, int first, Block& block) const;
   /// Takes the vectors of a method that has such in the axes of the first moving link.
   void into_axes(Block& block) const;
   void chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const;
@@ -219,6 +226,9 @@ class Equations {
   const DataSet& data_;
   bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
   std::vector<SetPlan> plans_;
+  std::vector<Scale> stated_;
+  /// By set and item, to multiply the residuals with; empty of sets without noise_joints.
+  std::vector<std::vector<Eigen::MatrixXd>> independent_;
   std::vector<OpenRow> open_rows_;
   std::vector<int> nuisance_at_, nuisance_count_, known_at_;
   int nuisance_end_ = 0, known_end_ = 0;

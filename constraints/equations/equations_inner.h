@@ -15,6 +15,7 @@ struct Equations::Block {
   PsiBlock psi_now, psi_before, psi_axes;
   MethodOutput out;
   MethodOutput::Block G_axes;  ///< as G, to the axes of vectors; without columns: there are none
+  const Eigen::MatrixXd* independent = nullptr;  ///< by lane, of sets with noise_joints
   std::vector<int> rows;
   std::vector<Quantity> quantities;
 };

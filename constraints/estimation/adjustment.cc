@@ -130,12 +130,13 @@ class Adjustment {
     double most = 1;
     for (size_t s = 0; s < equations_.data().sets.size(); ++s) {
       if (equations_.plan(static_cast<int>(s)).items.empty()) continue;
-      const Set& set = equations_.data().sets[s];
+      const Method& method = *equations_.data().sets[s].method;
+      const Scale& stated = equations_.stated(static_cast<int>(s));
       const Scale& used = adjusted_.before.noise.used[s];
-      if (set.method->has_lengths())
-        most = std::max(most, used.length / std::max(set.noise, kLeastNoise));
-      if (set.method->has_angles())
-        most = std::max(most, used.angle / std::max(set.noise_angle, kLeastNoise));
+      if (method.has_lengths())
+        most = std::max(most, used.length / std::max(stated.length, kLeastNoise));
+      if (method.has_angles())
+        most = std::max(most, used.angle / std::max(stated.angle, kLeastNoise));
     }
     return most;
   }

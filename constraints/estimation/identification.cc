@@ -63,7 +63,7 @@ void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution
     solution.warnings.push_back(
         "the figures before are of a nominal robot not placed to the end: " +
         adjusted.before.stop_reason);
-  add_set_warnings(equations.data(), adjusted.fitted, solution);
+  add_set_warnings(equations, adjusted.fitted, solution);
 }
 
 /// The rows say something of the robot, but nothing against its maker's figures: the moves stay

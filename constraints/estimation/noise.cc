@@ -113,7 +113,8 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>&
   noise.outlier.assign(equations.data().rows.rows(), 0);
   const auto weighed = [&](size_t s) {
     const Scale floored = at_least(noise.estimated[s], kLeastNoise, kLeastNoise);
-    return at_least(floored, sets[s].noise, sets[s].noise_angle);
+    const Scale& stated = equations.stated(static_cast<int>(s));
+    return at_least(floored, stated.length, stated.angle);
   };
   for (size_t s = 0; s < sets.size(); ++s) {
     SetNoise& set = by_set[s];

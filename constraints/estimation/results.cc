@@ -156,10 +156,12 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
   return list;
 }
 
-void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
+void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solution) {
+  const DataSet& data = equations.data();
   const bool redundant = fit.at.equations > kRedundant * unknowns(fit, solution);
   for (size_t s = 0; s < data.sets.size(); ++s) {
     const SetResult& set = solution.sets[s];
+    const double stated = equations.stated(static_cast<int>(s)).length;
     if (!set.identifies) continue;
     if (fit.noise.at_bound[s])
       solution.warnings.push_back("set " + set.name +
@@ -169,14 +171,14 @@ void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution) {
       solution.warnings.push_back("set " + set.name +
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
-    if (data.sets[s].noise > 0 && set.noise_sigma > kMisstated * data.sets[s].noise)
+    if (stated > 0 && set.noise_sigma > kMisstated * stated)
       solution.warnings.push_back(
-          "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, data.sets[s].noise) +
+          "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, stated) +
           " times as much as its data sheet says: the geometry does not " + "explain them all");
-    if (redundant && data.sets[s].noise > kMisstated * set.noise_sigma && set.noise_sigma > 0)
+    if (redundant && stated > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
           "set " + set.name + ": its data sheet's noise is " +
-          ratio(data.sets[s].noise, set.noise_sigma) +
+          ratio(stated, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
     if (set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma)
       solution.warnings.push_back(

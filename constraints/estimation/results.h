@@ -31,6 +31,6 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
                                    const Eigen::MatrixXd& C, const Judged& after);
 
 /// Noise far above the data sheet's or the repeats', rows put aside up to the bound.
-void add_set_warnings(const DataSet& data, const Fit& fit, Solution& solution);
+void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solution);
 
 }  // namespace selfcal

@@ -111,6 +111,9 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
   }
   set.noise = read_noise(fields, "noise");
   if (set.method->has_angles()) set.noise_angle = read_noise(fields, "noise_angle");
+  set.noise_joints = read_noise(fields, "noise_joints");
+  if (set.noise_joints > 0 && !set.method->every_row_alone())
+    fields.fail("noise_joints", "nothing, for the rows of this method have unknowns in common");
   if (const Node* tolerance = fields.node("tolerance")) {
     set.given = read_given(*tolerance, problems);
     if (!set.method->place_known() && set.method->known_lengths().empty())

@@ -25,6 +25,7 @@ struct Set {
   std::shared_ptr<const Method> method;
   double noise = 0;        ///< 1 sigma of one scalar residual as the data sheet says (m); 0 unknown
   double noise_angle = 0;  ///< the same for angles (rad); 0 unknown
+  double noise_joints = 0;  ///< 1 sigma of a reading of every joint (rad or m); 0 without
   GivenTolerance given = {};
   int reference = -1;               ///< index of the set whose nuisance parameters it shares
   std::vector<std::string> groups;  ///< names, indexed by Observations::group

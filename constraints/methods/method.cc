@@ -29,6 +29,11 @@ bool Method::has_angles() const {
   return std::find(all.begin(), all.end(), Quantity::angle) != all.end();
 }
 
+bool Method::every_row_alone() const {
+  return tangent_dimension() == 0 && group_freedom() == 0 && reference().empty() && !paired() &&
+         !vectors();
+}
+
 std::optional<Plane> Method::plane(const Eigen::VectorXd&, const Eigen::VectorXd*) const {
   return std::nullopt;
 }

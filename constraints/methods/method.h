@@ -149,6 +149,8 @@ class Method {
   /// True when one of the equations is of a length, or of an angle, which has a noise of its own.
   bool has_lengths() const;
   bool has_angles() const;
+  /// True when no unknown of its own, point or touch ties one row to another.
+  bool every_row_alone() const;
   /// True when a row tells how the endpoint is turned, beside where it is.
   virtual bool sees_orientation() const { return has_angles(); }
   /// True when a row tells where the endpoint is.
