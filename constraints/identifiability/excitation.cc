@@ -63,6 +63,24 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
          text + " would help";
 }
 
+/// What is told of the robot with all joints free, but not with those held.
+std::vector<Lost> lost_by_holding(const Robot& robot, const Identifiability& free,
+                                  const Identifiability& locked, const std::vector<int>& held) {
+  Lost lost;
+  lost.count = free.total() - locked.total();
+  if (lost.count <= 0) return {};
+  std::string names;
+  for (const int joint : held)
+    names += (names.empty() ? "" : " and ") + robot.joints()[static_cast<size_t>(joint)].name;
+  lost.why = names + (held.size() > 1 ? " are each" : " is") +
+             " held at one reading: the links on its two sides are one body, whose place in the "
+             "other says all of them, and a gear does what its joint's zero does";
+  for (size_t i = 0; i < robot.parameters().size(); ++i)
+    if (free.status[i] == Status::identified && locked.status[i] != Status::identified)
+      lost.parameters.push_back(robot.parameters()[i].name);
+  return {lost};
+}
+
 }  // namespace
 
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
@@ -97,6 +115,11 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   const auto asked = static_cast<int>(std::count(candidate.begin(), candidate.end(), char{1}));
   if (!robot.frame_motions(xi).empty())
     result.lost = lost_directions(equations, at.R, state, candidate, asked - result.rank.total());
+  if (held.empty() || !result.unreached.empty()) return result;
+  const StructuralRank free = structural(robot, sets, candidate, rows, seed, used);
+  if (free.unreached.empty())
+    for (Lost& lost : lost_by_holding(robot, free.rank, result.rank, held))
+      result.lost.push_back(std::move(lost));
   return result;
 }
 

@@ -15,7 +15,9 @@ namespace selfcal {
 struct StructuralRank {
   Identifiability rank;
   int nuisance = 0;        ///< freedoms of the sets' and groups' nuisance parameters
-  std::vector<Lost> lost;  ///< of the parameters, where the robot names the frames that it chose
+  /// Of the parameters, where the robot names the frames that it chose; of those that all joints
+  /// free would tell, where some are held.
+  std::vector<Lost> lost;
   std::string unreached;   ///< why rows are missing; empty when all were found
 };
 
