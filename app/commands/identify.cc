@@ -9,6 +9,7 @@
 #include "app/commands/subcommand.h"
 #include "app/commands/support/circle_robot.h"
 #include "app/commands/support/file_slips.h"
+#include "app/commands/support/leg_start.h"
 #include "app/report/format.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
@@ -102,6 +103,16 @@ int identify_command(const IdentifyArguments& arguments) {
     if (!found) return tell(found.error());
     circles = std::move(*found);
     loaded->robot = circles->robot;
+  }
+  auto by_legs = leg_start(*loaded);
+  if (!by_legs) return tell(by_legs.error());
+  if (*by_legs) {
+    std::fprintf(
+        stderr,
+        "note: with the file's figures the loops of %s do not close where it was measured: "
+        "it is identified from what its chains say one by one\n",
+        loaded->robot->name().c_str());
+    loaded->robot = std::move(*by_legs);
   }
   const std::shared_ptr<const Robot> as_filed = loaded->robot;
   const auto model = with_effects(as_filed, loaded->data, arguments);
