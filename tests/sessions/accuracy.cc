@@ -130,6 +130,12 @@ TEST(WholeSession, CalibratesAGoughStewartPlatformFromPlanes) {
   expect_met_by_touches_kept_aside("stewart", 2, 40e-6, 3);
 }
 
+// The same of a Hexa Slide, whose platform hangs over a plate and three that lean against it: 24
+// touches that judge, and what 96 others leave unknown of 45 parameters.
+TEST(WholeSession, CalibratesAHexaSlideFromPlanes) {
+  expect_met_by_touches_kept_aside("hexaslide", 2, 45e-6, 4);
+}
+
 /// Labels of good touches (session/step.attempt set) that the result has put aside.
 std::vector<std::string> outlier_labels(const Cell& cell, const ResultMessage& result) {
   const auto store = cell.store();

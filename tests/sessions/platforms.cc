@@ -1,0 +1,51 @@
+// Sessions of platforms whose leg sensors read what no platform can have: touches and visits are
+// put aside by name, and the session goes on.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cell.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+/// First one sensor reads far too much, then all six read too little and too much by turns.
+std::string misreading(double first, double second, double time) {
+  const auto fault = [&](const std::string& leg, double by, double at) {
+    return "{what: misread, joint: " + leg + ", by: " + std::to_string(by) +
+           ", at: " + std::to_string(at) + ", for: " + std::to_string(time) + "}";
+  };
+  std::string faults = fault("leg3", 0.6, first);
+  for (int leg = 1; leg <= 6; ++leg)
+    faults += ", " + fault("leg" + std::to_string(leg), leg % 2 == 0 ? 0.2 : -0.2, second);
+  return "lock_time: 0.3, faults: [" + faults + "]";
+}
+
+void expect_named_and_survived(const std::string& robot, const std::string& machine) {
+  CellOptions options;
+  options.robot = robot;
+  options.machine = machine;
+  Cell cell(options);
+  cell.start_service();
+  ASSERT_TRUE(cell.start_session());
+  cell.until([&] { return !cell.results.empty(); });
+  ASSERT_FALSE(cell.results.empty());
+  const ResultMessage& result = cell.results.back();
+  EXPECT_EQ(result.answer, "improved") << result.why;
+  EXPECT_EQ(result.decision, "applied") << result.why;
+  EXPECT_THAT(cell.log(), testing::ContainsRegex("leg3 reads 1\\.[0-9]*, out of its range"));
+  EXPECT_THAT(cell.log(), HasSubstr("the assembly mode is lost: no location of the platform"));
+}
+
+TEST(PlatformSession, NamesALegOutOfRangeAndALostAssemblyModeOnPlanesAndGoesOn) {
+  expect_named_and_survived("stewart", misreading(60, 90, 6));
+}
+
+TEST(PlatformSession, NamesALegOutOfRangeAndALostAssemblyModeUnderLocksAndGoesOn) {
+  expect_named_and_survived("stewart_lock", misreading(20, 40, 2));
+}
+
+}  // namespace
+}  // namespace selfcal
