@@ -3,6 +3,8 @@
 // (-0.6 cos, -0.6 sin, -0.8) of 0, 120 and 240 degrees. When rod 1 grows by dl and the others do
 // not,
 //   -0.6 dx - 0.8 dz = dl,   0.6 dx = 1.6 dz,   dy = 0:   dx = -dl / 0.9, dz = -dl / 2.4.
+#include <functional>
+
 #include "constraints/sampling/random_poses.h"
 #include "tests/effects/by_hand.h"
 #include "tests/kinematics/kind_examples.h"
@@ -61,6 +63,86 @@ TEST(JointClearanceByHand, GoesToTheSideThatTheLoadPullsTo) {
   const char* const heavy = "[{effect: joint_clearance, at: tower1, mass: 1, play: 4.0e-5}]";
   expect_near(moved(kDelta, heavy, loaded(0, 0, 3)).p, -22.222e-6, 0, -8.333e-6);
   expect_near(moved(kDelta, heavy, loaded(0, 0, 10)).p, 22.222e-6, 0, 8.333e-6);
+}
+
+/// Joints on circles of 0.6 cos 40 and 0.3 m, pairs 20 degrees apart in the base and 100 in the
+/// platform: chain i leads from base to platform over 0.3 m across, so that one of 0.5 m rises, or
+/// hangs, by 0.4 m. Together they turn nothing and shift nothing to a side; a change of all by dl
+/// moves the platform by dl / 0.8, and a load along z puts 1 / (6 x 0.8) of it into each.
+std::string six_chains(const std::function<std::string(double, double, double, double)>& chain) {
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    const double side = i % 2 == 0 ? -1 : 1, third = 120.0 * (i / 2);
+    const double a = kDegree * (third + side * 10), b = kDegree * (third + side * 50);
+    const double base = 0.6 * std::cos(40 * kDegree);
+    text += chain(base * std::cos(a), base * std::sin(a), 0.3 * std::cos(b), 0.3 * std::sin(b));
+  }
+  return text;
+}
+
+std::string pair_text(double x, double y) { return format_number(x) + ", " + format_number(y); }
+
+/// The platform stands on its legs.
+std::string standing() {
+  return "robot: hexapod\nkind: gough-stewart\nlegs:\n" +
+         six_chains([](double ax, double ay, double bx, double by) {
+           return "  - {base: [" + pair_text(ax, ay) + ", 0], platform: [" + pair_text(bx, by) +
+                  ", 0], limits: [0.4, 0.6]}\n";
+         });
+}
+
+/// The platform hangs from carriages on six upright rails, which stand at z = 1 m.
+std::string hanging() {
+  return "robot: slider\nkind: hexaslide\nchains:\n" +
+         six_chains([](double ax, double ay, double bx, double by) {
+           return "  - {rail_start: [" + pair_text(ax, ay) + ", 1.5], rail_direction: [0, 0], " +
+                  "platform: [" + pair_text(bx, by) + ", 0], length: 0.5, limits: [0.3, 0.7]}\n";
+         });
+}
+
+/// The same of every chain.
+std::string of_all(const std::string& part, const std::string& entry) {
+  std::string list;
+  for (int i = 1; i <= 6; ++i)
+    list += (i > 1 ? ", {" : "[{") + entry + ", at: " + part + std::to_string(i) + "}";
+  return list + "]";
+}
+
+/// In the middle of its readings, with a load along z on the tip (N).
+Held of_six(double load) {
+  Held held;
+  held.q = Eigen::VectorXd::Constant(6, 0.5);
+  held.wrench = numbers({0, 0, load, 0, 0, 0});
+  return held;
+}
+
+TEST(LegComplianceByHand, LetsAPlatformSinkOnItsLegsAndFromItsLinks) {
+  // 48 N: 10 N in each, 100 um of 1e-5 m/N, 125 um of height, and the second order.
+  const std::string soft = "effect: leg_compliance, mass: 0, c: 1.0e-5";
+  const Moved stands = moved(standing(), of_all("leg", soft), of_six(-48));
+  expect_near(stands.p, 0, 0, -125e-6, 2e-7);
+  EXPECT_LT(stands.turn.norm(), 1e-12);
+  const Moved hangs = moved(hanging(), of_all("chain", soft), of_six(-48));
+  expect_near(hangs.p, 0, 0, -125e-6, 2e-7);
+  EXPECT_LT(hangs.turn.norm(), 1e-12);
+}
+
+TEST(LegThermalGrowthByHand, RaisesAPlatformOnItsLegsAndLowersItOnItsLinks) {
+  // 0.5 m x 1e-5 x 8 K = 40 um of each, 50 um of height.
+  const std::string warm = "effect: leg_thermal_growth, alpha: 1.0e-5";
+  Held held = of_six(0);
+  held.temperature = 28;
+  expect_near(moved(standing(), of_all("leg", warm), held).p, 0, 0, 50e-6, 1e-7);
+  expect_near(moved(hanging(), of_all("chain", warm), held).p, 0, 0, -50e-6, 1e-7);
+}
+
+TEST(JointClearanceByHand, LowersAPlatformByHalfThePlayUnderALoad) {
+  // Legs are pushed, links are pulled: by 20 um of 40.
+  const std::string loose = "effect: joint_clearance, play: 4.0e-5";
+  expect_near(moved(standing(), of_all("leg", loose), of_six(-3)).p, 0, 0, -25e-6, 1e-7);
+  expect_near(moved(standing(), of_all("leg", loose), of_six(3)).p, 0, 0, 25e-6, 1e-7);
+  expect_near(moved(hanging(), of_all("chain", loose), of_six(-3)).p, 0, 0, -25e-6, 1e-7);
+  expect_near(moved(hanging(), of_all("chain", loose), of_six(0)).p, 0, 0, 0, 0);
 }
 
 /// Six legs under a platform share its weight so that their pushes hold it.
