@@ -12,16 +12,22 @@
 #include "io/files/poses_csv.h"
 #include "io/files/robot_file.h"
 #include "kinematics/inverse/compensation.h"
+#include "kinematics/inverse/controller_model.h"
 #include "kinematics/robot_text.h"
 
 namespace selfcal {
 namespace {
 
-constexpr int kStarts = kLanes - 1;
-constexpr unsigned long long kSeed = 1;  // of the starts: the same poses give the same commands
+constexpr int kEverywhere =
+    500;                     // configurations all over the range that a controller is fitted to
+constexpr int kHere = 2000;  // of those reached, beside them
+constexpr unsigned long long kSeed = 1;
 
 struct CompensateArguments {
-  std::string calibrated, nominal, poses, out;
+  std::string calibrated, nominal, poses, out, controller;
+  double payload = 0;
+  std::vector<double> centre, temperature;
+  bool all = false;
 };
 
 std::string row_of(const WantedPose& wanted, const Command& command, Eigen::Index joints) {
@@ -46,33 +52,66 @@ struct Tally {
   }
 };
 
-/// How far off a controller is that takes its usual parameters alone.
-void tell_controller(const Robot& nominal, const Robot& calibrated, const Tally& tally) {
-  const std::vector<int> taken = controller_parameters(nominal);
-  Eigen::VectorXd part = values(nominal);
-  const Eigen::VectorXd whole = values(calibrated);
-  std::string names;
-  for (const int i : taken) {
-    const int there = find_parameter(calibrated, nominal.parameters()[i].name);
-    if (there < 0) continue;
-    part[i] = whole[there];
-    names += (names.empty() ? "" : " ") + nominal.parameters()[i].name;
+Eigen::MatrixXd rows_of_vectors(const std::vector<Eigen::VectorXd>& list) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(list.size()), list.front().size());
+  for (std::size_t i = 0; i < list.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = list[i].transpose();
+  return rows;
+}
+
+OperatingPoint operating_point(const CompensateArguments& arguments) {
+  OperatingPoint at;
+  at.mass = arguments.payload;
+  if (!arguments.centre.empty())
+    at.centre = Eigen::Map<const Eigen::Vector3d>(arguments.centre.data());
+  if (!arguments.temperature.empty()) at.temperature = arguments.temperature.front();
+  return at;
+}
+
+/// Configurations that a controller is fitted to: those reached, evenly taken, and some all over
+/// the range, so that few poses do not decide alone.
+Eigen::MatrixXd fitted_configurations(const Robot& nominal, const Robot& calibrated,
+                                      const std::vector<Eigen::VectorXd>& reached) {
+  const Eigen::MatrixXd everywhere = closing_poses(
+      calibrated, values(calibrated), random_poses(nominal, nullptr, kEverywhere, kSeed));
+  const std::size_t step = 1 + reached.size() / kHere, here = (reached.size() + step - 1) / step;
+  Eigen::MatrixXd q(everywhere.rows() + static_cast<Eigen::Index>(here), everywhere.cols());
+  q.topRows(everywhere.rows()) = everywhere;
+  for (std::size_t i = 0; i < here; ++i)
+    q.row(everywhere.rows() + static_cast<Eigen::Index>(i)) = reached[i * step].transpose();
+  return q;
+}
+
+/// What a controller can take of the calibration, and how far off that leaves it at the poses; to a
+/// file where one is asked for.
+Result<void> tell_controller(const CompensateArguments& arguments, const Robot& nominal,
+                             const Robot& calibrated, const Tally& tally) {
+  const OperatingPoint at = operating_point(arguments);
+  const Eigen::MatrixXd q = fitted_configurations(nominal, calibrated, tally.reached);
+  if (q.rows() == 0) return {};
+  const ControllerModel model = controller_model(nominal, calibrated, q, at);
+  const Eigen::MatrixXd judged = tally.reached.empty() ? q : rows_of_vectors(tally.reached);
+  const auto error = [&](const Eigen::VectorXd& xi) {
+    return controller_error(nominal, xi, calibrated, judged, at);
+  };
+  const ControllerError maker = error(nominal_values(nominal)), found = error(model.as_found),
+                        fitted = error(model.xi);
+  std::fprintf(
+      stderr,
+      "a controller that takes no more than these is off by %.3g mm rms, %.3g mm at most "
+      "(%.3g mrad rms); with their identified values %.3g mm rms, with the maker's %.3g mm "
+      "rms\n",
+      1e3 * fitted.rms, 1e3 * fitted.most, 1e3 * fitted.rms_angle, 1e3 * found.rms,
+      1e3 * maker.rms);
+  for (const int i : model.taken) {
+    const Parameter& each = nominal.parameters()[static_cast<std::size_t>(i)];
+    std::fprintf(stderr, "  %-12s %s %s, of the maker's %s\n", each.name.c_str(),
+                 format_number(model.xi[i]).c_str(), std::string(each.unit()).c_str(),
+                 format_number(nominal_values(nominal)[i]).c_str());
   }
-  double squares = 0, most = 0;
-  int count = 0;
-  for (const Eigen::VectorXd& q : tally.reached) {
-    Locations X;
-    if (!nominal.locate(block_of(q), part, Body::endpoint, X, nullptr).closes(0)) continue;
-    const double off = (X.p(0) - locate(calibrated, whole, q).p).norm();
-    squares += off * off;
-    most = std::max(most, off);
-    ++count;
-  }
-  if (count == 0) return;
-  std::fprintf(stderr,
-               "a controller that takes no more than these, as they stand, is off by %.3g mm rms, "
-               "%.3g mm at most: %s\n",
-               1e3 * std::sqrt(squares / count), 1e3 * most, names.c_str());
+  return arguments.controller.empty()
+             ? Result<void>()
+             : write_file_atomically(arguments.controller, robot_text(nominal, model.xi));
 }
 
 int compensate_command(const CompensateArguments& arguments) {
@@ -90,20 +129,20 @@ int compensate_command(const CompensateArguments& arguments) {
   const auto joints = static_cast<Eigen::Index>(nominal->joints().size());
   const auto wanted = read_poses(arguments.poses, static_cast<int>(joints));
   if (!wanted) return tell(wanted.error());
-  const Compensation compensation(nominal, calibrated,
-                                  closing_poses(*calibrated, values(*calibrated),
-                                                random_poses(*nominal, nullptr, kStarts, kSeed)));
+  const Compensation compensation(nominal, calibrated, operating_point(arguments));
   std::string text = std::string(kPoseColumns);
   for (Eigen::Index j = 0; j < joints; ++j) text += ",q" + std::to_string(j + 1);
   text += ",iterations,error,error_angle,status\n";
   Tally tally;
   std::optional<Eigen::VectorXd> before;
   for (const WantedPose& each : *wanted) {
-    const Command command =
-        compensation.command(each.location, each.near.size() > 0 ? each.near : before);
-    if (command.status == Reach::reached) before = command.q;
-    tally.add(command);
-    text += row_of(each, command, joints);
+    const std::optional<Eigen::VectorXd> near = each.near.size() > 0 ? each.near : before;
+    const std::vector<Command> commands =
+        arguments.all ? compensation.commands(each.location, near)
+                      : std::vector<Command>{compensation.command(each.location, near)};
+    if (commands.front().status == Reach::reached) before = commands.front().q;
+    tally.add(commands.front());
+    for (const Command& command : commands) text += row_of(each, command, joints);
   }
   if (arguments.out.empty())
     std::fputs(text.c_str(), stdout);
@@ -114,7 +153,8 @@ int compensate_command(const CompensateArguments& arguments) {
   if (!tally.reached.empty())
     std::fprintf(stderr, "those reached are left %.2g um and %.2g urad off at most\n",
                  1e6 * tally.largest, 1e6 * tally.largest_angle);
-  tell_controller(*nominal, *calibrated, tally);
+  if (const auto told = tell_controller(arguments, *nominal, *calibrated, tally); !told)
+    return tell(told.error());
   return tally.reached.size() == wanted->size() ? kDone : kAnswerIsNo;
 }
 
@@ -130,6 +170,20 @@ void add_compensate(CLI::App& app, int& status) {
       ->required();
   command->add_option("--nominal", arguments->nominal, "Robot file that the controller has")
       ->required();
+  CLI::Option* payload =
+      command->add_option("--payload", arguments->payload, "Mass that the tool carries (kg)")
+          ->check(CLI::Range(0.0, 1e5));
+  command
+      ->add_option("--payload-centre", arguments->centre,
+                   "Where its centre is in the tool's frame: X Y Z (m)")
+      ->expected(3)
+      ->needs(payload);
+  command->add_option("--temperature", arguments->temperature, "Of the robot at present (C)")
+      ->expected(1)
+      ->check(CLI::Range(-100.0, 200.0));
+  command->add_flag("--all", arguments->all, "Every solution, the nearest first, a row each");
+  command->add_option("--controller", arguments->controller,
+                      "Robot file for what the controller can take of the calibration, alone");
   command->add_option("--out", arguments->out, "CSV file for the commands");
   command->callback([arguments, &status] { status = compensate_command(*arguments); });
 }

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <random>
 
+#include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
 
 constexpr double kFarFromNominal = 0.3;  // rad or m that a correction may move a joint
-constexpr double kQuarter = 1e-6;        // rad from a multiple of a quarter turn that count as one
+constexpr double kTwins = 1e-6;          // rad or m between two commands that are one
+constexpr unsigned kStartsSeed = 1;      // the same poses give the same commands
 
 double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff();
@@ -24,8 +26,33 @@ Eigen::VectorXd middle_of(const Robot& robot) {
   return q;
 }
 
-bool multiple_of_a_quarter(double angle) {
-  return std::abs(std::remainder(angle, std::numbers::pi / 2)) < kQuarter;
+/// Readings all over the range that both can take, fewer than kLanes.
+Eigen::MatrixXd starts_of(const Robot& nominal, const Robot& calibrated) {
+  std::mt19937_64 random(kStartsSeed);
+  const auto uniform = [&] { return std::generate_canonical<double, 53>(random); };
+  const std::vector<Joint>& joints = nominal.joints();
+  Eigen::MatrixX2d span(static_cast<Eigen::Index>(joints.size()), 2);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double half = joints[j].range() / 2;
+    span.row(static_cast<Eigen::Index>(j)) << (joints[j].limited() ? joints[j].lower : -half),
+        (joints[j].limited() ? joints[j].upper : half);
+  }
+  const auto closes = [](const Robot& robot, const Eigen::VectorXd& q) {
+    Locations X;
+    return robot.locate(block_of(q), values(robot), Body::endpoint, X, nullptr).closes(0);
+  };
+  Eigen::MatrixXd starts(0, span.rows());
+  for (int i = 0; i < kLanes - 1; ++i) {
+    const Eigen::VectorXd q = nominal.draw(span, uniform);
+    if (!closes(nominal, q) || !closes(calibrated, q)) continue;
+    starts.conservativeResize(starts.rows() + 1, Eigen::NoChange);
+    starts.bottomRows<1>() = q.transpose();
+  }
+  return starts;
+}
+
+Eigen::VectorXd geometry_values(const Robot& corrected, const Robot& geometry) {
+  return values(corrected).head(static_cast<Eigen::Index>(geometry.parameters().size()));
 }
 
 }  // namespace
@@ -45,25 +72,48 @@ std::string_view to_string(Reach reach) {
 }
 
 Compensation::Compensation(std::shared_ptr<const Robot> nominal,
-                           std::shared_ptr<const Robot> calibrated, const Eigen::MatrixXd& starts)
+                           std::shared_ptr<const Robot> calibrated, const OperatingPoint& at)
     : nominal_(std::move(nominal)),
       calibrated_(std::move(calibrated)),
+      at_(at),
       xi_nominal_(values(*nominal_)),
       xi_calibrated_(values(*calibrated_)),
       middle_(middle_of(*nominal_)),
-      starts_(starts.topRows(std::min<Eigen::Index>(starts.rows(), kLanes - 1))) {
+      starts_(starts_of(*nominal_, *calibrated_)),
+      exact_(exact_inverse(nominal_, xi_nominal_)) {
   expects(nominal_->joints().size() == calibrated_->joints().size(), "robots of the same joints");
+  if (!calibrated_->has_loops()) return;
+  const std::shared_ptr<const Robot> geometry = geometry_of(calibrated_);
+  exact_calibrated_ = exact_inverse(geometry, geometry_values(*calibrated_, *geometry));
+}
+
+/// By damped steps, from `near` and, where these end elsewhere or all are wanted, from all over the
+/// range.
+std::vector<ReachedPose> Compensation::searched(const Location& wanted, const Eigen::VectorXd& near,
+                                                bool all) const {
+  const auto from = [&](const Eigen::MatrixXd& starts) {
+    return reach_pose(*nominal_, xi_nominal_, wanted, starts);
+  };
+  if (!all) {
+    std::vector<ReachedPose> list = from(near.transpose());
+    if (list.front().there && within_limits(*nominal_, list.front().q)) return list;
+  }
+  Eigen::MatrixXd starts(starts_.rows() + 1, starts_.cols());
+  starts << near.transpose(), starts_;
+  return from(starts);
 }
 
 /// Nearest first.
 std::vector<ReachedPose> Compensation::nominal_solutions(const Location& wanted,
-                                                         const Eigen::VectorXd& near) const {
-  std::vector<ReachedPose> list = reach_pose(*nominal_, xi_nominal_, wanted, near.transpose());
-  if (!list.front().there || !within_limits(*nominal_, list.front().q)) {
-    Eigen::MatrixXd all(starts_.rows() + 1, starts_.cols());
-    all << near.transpose(), starts_;
-    list = reach_pose(*nominal_, xi_nominal_, wanted, all);
-  }
+                                                         const Eigen::VectorXd& near,
+                                                         bool all) const {
+  std::vector<ReachedPose> list;
+  if (exact_)
+    for (const Eigen::VectorXd& q : exact_(wanted, near))
+      for (ReachedPose& each : reach_pose(*nominal_, xi_nominal_, wanted, q.transpose()))
+        list.push_back(std::move(each));
+  const auto reached = [](const ReachedPose& each) { return each.there; };
+  if (std::ranges::none_of(list, reached)) list = searched(wanted, near, all);
   std::erase_if(list, [](const ReachedPose& each) { return each.q.size() == 0; });
   const auto key = [&](const ReachedPose& each) {
     return std::tuple(!each.there, each.there ? 0 : each.error, !within_limits(*nominal_, each.q),
@@ -74,8 +124,11 @@ std::vector<ReachedPose> Compensation::nominal_solutions(const Location& wanted,
 }
 
 Command Compensation::corrected(const Location& wanted, const ReachedPose& nominal) const {
+  Eigen::VectorXd start = nominal.q;
+  if (exact_calibrated_)
+    for (const Eigen::VectorXd& q : exact_calibrated_(wanted, nominal.q)) start = q;
   const ReachedPose found =
-      reach_pose(*calibrated_, xi_calibrated_, wanted, nominal.q.transpose()).front();
+      reach_pose(*calibrated_, xi_calibrated_, wanted, start.transpose(), at_).front();
   Command command;
   command.iterations = found.steps;
   command.error = found.error;
@@ -94,7 +147,7 @@ Command Compensation::corrected(const Location& wanted, const ReachedPose& nomin
 Command Compensation::command(const Location& wanted,
                               const std::optional<Eigen::VectorXd>& near) const {
   std::optional<Command> first;
-  for (const ReachedPose& solution : nominal_solutions(wanted, near ? *near : middle_)) {
+  for (const ReachedPose& solution : nominal_solutions(wanted, near ? *near : middle_, false)) {
     if (first && !solution.there) break;
     const Command command = corrected(wanted, solution);
     if (command.status == Reach::reached) return command;
@@ -104,22 +157,18 @@ Command Compensation::command(const Location& wanted,
   return first ? *first : Command{};
 }
 
-std::vector<int> controller_parameters(const Robot& nominal) {
-  std::vector<int> list;
-  const Eigen::VectorXd xi = nominal_values(nominal);
-  const std::vector<Parameter>& parameters = nominal.parameters();
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Parameter& p = parameters[i];
-    const auto index = static_cast<int>(i);
-    if (p.part == Part::effect) continue;
-    bool taken = nominal.has_loops() || p.part == Part::base || p.part == Part::tool;
-    for (std::size_t j = 0; j < nominal.joints().size(); ++j)
-      taken = taken || nominal.variable_parameter(static_cast<int>(j)) == index;
-    if (p.part == Part::link && p.quantity == Quantity::length) taken = taken || xi[index] != 0;
-    if (p.part == Part::link && p.quantity == Quantity::angle)
-      taken = taken || !multiple_of_a_quarter(xi[index]);
-    if (taken) list.push_back(index);
+std::vector<Command> Compensation::commands(const Location& wanted,
+                                            const std::optional<Eigen::VectorXd>& near) const {
+  std::vector<Command> list;
+  for (const ReachedPose& solution : nominal_solutions(wanted, near ? *near : middle_, true)) {
+    if (!solution.there) continue;
+    Command command = corrected(wanted, solution);
+    if (command.status != Reach::reached) continue;
+    const bool twin = std::ranges::any_of(
+        list, [&](const Command& other) { return apart(other.q, command.q) < kTwins; });
+    if (!twin) list.push_back(std::move(command));
   }
+  if (list.empty()) list.push_back(command(wanted, near));
   return list;
 }
 

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kinematics/inverse/exact_inverse.h"
+#include "kinematics/inverse/operating_point.h"
 #include "kinematics/inverse/reach_pose.h"
 
 namespace selfcal {
@@ -30,27 +32,31 @@ struct Command {
 
 class Compensation {
  public:
-  /// Robots of the same joints. `starts`, readings that both can take (rows x joints), are where
-  /// inverses are looked for; the first kLanes - 1 count.
+  /// Robots of the same joints; the calibrated one stands as it does at `at`.
   Compensation(std::shared_ptr<const Robot> nominal, std::shared_ptr<const Robot> calibrated,
-               const Eigen::MatrixXd& starts);
+               const OperatingPoint& at = {});
 
   /// Of all solutions the one nearest to `near`, or to the middle of the readings.
   Command command(const Location& wanted, const std::optional<Eigen::VectorXd>& near) const;
+  /// Of every solution within the limits, nearest first: all that the nominal robot has where it
+  /// has a closed form (exact_inverse.h), those that were found else. Without any, what command()
+  /// says.
+  std::vector<Command> commands(const Location& wanted,
+                                const std::optional<Eigen::VectorXd>& near) const;
 
  private:
-  std::vector<ReachedPose> nominal_solutions(const Location& wanted,
-                                             const Eigen::VectorXd& near) const;
+  std::vector<ReachedPose> nominal_solutions(const Location& wanted, const Eigen::VectorXd& near,
+                                             bool all) const;
+  std::vector<ReachedPose> searched(const Location& wanted, const Eigen::VectorXd& near,
+                                    bool all) const;
   Command corrected(const Location& wanted, const ReachedPose& nominal) const;
 
   std::shared_ptr<const Robot> nominal_, calibrated_;
+  OperatingPoint at_;
   Eigen::VectorXd xi_nominal_, xi_calibrated_, middle_;
-  Eigen::MatrixXd starts_;
+  Eigen::MatrixXd starts_;  ///< where solutions are looked for
+  ExactInverse exact_;
+  ExactInverse exact_calibrated_;  ///< of a parallel robot
 };
-
-/// Parameters that a controller usually takes (indices): base and tool frames, the joints' offsets,
-/// nonzero r and d, angles that are no multiples of a quarter turn; of a robot with loops all of
-/// them, which its inverse model holds.
-std::vector<int> controller_parameters(const Robot& nominal);
 
 }  // namespace selfcal

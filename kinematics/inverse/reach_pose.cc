@@ -28,10 +28,12 @@ struct Lane {
 
 class DampedSteps {
  public:
-  DampedSteps(const Robot& robot, const Eigen::VectorXd& xi, const Location& wanted)
+  DampedSteps(const Robot& robot, const Eigen::VectorXd& xi, const Location& wanted,
+              const OperatingPoint& at)
       : robot_(robot),
         xi_(xi),
         wanted_(wanted),
+        at_(at),
         whole_(robot.joints().size() >= 6),
         weight_(whole_ ? kWhole : kBeside) {}
 
@@ -65,6 +67,11 @@ class DampedSteps {
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) =
           proposed[std::min(static_cast<std::size_t>(lane), proposed.size() - 1)].transpose();
+    // A load pulls as the tool is turned: where it is to be or, of one that cannot be had, was
+    // last.
+    block.conditions = conditions_at(at_, robot_, [&](int lane) -> Eigen::Matrix3d {
+      return whole_ || psi_.rows() == 0 ? wanted_.R : X_.R(lane);
+    });
     closure_ = robot_.locate(block, xi_, Body::endpoint, X_, &psi_);
     robot_.joint_jacobian(block, xi_, Body::endpoint, psi_, J_);
   }
@@ -108,6 +115,7 @@ class DampedSteps {
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
   const Location& wanted_;
+  const OperatingPoint& at_;
   bool whole_;  ///< position and orientation can be had
   double weight_;
   Closure closure_;
@@ -119,9 +127,10 @@ class DampedSteps {
 }  // namespace
 
 std::vector<ReachedPose> reach_pose(const Robot& robot, const Eigen::VectorXd& xi,
-                                    const Location& wanted, const Eigen::MatrixXd& starts) {
+                                    const Location& wanted, const Eigen::MatrixXd& starts,
+                                    const OperatingPoint& at) {
   expects(starts.rows() >= 1 && starts.rows() <= kLanes, "one to kLanes starts");
-  return DampedSteps(robot, xi, wanted).run(starts);
+  return DampedSteps(robot, xi, wanted, at).run(starts);
 }
 
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "kinematics/inverse/operating_point.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -24,6 +25,7 @@ struct ReachedPose {
 /// their order. With fewer than six joints the position comes first, then the orientation as far as
 /// it goes. Limits are not looked at.
 std::vector<ReachedPose> reach_pose(const Robot& robot, const Eigen::VectorXd& xi,
-                                    const Location& wanted, const Eigen::MatrixXd& starts);
+                                    const Location& wanted, const Eigen::MatrixXd& starts,
+                                    const OperatingPoint& at = {});
 
 }  // namespace selfcal

@@ -1,0 +1,38 @@
+// What a robot carries and how warm it is where it is commanded. Only its effects ask.
+#pragma once
+
+#include <limits>
+
+#include "kinematics/robot.h"
+
+namespace selfcal {
+
+struct OperatingPoint {
+  double mass = 0;  ///< kg, that the tool carries beyond the robot's own masses
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();               ///< m, of it, in the tool's frame
+  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< C; NaN: not known
+};
+
+/// The conditions of kLanes rows, of which `robot` turns the tool as `R(lane)` says; without rows
+/// where nothing is known.
+template <class TurnOf>
+Conditions conditions_at(const OperatingPoint& at, const Robot& robot, const TurnOf& R) {
+  Conditions conditions;
+  if (at.temperature == at.temperature)
+    conditions.temperature = Eigen::VectorXd::Constant(kLanes, at.temperature);
+  if (at.mass == 0) return conditions;
+  const Eigen::Vector3d weight =
+      at.mass * (robot.statics() ? robot.statics()->mechanics().gravity : Mechanics().gravity);
+  conditions.wrench.resize(kLanes, 6);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Eigen::Vector3d force = R(lane).transpose() * weight;
+    conditions.wrench.row(lane) << force.transpose(), at.centre.cross(force).transpose();
+  }
+  return conditions;
+}
+
+/// The endpoint at readings `q` as the robot stands there, at which its loops must close.
+Location locate_at(const OperatingPoint& at, const Robot& robot, const Eigen::VectorXd& xi,
+                   const Eigen::VectorXd& q);
+
+}  // namespace selfcal
