@@ -13,9 +13,17 @@
 #include "kinematics/parameter.h"
 #include "kinematics/robot.h"
 
+// What to command: Compensation, CompensationStream, controller_model().
+#include "kinematics/inverse/compensation.h"
+#include "kinematics/inverse/compensation_stream.h"
+#include "kinematics/inverse/controller_model.h"
+
 // What the rows say: identify().
 #include "constraints/estimation/identification.h"
 #include "constraints/methods/data_set.h"
+
+// Where to measure: plan_configurations().
+#include "constraints/planning/configuration_plan.h"
 
 // What causes the gap that is left: diagnose(), compare().
 #include "diagnosis/comparison/compare.h"
