@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/report/curve_words.h"
 #include "app/report/format.h"
 #include "io/files/json_parts.h"
 
@@ -10,36 +11,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kCurveColumns = 9;  // of the curve in words
-
 std::string joined_names(const std::vector<Set>& sets) {
   std::string names;
   for (const Set& each : sets) names += (names.empty() ? "" : ", ") + each.name;
   return names;
-}
-
-/// The least count whose sigma is within the target; negative where none is.
-int enough(const std::vector<double>& curve, double target) {
-  for (std::size_t n = 0; n < curve.size(); ++n)
-    if (curve[n] <= target) return static_cast<int>(n);
-  return -1;
-}
-
-/// Counts at which the curve is told: doubling, and the last.
-std::vector<std::size_t> told_counts(std::size_t last) {
-  std::vector<std::size_t> counts{last};
-  while (counts.back() > 1 && counts.size() < kCurveColumns)
-    counts.push_back((counts.back() * 2 + 1) / 3);
-  std::reverse(counts.begin(), counts.end());
-  return counts;
-}
-
-std::string enough_words(const ConfigurationPlan& plan, double target) {
-  const int count = enough(plan.curve, target);
-  if (count == 0) return "the maker's figures alone know it to the target of " + mm(target) + " mm";
-  return count < 0
-             ? "the target of " + mm(target) + " mm is not reached"
-             : std::to_string(count) + " of them know it to the target of " + mm(target) + " mm";
 }
 
 Json observability_json(const Observability& o) {
@@ -94,13 +69,7 @@ std::string plan_words(const Robot& robot, const PlanRequest& request,
   }
   text += printed("motion: %s in this order, %s in a random one\n", duration(plan.way).c_str(),
                   duration(plan.way_random).c_str());
-  std::string counts, sigmas;
-  for (const std::size_t n : told_counts(plan.curve.size() - 1)) {
-    counts += printed(" %8zu", n);
-    sigmas += printed(" %8s", mm(plan.curve[n]).c_str());
-  }
-  text += "how many: " + enough_words(plan, target) + "\n  count     " + counts + "\n  sigma, mm " +
-          sigmas + "\n";
+  text += curve_words(plan.curve, target, "of them", "");
   return text;
 }
 
@@ -118,9 +87,7 @@ Json plan_json(const Robot& robot, const PlanRequest& request, const Configurati
             {"planned", figures_json(plan.planned)},
             {"motion", {{"time", plan.way}, {"time_random_order", plan.way_random}}},
             {"target", target}};
-  const int count = enough(plan.curve, target);
-  json["enough"] = count < 0 ? Json(nullptr) : Json(count);
-  json["curve"] = array_of(plan.curve, finite);
+  put_curve(plan.curve, target, json);
   json["configurations"] = Json::array();
   const Observations& rows = plan.data.rows;
   for (int row = 0; row < rows.rows(); ++row) {

@@ -12,9 +12,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kRandomChoices = 25;           // of which the median is told
-constexpr std::size_t kFew = 200;            // units of which each is left out exactly
-constexpr std::size_t kRemovalsAfresh = 20;  // of more, after so many
+constexpr int kRandomChoices = 25;  // of which the median is told
 
 std::vector<Unit> some(const std::vector<Unit>& units, const std::vector<int>& which) {
   std::vector<Unit> list;
@@ -23,12 +21,15 @@ std::vector<Unit> some(const std::vector<Unit>& units, const std::vector<int>& w
 }
 
 /// The median of each figure over random choices.
-PlanFigures random_figures(const PlanSystem& system, const Pool& pool, int count, Random& random) {
+PlanFigures random_figures(const PlanSystem& system, const Pool& pool, int count, Random& random,
+                           const Progress& progress) {
   std::vector<PlanFigures> all;
-  for (int i = 0; i < kRandomChoices; ++i)
+  for (int i = 0; i < kRandomChoices; ++i) {
+    if (progress) progress("looking at random choices", i / static_cast<double>(kRandomChoices));
     all.push_back(system.figures(
         pool.data,
         some(pool.units, random_choice(static_cast<int>(pool.units.size()), count, random))));
+  }
   const auto of = [&](auto get) {
     std::vector<double> values;
     for (PlanFigures& each : all) values.push_back(get(each));
@@ -64,19 +65,16 @@ std::vector<Visit> visits_of(const DataSet& data, const std::vector<Unit>& units
   return list;
 }
 
-std::vector<double> curve_of(const PlanSystem& system, const ConfigurationPlan& plan) {
+std::vector<double> curve_of(const PlanSystem& system, const ConfigurationPlan& plan,
+                             const Progress& progress) {
   Design design(system.rows(plan.data, plan.units, Criterion::sigma),
                 system.objective(Criterion::sigma));
   std::vector<int> all(plan.units.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);
-  std::vector<double> sigma{std::sqrt(-design.merit())};
-  for (std::size_t left = all.size(); left > 0; --left) {
-    design.change(design.best(-1).first, -1);
-    if (left < kFew || left % kRemovalsAfresh == 0) design.refresh();
-    sigma.push_back(std::sqrt(-design.merit()));
-  }
-  std::reverse(sigma.begin(), sigma.end());
+  std::vector<double> sigma;
+  for (const double merit : left_out_one_by_one(design, progress))
+    sigma.push_back(std::sqrt(-merit));
   return sigma;
 }
 
@@ -114,8 +112,7 @@ double ConfigurationPlan::rest(double sigma) const {
 ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd& xi,
                                       const PlanRequest& request, const Progress& progress) {
   ConfigurationPlan plan;
-  if (progress) progress("drawing configurations", 0);
-  Pool pool = draw_pool(robot, xi, request.pool);
+  Pool pool = draw_pool(robot, xi, request.pool, progress);
   if (static_cast<int>(pool.units.size()) < request.count) {
     plan.problem = pool.unreached;
     return plan;
@@ -130,7 +127,7 @@ ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd&
   plan.parameters = system.parameters();
   plan.aligned = system.aligned();
   Random random(request.pool.seed);
-  plan.random = random_figures(system, pool, request.count, random);
+  plan.random = random_figures(system, pool, request.count, random, progress);
 
   const Objective objective = system.objective(request.criterion);
   Design design(system.rows(pool.data, pool.units, request.criterion), objective);
@@ -146,7 +143,7 @@ ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd&
   plan.sigma_before = system.figures(plan.data, {}).sigma;
   plan.sigma_beyond = system.sigma_beyond(pool.data, pool.units);
   plan.planned = system.figures(plan.data, plan.units);
-  plan.curve = curve_of(system, plan);
+  plan.curve = curve_of(system, plan, progress);
   if (progress) progress("ordering configurations", 0);
   order_visits(request.speed, random, plan);
   return plan;

@@ -9,8 +9,10 @@
 namespace selfcal {
 namespace {
 
-constexpr double kGain = 1e-9;        // a smaller relative gain is rounding
-constexpr int kExchangesAfresh = 25;  // exchanges after which the design is made anew
+constexpr double kGain = 1e-9;               // a smaller relative gain is rounding
+constexpr int kExchangesAfresh = 25;         // exchanges after which the design is made anew
+constexpr std::size_t kFew = 200;            // left, of which each removal is exact
+constexpr std::size_t kRemovalsAfresh = 20;  // of more, after so many
 
 /// A merit that is so much better counts. Merits are logarithms or, negative, variances.
 bool gains(double merit, double over) {
@@ -127,6 +129,20 @@ int exchange_pairs(Design& design, const Progress& progress) {
 int exchange(Design& design, const Progress& progress) {
   const int exchanges = add_and_drop(design, progress);
   return exchanges + exchange_pairs(design, progress);
+}
+
+std::vector<double> left_out_one_by_one(Design& design, const Progress& progress) {
+  std::vector<double> merit{design.merit()};
+  const std::size_t all = design.chosen().size();
+  for (std::size_t left = all; left > 0; --left) {
+    if (progress && left % kRemovalsAfresh == 0)
+      progress("how many are enough", 1 - static_cast<double>(left) / static_cast<double>(all));
+    design.change(design.best(-1).first, -1);
+    if (left < kFew || left % kRemovalsAfresh == 0) design.refresh();
+    merit.push_back(design.merit());
+  }
+  std::reverse(merit.begin(), merit.end());
+  return merit;
 }
 
 Exchange detmax(const std::vector<Eigen::MatrixXd>& candidates, int count,

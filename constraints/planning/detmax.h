@@ -33,6 +33,10 @@ int exchange_pairs(Design& design, const Progress& progress = {});
 /// The one, then the other.
 int exchange(Design& design, const Progress& progress = {});
 
+/// Leaves the chosen out one after another, always the one that tells least: the merit by how many
+/// are left, from none to all.
+std::vector<double> left_out_one_by_one(Design& design, const Progress& progress = {});
+
 /// `count` of the candidates, at least 1 and at most all of them, by O1 from a random choice.
 /// Columns are parameters that all candidates together determine.
 Exchange detmax(const std::vector<Eigen::MatrixXd>& candidates, int count, std::mt19937_64& random);

@@ -75,11 +75,13 @@ std::vector<Unit> into_units(DataSet& data) {
 
 }  // namespace
 
-Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request) {
+Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request,
+               const Progress& progress) {
   Pool pool;
   pool.data.sets = request.sets;
   Random random(request.seed);
-  Sampled sampled = sample_rows(robot, xi, sample_requests(robot, xi, request), random, pool.data);
+  Sampled sampled =
+      sample_rows(robot, xi, sample_requests(robot, xi, request), random, pool.data, progress);
   pool.state = std::move(sampled.truth);
   pool.unreached = std::move(sampled.unreached);
   for (Set& set : pool.data.sets)

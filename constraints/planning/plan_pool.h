@@ -6,6 +6,7 @@
 
 #include "constraints/methods/data_set.h"
 #include "constraints/planning/plan_equations.h"
+#include "constraints/progress.h"
 
 namespace selfcal {
 
@@ -29,6 +30,7 @@ struct Pool {
   std::string unreached;  ///< why some are missing; empty when all were found
 };
 
-Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request);
+Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request,
+               const Progress& progress = {});
 
 }  // namespace selfcal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -160,10 +161,11 @@ Kinds kinds_of(const std::vector<PossibleTouch>& candidates, const std::vector<i
   return kinds;
 }
 
-/// The touches as candidates of a design for the end position, in the columns that are not known.
+/// The touches as candidates of a design of the columns that are not known; `weight` is of the
+/// robot's parameters.
 Design design_of(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
-                 const std::vector<PossibleTouch>& candidates, const Workspace& workspace,
-                 const Kinds& kinds) {
+                 const std::vector<PossibleTouch>& candidates, const Eigen::MatrixXd& weight,
+                 const std::vector<int>& kinds) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
   const Eigen::VectorXd variance = prior_variance(robot, columns.end());
@@ -171,7 +173,21 @@ Design design_of(const Robot& robot, const Eigen::VectorXd& xi, const std::vecto
   for (Eigen::Index c = 0; c < variance.size(); ++c)
     if (variance[c] > 0) open.push_back(c);
   for (Eigen::MatrixXd& each : rows) each = each(Eigen::all, open).eval();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(variance.size(), variance.size());
+  all.topLeftCorner(weight.rows(), weight.cols()) = weight;
+  Objective objective;
+  objective.criterion = Criterion::sigma;
+  objective.prior = variance(open).cwiseInverse().asDiagonal();
+  objective.weight = all(open, open);
+  objective.nuisance = columns.end() - weight.rows();
+  return {rows, std::move(objective), kinds};
+}
 
+/// Of the end position over the poses where it counts.
+Eigen::MatrixXd weight_of(const Robot& robot, const Eigen::VectorXd& xi,
+                          const std::vector<Set>& sets,
+                          const std::vector<PossibleTouch>& candidates,
+                          const Workspace& workspace) {
   EndpointQuestion question;
   question.robot = &robot;
   question.xi = xi;
@@ -179,16 +195,7 @@ Design design_of(const Robot& robot, const Eigen::VectorXd& xi, const std::vecto
   question.point_unknown = std::ranges::none_of(
       candidates, [&](const PossibleTouch& each) { return sets[each.set].method->sees_point(); });
   question.poses = judged_poses(robot, xi, workspace);
-  const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
-  Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(variance.size(), variance.size());
-  weight.topLeftCorner(parameters, parameters) = endpoint_weight(question);
-
-  Objective objective;
-  objective.criterion = Criterion::sigma;
-  objective.prior = variance(open).cwiseInverse().asDiagonal();
-  objective.weight = weight(open, open);
-  objective.nuisance = columns.end() - parameters;
-  return {rows, std::move(objective), kinds.of};
+  return endpoint_weight(question);
 }
 
 /// The best one after the other, `left` of each set and no more of a kind than `share`.
@@ -222,7 +229,8 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
   TouchChoice choice;
   if (candidates.empty()) return choice;
   const Kinds kinds = kinds_of(candidates, counts.fit);
-  Design design = design_of(robot, xi, sets, candidates, workspace, kinds);
+  Design design = design_of(robot, xi, sets, candidates,
+                            weight_of(robot, xi, sets, candidates, workspace), kinds.of);
   std::vector<int> wanted = counts.fit;
   choose_one_by_one(design, kinds, wanted, kinds.share);
   // What a socket out of reach leaves goes to the others.
@@ -240,6 +248,20 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
         left[candidates[i].set]-- > 0)
       choice.check.push_back(i);
   return choice;
+}
+
+std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi,
+                                   const std::vector<Set>& sets,
+                                   const std::vector<PossibleTouch>& touches,
+                                   const Eigen::MatrixXd& weight, const Progress& progress) {
+  Design design = design_of(robot, xi, sets, touches, weight, {});
+  std::vector<int> all(touches.size());
+  std::iota(all.begin(), all.end(), 0);
+  design.choose(all);
+  std::vector<double> sigma;
+  for (const double merit : left_out_one_by_one(design, progress))
+    sigma.push_back(std::sqrt(-merit));
+  return sigma;
 }
 
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,

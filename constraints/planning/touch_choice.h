@@ -51,6 +51,13 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const Workspace& workspace, Random& random,
                            const Progress& progress = {});
 
+/// How sqrt(trace(weight C)) grows, C the covariance of the robot's parameters after the touches,
+/// when one of these after another is left out, always the one that tells least: by count, from 0.
+std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi,
+                                   const std::vector<Set>& sets,
+                                   const std::vector<PossibleTouch>& touches,
+                                   const Eigen::MatrixXd& weight, const Progress& progress = {});
+
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,

@@ -269,7 +269,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
 
 ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
-                             const TouchPlan& plan, const Workspace& workspace) {
+                             const TouchPlan& plan, const Workspace& workspace,
+                             const Progress& progress) {
   std::vector<PossibleTouch> touches;
   for (const TouchTarget& target : targets)
     for (const PlannedTouch& each : plan.touches)
@@ -290,6 +291,8 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
     rows.row(static_cast<Eigen::Index>(i)) = touches[i].q.transpose();
   question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
   expected.workspace = endpoint_sigma(question);
+  if (question.poses.rows() > 0 && !touches.empty())
+    expected.curve = sigma_by_count(robot, xi, sets, touches, endpoint_weight(question), progress);
   return expected;
 }
 

@@ -18,8 +18,9 @@ constexpr int kTries = 60;      // blocks of starts before a place is given up
 
 class Sampler {
  public:
-  Sampler(const Robot& robot, const Eigen::VectorXd& xi, Random& random, DataSet& data)
-      : robot_(robot), xi_(xi), random_(random), data_(data) {}
+  Sampler(const Robot& robot, const Eigen::VectorXd& xi, Random& random, DataSet& data,
+          const Progress& progress)
+      : robot_(robot), xi_(xi), random_(random), data_(data), progress_(progress) {}
 
   Sampled run(const std::vector<SampleRequest>& requests) {
     sampled_.truth.xi = xi_;
@@ -102,6 +103,9 @@ class Sampler {
       int group = method.paired() ? 0 : -1;
       if (method.group_freedom() > 0) group = i / request.rows_per_group;
       if (group >= opened_groups(request.set)) open_group(request, set, last_of_group);
+      if (progress_ && i % kLanes == 0)
+        progress_("drawing configurations", static_cast<double>(data_.rows.set.size()) /
+                                                static_cast<double>(data_.rows.q.rows()));
       if (!append(request, i, group, last_of_group)) {
         sampled_.unreached = "set " + set.name + ": only " + std::to_string(i) + " of " +
                              std::to_string(request.rows) +
@@ -230,6 +234,7 @@ class Sampler {
   Random& random_;
   DataSet& data_;
   const Eigen::ArrayXd units_ = units_of_readings(robot_);
+  const Progress& progress_;
   Sampled sampled_;
   std::vector<std::pair<int, double>> locked_;  ///< joints and their readings, of the request
   struct Found {
@@ -242,8 +247,9 @@ class Sampler {
 }  // namespace
 
 Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
-                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data) {
-  return Sampler(robot, xi, random, data).run(requests);
+                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data,
+                    const Progress& progress) {
+  return Sampler(robot, xi, random, data, progress).run(requests);
 }
 
 void measure_rows(const Robot& robot, const State& truth, const std::vector<int>& rows,

@@ -11,6 +11,7 @@
 
 #include "constraints/equations/equations.h"
 #include "constraints/methods/data_set.h"
+#include "constraints/progress.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -47,9 +48,11 @@ struct Sampled {
 
 /// Makes the rows of `data`, whose sets are given, anew: those of every request, for a robot with
 /// parameters `xi`: readings, groups "g0", "g1"… and, for instruments, perfect readings. Rows of
-/// requests with fewer reachable configurations are missing and `unreached` says so.
+/// requests with fewer reachable configurations are missing and `unreached` says so. Tells its
+/// progress, where it can be given up.
 Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
-                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data);
+                    const std::vector<SampleRequest>& requests, Random& random, DataSet& data,
+                    const Progress& progress = {});
 
 /// Writes into `rows` of `data`, which a robot can take, what perfect instruments read there; rows
 /// that a paired method compares come after one another.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/report/curve_words.h"
 #include "app/report/format.h"
 #include "io/files/json_parts.h"
 #include "io/files/observations_text.h"
@@ -43,8 +44,8 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
                            config.workspace, config.plan, progress);
   if (!cell.plan.unreached.empty()) return cell;
   if (progress) progress("how well the end position is known then", 0);
-  cell.expected =
-      expected_sigma(*config.robot, xi, config.sets, config.targets, cell.plan, config.workspace);
+  cell.expected = expected_sigma(*config.robot, xi, config.sets, config.targets, cell.plan,
+                                 config.workspace, progress);
   cell.time = motion_time(*config.robot, xi, cell.plan, config.plan, config.speeds.touch,
                           config.touch.repeats);
   return cell;
@@ -74,6 +75,7 @@ std::string cell_plan_words(const Config& config, const CellPlan& cell) {
   text += printed("  motion %s: %s between touches, %s into contacts and out\n",
                   duration(cell.time.travel + cell.time.touching).c_str(),
                   duration(cell.time.travel).c_str(), duration(cell.time.touching).c_str());
+  text += curve_words(cell.expected.curve, config.target, "touches that identify", "  ");
   return text + printed("  target %.3g mm: %s\n", 1e3 * config.target,
                         cell.reaches(config)
                             ? "yes"
@@ -93,6 +95,7 @@ nlohmann::ordered_json cell_plan_json(const Config& config, const CellPlan& cell
   json["sigma"] = sigma(cell.expected.workspace);
   json["sigma_range"] = sigma(cell.expected.endpoint);
   json["reached"] = cell.reaches(config);
+  put_curve(cell.expected.curve, config.target, json);
   json["motion"] = {{"travel", cell.time.travel}, {"touching", cell.time.touching}};
   json["configurations"] = array_of(cell.plan.touches, [&](const PlannedTouch& touch) {
     Json each{{"set", config.sets[static_cast<std::size_t>(touch.set)].name},
