@@ -9,7 +9,7 @@
 #include <ctime>
 #include <numeric>
 
-#include "constraints/identifiability/observability.h"
+#include "tests/support/full_detmax.h"
 
 namespace selfcal {
 namespace {
@@ -21,14 +21,6 @@ std::vector<Eigen::MatrixXd> random_candidates(int count, int k, int m, std::mt1
     for (Eigen::Index c = 0; c < m; ++c)  // columns of very different units
       for (Eigen::Index r = 0; r < k; ++r) w(r, c) = normal(random) * std::pow(10.0, c % 5 - 2);
   return candidates;
-}
-
-double o1_of(const std::vector<Eigen::MatrixXd>& candidates, const std::vector<int>& chosen) {
-  const Eigen::Index k = candidates.front().rows();
-  Eigen::MatrixXd W(k * static_cast<Eigen::Index>(chosen.size()), candidates.front().cols());
-  for (size_t i = 0; i < chosen.size(); ++i)
-    W.middleRows(k * static_cast<Eigen::Index>(i), k) = candidates[chosen[i]];
-  return observability(W, static_cast<int>(chosen.size())).o1;
 }
 
 TEST(Detmax, StopsWhereNoExchangeOfTheBestAddedForTheWorstRemovedIsLeft) {
@@ -121,45 +113,6 @@ TEST(Detmax, TakesAllWhereAllAreAskedFor) {
   const Exchange found = detmax(candidates, 5, random);
   EXPECT_THAT(found.chosen, testing::ElementsAre(0, 1, 2, 3, 4));
   EXPECT_EQ(found.exchanges, 0);
-}
-
-/// DETMAX as it is written down, a decomposition of each choice; at most `most` exchanges.
-struct FullSearch {
-  std::vector<int> chosen;
-  int exchanges = 0;
-  double seconds = 0;  ///< of this thread
-};
-FullSearch by_full_decompositions(const std::vector<Eigen::MatrixXd>& candidates,
-                                  std::vector<int> chosen, int most) {
-  const std::clock_t start = std::clock();
-  FullSearch search;
-  for (double o1 = o1_of(candidates, chosen); search.exchanges < most; ++search.exchanges) {
-    std::vector<int> best;
-    double best_o1 = -1;
-    for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
-      if (std::ranges::count(chosen, c) > 0) continue;
-      std::vector<int> with = chosen;
-      with.push_back(c);
-      if (const double each = o1_of(candidates, with); each > best_o1) {
-        best_o1 = each;
-        best = with;
-      }
-    }
-    double left = -1;
-    for (size_t out = 0; out < best.size(); ++out) {
-      std::vector<int> less = best;
-      less.erase(less.begin() + static_cast<std::ptrdiff_t>(out));
-      const double each = o1_of(candidates, less);
-      if (each <= left) continue;
-      left = each;
-      chosen = left > o1 * (1 + 1e-9) ? less : chosen;
-    }
-    if (left <= o1 * (1 + 1e-9)) break;
-    o1 = left;
-  }
-  search.chosen = chosen;
-  search.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  return search;
 }
 
 TEST(Detmax, IsAsGoodAsWithFullDecompositionsFromTheSameStart) {
