@@ -90,7 +90,8 @@ std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
       const double first = static_cast<double>(part) / kBlocks;
       locate(first, first + 1.0 / kBlocks);
       // The touch's own offset moves the crossing; the nearest true surface tells whose it is.
-      if (!drawn && closure.closes(kLanes - 1) && surface.within.contains(X.p(kLanes - 1)) && outside(kLanes - 1) < 0.02) {
+      if (!drawn && closure.closes(kLanes - 1) && surface.within.contains(X.p(kLanes - 1)) &&
+          outside(kLanes - 1) < 0.02) {
         off = offset(request, surface.set);
         contact_offset_ = off;
         contact_set_ = surface.set;

@@ -331,8 +331,7 @@ DataSet joined(const DataSet& base, const DataSet& check) {
 TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
                           const StepRecord& step, const Reading& reading, double search,
                           double tolerance) {
-  if (const std::string why = robot.has_loops() ? cannot_stand(robot, reading.q) : "";
-      !why.empty())
+  if (const std::string why = robot.has_loops() ? cannot_stand(robot, reading.q) : ""; !why.empty())
     return {TouchOutcome::outlier, why};
   const int set = set_index(meaning, step.set);
   const auto out_by = [&](const Eigen::VectorXd& from) {

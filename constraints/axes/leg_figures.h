@@ -1,5 +1,6 @@
 // A platform on six chains from locations of it, when little is known: the inverse model parts into
-// one problem a chain (Khalil and Dombre, 11.7.1), which needs no direct model and no loop to close.
+// one problem a chain (Khalil and Dombre, 11.7.1), which needs no direct model and no loop to
+// close.
 #pragma once
 
 #include <string>

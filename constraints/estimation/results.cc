@@ -177,8 +177,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           " times as much as its data sheet says: the geometry does not " + "explain them all");
     if (redundant && stated > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
-          "set " + set.name + ": its data sheet's noise is " +
-          ratio(stated, set.noise_sigma) +
+          "set " + set.name + ": its data sheet's noise is " + ratio(stated, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
     if (set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma)
       solution.warnings.push_back(

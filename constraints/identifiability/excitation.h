@@ -14,11 +14,11 @@ namespace selfcal {
 /// What the methods could tell.
 struct StructuralRank {
   Identifiability rank;
-  int nuisance = 0;        ///< freedoms of the sets' and groups' nuisance parameters
+  int nuisance = 0;  ///< freedoms of the sets' and groups' nuisance parameters
   /// Of the parameters, where the robot names the frames that it chose; of those that all joints
   /// free would tell, where some are held.
   std::vector<Lost> lost;
-  std::string unreached;   ///< why rows are missing; empty when all were found
+  std::string unreached;  ///< why rows are missing; empty when all were found
 };
 
 /// The structural answer: status of every parameter on random configurations that satisfy the

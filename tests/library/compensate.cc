@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
   const selfcal::Command command =
       selfcal::Compensation(nominal, calibrated).command(wanted, std::nullopt);
   std::printf("%s\n", std::string(to_string(command.status)).c_str());
-  for (Eigen::Index j = 0; j < command.q.size(); ++j) std::printf("q%d %.9f\n", int(j) + 1, command.q[j]);
+  for (Eigen::Index j = 0; j < command.q.size(); ++j)
+    std::printf("q%d %.9f\n", int(j) + 1, command.q[j]);
   auto stream = selfcal::CompensationStream::of(calibrated, command.q);
   return stream && stream->command(wanted).status == selfcal::Streamed::reached ? 0 : 1;
 }

@@ -88,11 +88,10 @@ TEST(MachineFault, IsRefusedOfAJointThatTheRobotLacks) {
 }
 
 TEST(MachineFault, IsRefusedWhenNobodyKnowsIt) {
-  EXPECT_THAT(
-      problem_of("robot: r\nmachine: {faults: [{what: rust, at: 0}]}\n"
-                 "sets: {a: {method: plane}}\n"),
-      testing::HasSubstr(
-          "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or misread"));
+  EXPECT_THAT(problem_of("robot: r\nmachine: {faults: [{what: rust, at: 0}]}\n"
+                         "sets: {a: {method: plane}}\n"),
+              testing::HasSubstr(
+                  "encoders, stuck, refuse, silent, lock_refuse, lock_late, lock_open or misread"));
 }
 
 TEST(Machine, WarmsUpAsItIsTold) {
