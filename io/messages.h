@@ -101,6 +101,8 @@ class Messenger {
   /// are refused at once and counted.
   virtual void take(std::vector<CommandMessage>& out) = 0;
   virtual std::uint64_t refused() const = 0;
+  /// Services of this robot beside us that are heard at the moment.
+  virtual int rivals() const { return 0; }
   /// Messages that could not be sent in time since the start.
   virtual std::uint64_t unsent() const = 0;
 };

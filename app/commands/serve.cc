@@ -30,6 +30,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kMostSessions = 1'000'000;
+constexpr Nanoseconds kRivalSearch = kSecond / 2;  // discovery takes a tenth of it
 
 struct ServeArguments {
   std::string config, truth, log = "info";
@@ -138,7 +139,7 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   if (!models->refused().empty()) spdlog::error("{}", models->refused());
   if (auto written = models->write_active(config.state); !written) return written;
 
-  const auto reach = dds_reach();
+  const auto reach = dds_reach(config.domain, robot_topic(config.id, "command"));
   if (!reach) return tl::unexpected(reach.error());
   if (auto held = config.commands.hold(*reach); !held) return held;
   spdlog::info("robot {} in DDS domain {}, topics rt/selfcal/{}/...; {}", config.id, config.domain,
@@ -153,6 +154,11 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   auto participant =
       DdsParticipant::open(static_cast<std::uint32_t>(config.domain), "selfcal " + config.id);
   if (!participant) return tl::unexpected(participant.error());
+  const auto taken = has_service(*participant, config.id, kRivalSearch, wakeup);
+  if (!taken) return tl::unexpected(taken.error());
+  if (*taken)
+    return device_failed("a service of robot " + config.id + " is in DDS domain " +
+                         std::to_string(config.domain) + " already: one robot has one service");
   auto messenger = DdsMessenger::open(*participant, config.id, wakeup);
   if (!messenger) return tl::unexpected(messenger.error());
 

@@ -20,8 +20,11 @@ Result<void> CommandRules::hold(const DdsReach& reach) const {
         "address=\"127.0.0.1\"/></Interfaces></General>");
   if (over == Over::secured && !reach.secured)
     return bad_input(
-        "commands: {over: secured}, but there is no DDS Security in CYCLONEDDS_URI "
-        "(<Security>...</Security>)");
+        reach.lacks.empty()
+            ? "commands: {over: secured}, but there is no DDS Security in CYCLONEDDS_URI "
+              "(<Security>...</Security>)"
+            : "commands: {over: secured}, but DDS Security in CYCLONEDDS_URI keeps nobody out: " +
+                  reach.lacks);
   return {};
 }
 

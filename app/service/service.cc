@@ -70,6 +70,7 @@ template bool Service::stored(const Result<std::int64_t>&);
 void Service::turn() {
   now_ = ports_.clock->now();
   listen();
+  check_rivals();
   check_self();
   check_rest();
   check_stop();

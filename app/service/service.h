@@ -46,6 +46,8 @@ class Service {
 
   // service_checks.cc: what is looked at in every turn
   void check_senses();
+  void check_rivals();
+  std::string rivals() const;
   void begin_test();
   void check_self();
   std::string missing() const;

@@ -17,6 +17,18 @@ std::string because(const std::string& what, const std::string& why) {
 
 }  // namespace
 
+/// Two services of one robot would both move it: neither does.
+void Service::check_rivals() {
+  if (testing_ || situation_.state == ServiceState::fault || messenger_.rivals() == 0) return;
+  put(Event::What::broken, false, rivals());
+}
+
+std::string Service::rivals() const {
+  if (messenger_.rivals() == 0) return {};
+  return "another service of robot " + config_.id +
+         " is in this DDS domain: one of the two must end (or has a robot the id of another?)";
+}
+
 /// What a robot that may move cannot do without.
 void Service::check_senses() {
   if (!may_move(situation_.state)) return;
@@ -47,6 +59,7 @@ std::string Service::missing() const {
   if (!senses_.encoders_alive(now_) || !senses_.at_rest())
     return because("no encoder readings come in", ports_.encoders->trouble());
   if (const std::string strangers = two_senders(); !strangers.empty()) return strangers;
+  if (std::string others = rivals(); !others.empty()) return others;
   if (situation_.unfinished && !*senses_.at_rest()) return "the robot moves";
   if (senses_.samples().last().joints != joints)
     return "the encoders give " + std::to_string(senses_.samples().last().joints) +

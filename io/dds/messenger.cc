@@ -21,6 +21,19 @@ constexpr std::size_t kMostKnown =
 
 }  // namespace
 
+Result<bool> has_service(const DdsParticipant& participant, const std::string& robot,
+                         Nanoseconds limit, Wakeup& wakeup) {
+  const auto status =
+      DdsReader<dds::Status>::open(participant, robot_topic(robot, "status"), kLatched, &wakeup);
+  if (!status) return tl::unexpected(status.error());
+  for (const Nanoseconds end = monotonic_now() + limit; status->matched() == 0;) {
+    const Nanoseconds left = end - monotonic_now();
+    if (left <= 0) return false;
+    wakeup.wait(left);
+  }
+  return true;
+}
+
 Result<std::unique_ptr<DdsMessenger>> DdsMessenger::open(const DdsParticipant& participant,
                                                          const std::string& robot, Wakeup& wakeup) {
   Endpoints endpoints;
@@ -31,6 +44,7 @@ Result<std::unique_ptr<DdsMessenger>> DdsMessenger::open(const DdsParticipant& p
   opening.open(endpoints.diagnostics, ros_topic("diagnostics"), kDiagnostics);
   opening.open(endpoints.reply, robot_topic(robot, "command_reply"), kReplies);
   opening.open(endpoints.command, robot_topic(robot, "command"), kExchange, &wakeup);
+  opening.open(endpoints.own_status, robot_topic(robot, "status"), kLatched);
   return opening.finish(
       [&] { return std::unique_ptr<DdsMessenger>(new DdsMessenger(robot, std::move(endpoints))); });
 }
@@ -68,6 +82,13 @@ void DdsMessenger::take(std::vector<CommandMessage>& out) {
   // A failure to read is a bug of ours or of the library's; the next call tries again.
   (void)dds_.command.take(kMostRead, [&](const dds::Command& received) {
     CommandMessage command = to_plain(received);
+    if (std::max({command.id.size(), command.verb.size(), command.from.size()}) > kMostText) {
+      ++refused_;
+      return send({.id = command.id.substr(0, kMostText),
+                   .verb = command.verb.substr(0, kMostText),
+                   .accepted = false,
+                   .why = "longer than any command"});
+    }
     if (known(command)) return;
     CommandReplyMessage reply{.id = command.id, .verb = command.verb, .accepted = false, .why = ""};
     if (!(command.verb == "abort" ? aborts_ : commands_).take(now)) {

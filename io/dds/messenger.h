@@ -1,6 +1,7 @@
 // The service's voice and ear over DDS: its status, progress, results and health, and commands.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <string>
@@ -12,10 +13,17 @@
 
 namespace selfcal {
 
+/// Whether a service of `robot` is heard within `limit`: a second one must not even begin.
+/// `wakeup` must outlive the call alone.
+Result<bool> has_service(const DdsParticipant& participant, const std::string& robot,
+                         Nanoseconds limit, Wakeup& wakeup);
+
 class DdsMessenger : public Messenger {
  public:
   /// Heard in a second, and as many again of `abort`, which no flood of others may keep away.
   static constexpr int kMostCommands = 16;
+  /// Of a command's id, verb or sender (bytes); longer ones are refused.
+  static constexpr std::size_t kMostText = 256;
   /// Looked at in one call; the others wait for the next.
   static constexpr std::size_t kMostRead = 256;
 
@@ -34,6 +42,8 @@ class DdsMessenger : public Messenger {
 
   std::uint64_t refused() const override { return refused_; }
 
+  int rivals() const override { return std::max(0, dds_.own_status.matched() - 1); }
+
   std::uint64_t unsent() const override { return unsent_; }
 
  private:
@@ -44,6 +54,7 @@ class DdsMessenger : public Messenger {
     DdsWriter<dds::DiagnosticArray> diagnostics;
     DdsWriter<dds::CommandReply> reply;
     DdsReader<dds::Command> command;
+    DdsReader<dds::Status> own_status;  ///< tells of who else writes it; we are one
   };
   /// A command that was taken, and its reply once there is one.
   struct Known {

@@ -2,14 +2,44 @@
 
 #include "io/dds/participant.h"
 
+#include <cstdlib>
+#include <map>
 #include <memory>
+#include <mutex>
 
 namespace selfcal {
+namespace {
+
+/// The domain as this process configures it, which all of its participants share. Null where
+/// somebody else in the process has joined it before, whose configuration holds then.
+Result<std::shared_ptr<DdsEntity>> domain_of(std::uint32_t number) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<DdsEntity>> joined;
+  const std::scoped_lock lock(mutex);
+  if (auto domain = joined[number].lock()) return domain;
+  const char* given = std::getenv("CYCLONEDDS_URI");
+  // Of two settings the later one holds.
+  const std::string configuration = "<Internal><MaxSampleSize>" +
+                                    std::to_string(kMostMessageBytes) +
+                                    " B</MaxSampleSize></Internal>," + (given ? given : "");
+  const dds_entity_t handle = dds_create_domain(number, configuration.c_str());
+  if (handle == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;
+  if (handle < 0)
+    return dds_failed("domain " + std::to_string(number) + " cannot be set up by CYCLONEDDS_URI",
+                      handle);
+  auto domain = std::make_shared<DdsEntity>(handle);
+  joined[number] = domain;
+  return domain;
+}
+
+}  // namespace
 
 Result<DdsParticipant> DdsParticipant::open(std::uint32_t domain, const std::string& name) {
   if (domain > kMostDdsDomain)
     return bad_input("DDS domain " + std::to_string(domain) + " is not between 0 and " +
                      std::to_string(kMostDdsDomain));
+  auto joined = domain_of(domain);
+  if (!joined) return tl::unexpected(joined.error());
   const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(), dds_delete_qos);
   dds_qset_entity_name(qos.get(), name.c_str());
   const dds_entity_t handle = dds_create_participant(domain, qos.get(), nullptr);
@@ -19,7 +49,7 @@ Result<DdsParticipant> DdsParticipant::open(std::uint32_t domain, const std::str
             " (does CYCLONEDDS_URI name an interface that is there, and is there room "
             "for one more program on this computer, MaxAutoParticipantIndex?)",
         handle);
-  return DdsParticipant(DdsEntity(handle));
+  return DdsParticipant(*std::move(joined), DdsEntity(handle));
 }
 
 }  // namespace selfcal

@@ -1,11 +1,13 @@
 // Our presence in a DDS domain.
 //
-// Which networks it uses is the environment's matter (CYCLONEDDS_URI), as it is for ROS 2.
+// Which networks it uses is the environment's matter (CYCLONEDDS_URI), as it is for ROS 2; what it
+// says of Internal/MaxSampleSize takes precedence over kMostMessageBytes.
 #pragma once
 
 #include <dds/dds.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "io/dds/entity.h"
@@ -14,6 +16,8 @@
 namespace selfcal {
 
 inline constexpr std::uint32_t kMostDdsDomain = 232;  ///< beyond it the ports run out
+/// A message beyond this is neither sent nor taken, whoever sends it: none of ours comes near.
+inline constexpr std::size_t kMostMessageBytes = std::size_t{4} << 20;
 
 class DdsParticipant {
  public:
@@ -24,7 +28,9 @@ class DdsParticipant {
   dds_entity_t handle() const { return entity_.handle(); }
 
  private:
-  explicit DdsParticipant(DdsEntity entity) : entity_(std::move(entity)) {}
+  DdsParticipant(std::shared_ptr<DdsEntity> domain, DdsEntity entity)
+      : domain_(std::move(domain)), entity_(std::move(entity)) {}
+  std::shared_ptr<DdsEntity> domain_;  ///< gone after the last participant of the process in it
   DdsEntity entity_;
 };
 

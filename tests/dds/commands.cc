@@ -109,6 +109,33 @@ TEST_F(DdsCommands, AreRefusedFromTheSeventeenthOfASecondOn) {
   EXPECT_EQ(service->refused(), 4);
 }
 
+TEST_F(DdsCommands, AreRefusedWhenLongerThanAnyIs) {
+  auto commands =
+      must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));
+  auto replies = must(DdsReader<dds::CommandReply>::open(
+      participant, robot_topic("r", "command_reply"), kExchange, &wakeup));
+  ASSERT_TRUE(eventually([&] { return commands.matched() > 0 && replies.matched() > 0; }));
+  std::string usual = "start", most(DdsMessenger::kMostText, 'x'), more = most + "x";
+  std::vector<CommandMessage> taken;
+
+  must(commands.write({.id_ = more.data(), .verb_ = usual.data(), .from_ = usual.data()}));
+  must(commands.write({.id_ = usual.data(), .verb_ = more.data(), .from_ = usual.data()}));
+  must(commands.write({.id_ = usual.data(), .verb_ = usual.data(), .from_ = more.data()}));
+  must(commands.write({.id_ = most.data(), .verb_ = usual.data(), .from_ = usual.data()}));
+  service->take(taken);
+
+  ASSERT_EQ(taken.size(), 1);
+  EXPECT_EQ(taken[0].id, most);
+  EXPECT_EQ(service->refused(), 3);
+  int refused = 0;
+  must(replies.take([&](const dds::CommandReply& reply) {
+    ++refused;
+    EXPECT_THAT(reply.why_, HasSubstr("longer than any command"));
+    EXPECT_LE(std::string(reply.id_).size(), most.size());
+  }));
+  EXPECT_EQ(refused, 3);
+}
+
 TEST_F(DdsCommands, LetAnAbortThroughAFloodOfOthers) {
   auto commands =
       must(DdsWriter<dds::Command>::open(participant, robot_topic("r", "command"), kExchange));

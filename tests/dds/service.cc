@@ -27,6 +27,16 @@ Message of(const std::string& robot, std::int64_t session) {
   return message;
 }
 
+TEST_F(DdsTest, KnowsAServiceOfTheRobotThatIsThereAlready) {
+  EXPECT_FALSE(must(has_service(participant, "r", 50 * kMillisecond, wakeup)));
+  const auto told = must(DdsMessenger::open(participant, "r", wakeup));
+  EXPECT_TRUE(must(has_service(participant, "r", kLimit, wakeup)));
+  EXPECT_FALSE(must(has_service(participant, "s", 50 * kMillisecond, wakeup)));
+  EXPECT_EQ(told->rivals(), 0);
+  const auto second = must(DdsMessenger::open(participant, "r", wakeup));
+  EXPECT_TRUE(eventually([&] { return told->rivals() == 1 && second->rivals() == 1; }));
+}
+
 class DdsService : public DdsTest {
  protected:
   std::unique_ptr<DdsMessenger> service(const std::string& robot) {

@@ -8,24 +8,80 @@ namespace {
 
 using testing::HasSubstr;
 
+/// Every interface that is named in what holds in domain 0 is this computer's own.
+bool loops(const std::string& configuration) { return reach_of(configuration, 0).loopback; }
+
+const std::string kAuthentication =
+    "<Authentication><IdentityCA>file:a</IdentityCA><IdentityCertificate>file:b"
+    "</IdentityCertificate><PrivateKey>file:c</PrivateKey></Authentication>";
+const std::string kAccess =
+    "<AccessControl><PermissionsCA>file:a</PermissionsCA><Governance>file:g</Governance>"
+    "<Permissions>file:p</Permissions></AccessControl>";
+
 TEST(Reach, IsTheNetworkUnlessEveryInterfaceNamedIsThisComputersOwn) {
-  EXPECT_FALSE(reach_of("").loopback);
-  EXPECT_FALSE(reach_of("<General><AllowMulticast>false</AllowMulticast></General>").loopback);
-  EXPECT_FALSE(reach_of("<NetworkInterface autodetermine=\"true\"/>").loopback);
-  EXPECT_FALSE(reach_of("<NetworkInterface name=\"eth0\"/>").loopback);
-  EXPECT_FALSE(
-      reach_of("<NetworkInterface name='lo'/><NetworkInterface address=\"10.0.0.7\"/>").loopback);
-  EXPECT_FALSE(reach_of("<!-- <NetworkInterface name=\"lo\"/> -->").loopback);
-  EXPECT_TRUE(reach_of("<NetworkInterface name=\"lo\" multicast=\"true\"/>").loopback);
-  EXPECT_TRUE(
-      reach_of("<Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>").loopback);
-  EXPECT_TRUE(reach_of("<NetworkInterfaceAddress> 127.0.0.1 </NetworkInterfaceAddress>").loopback);
+  EXPECT_FALSE(loops(""));
+  EXPECT_FALSE(loops("<General><AllowMulticast>false</AllowMulticast></General>"));
+  EXPECT_FALSE(loops("<NetworkInterface autodetermine=\"true\"/>"));
+  EXPECT_FALSE(loops("<NetworkInterface name=\"eth0\"/>"));
+  EXPECT_FALSE(loops("<NetworkInterface name='lo'/><NetworkInterface address=\"10.0.0.7\"/>"));
+  EXPECT_FALSE(loops("<!-- <NetworkInterface name=\"lo\"/> -->"));
+  EXPECT_FALSE(loops("<!--" + std::string(500'000, ' ') + "<NetworkInterface name=\"lo\"/>"));
+  EXPECT_TRUE(loops("<NetworkInterface name=\"lo\" multicast=\"true\"/>"));
+  EXPECT_TRUE(loops("<Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"));
+  EXPECT_TRUE(loops("<NetworkInterfaceAddress> 127.0.0.1 </NetworkInterfaceAddress>"));
 }
 
-TEST(Reach, KnowsWhetherDdsSecurityIsConfigured) {
-  EXPECT_TRUE(reach_of("<Security><Authentication/></Security>").secured);
-  EXPECT_TRUE(reach_of("<DDSSecurity></DDSSecurity>").secured);
-  EXPECT_FALSE(reach_of("<General/>").secured);
+TEST(Reach, IsThatOfTheDomain) {
+  const std::string own = "<NetworkInterface name=\"lo\"/>";
+  EXPECT_TRUE(reach_of("<Domain Id=\"any\">" + own + "</Domain>", 3).loopback);
+  EXPECT_TRUE(reach_of("<Domain id='3'>" + own + "</Domain>", 3).loopback);
+  EXPECT_FALSE(reach_of("<Domain Id=\"4\">" + own + "</Domain>", 3).loopback);
+  const std::string security = "<Security>" + kAuthentication + kAccess + "</Security>";
+  EXPECT_TRUE(reach_of("<Domain Id=\"3\">" + security + "</Domain>", 3).secured);
+  EXPECT_FALSE(reach_of("<Domain Id=\"4\">" + security + "</Domain>", 3).secured);
+}
+
+TEST(Reach, IsSecuredWhenDdsSecurityHasAllThatItNeeds) {
+  const auto reach = [](const std::string& text) { return reach_of(text, 0); };
+  EXPECT_TRUE(reach("<Security>" + kAuthentication + kAccess + "</Security>").secured);
+  EXPECT_TRUE(reach("<DDSSecurity>" + kAuthentication + kAccess + "</DDSSecurity>").secured);
+  EXPECT_EQ(reach("<Security>" + kAuthentication + kAccess + "</Security>").governance, "file:g");
+  for (const char* empty :
+       {"<DDSSecurity></DDSSecurity>", "<Security/>", "<Security><Authentication/></Security>"}) {
+    EXPECT_FALSE(reach(empty).secured) << empty;
+    EXPECT_THAT(reach(empty).lacks, HasSubstr("no <IdentityCA>, no <IdentityCertificate>"));
+  }
+  EXPECT_EQ(reach("<Security>" + kAuthentication + "</Security>").lacks,
+            "it has no <PermissionsCA>, no <Governance>, no <Permissions>");
+  EXPECT_FALSE(reach("<General/>").secured);
+  EXPECT_TRUE(reach("<General/>").lacks.empty());
+}
+
+/// A rule for the domain, one for its topics, and one for those of parameters that anybody writes.
+std::string governance(const char* unauthenticated, const char* join, const char* write) {
+  return std::string("MIME-Version: 1.0\n<domain_rule><allow_unauthenticated_participants>") +
+         unauthenticated + "</allow_unauthenticated_participants><enable_join_access_control>" +
+         join +
+         "</enable_join_access_control><topic_access_rules><topic_rule><topic_expression>"
+         "rt/parameter*</topic_expression><enable_write_access_control>false"
+         "</enable_write_access_control></topic_rule><topic_rule><topic_expression>*"
+         "</topic_expression><enable_write_access_control>" +
+         write + "</enable_write_access_control></topic_rule></topic_access_rules></domain_rule>";
+}
+
+TEST(Governance, KeepsStrangersOutOnlyWhenItAsksForCertificateAndPermission) {
+  const std::string topic = "rt/selfcal/r/command";
+  EXPECT_EQ(admits_strangers(governance("false", "true", "TRUE"), topic), "");
+  EXPECT_EQ(admits_strangers(governance("0", "1", "1"), topic), "");
+  EXPECT_THAT(admits_strangers(governance("true", "true", "true"), topic),
+              HasSubstr("allows unauthenticated"));
+  EXPECT_THAT(admits_strangers(governance("false", "false", "true"), topic),
+              HasSubstr("lets anybody join"));
+  EXPECT_THAT(admits_strangers(governance("false", "true", "false"), topic),
+              HasSubstr("lets anybody in the domain write rt/selfcal/r/command"));
+  EXPECT_THAT(admits_strangers(governance("false", "true", "true"), "rt/parameter_events"),
+              HasSubstr("lets anybody in the domain write"));
+  EXPECT_THAT(admits_strangers("", topic), HasSubstr("no <domain_rule>"));
 }
 
 TEST(CommandRules, TakeNothingByDefault) {
@@ -43,6 +99,9 @@ TEST(CommandRules, HoldOnlyWhereStrangersAreKeptOutAsTheySay) {
   rules.over = CommandRules::Over::secured;
   EXPECT_FALSE(rules.hold({.loopback = true}));
   EXPECT_TRUE(rules.hold({.secured = true}));
+  const auto partly = rules.hold({.secured = false, .lacks = "it has no <PrivateKey>"});
+  ASSERT_FALSE(partly);
+  EXPECT_THAT(partly.error().what, HasSubstr("keeps nobody out: it has no <PrivateKey>"));
   rules.over = CommandRules::Over::network;
   EXPECT_TRUE(rules.hold({}));
   EXPECT_THAT(rules.text(), HasSubstr("start, abort may be commanded by ANYONE"));
