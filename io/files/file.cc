@@ -24,6 +24,16 @@ tl::unexpected<Failure> unwritable(const std::filesystem::path& path, int error)
   return device_failed(path.string() + ": cannot be written: " + why(error));
 }
 
+/// An end that whoever started the program has opened for it: `< FILE`, `<(COMMAND)`.
+bool is_own_end(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  return name == "/dev/stdin" || name.starts_with("/dev/fd/") || name == "/dev/null";
+}
+
+std::string kind_of(mode_t mode) {
+  return S_ISDIR(mode) ? "a folder" : S_ISFIFO(mode) ? "a named pipe" : "a device";
+}
+
 /// A name beside `path` that no other writer uses: process and count make it so.
 std::filesystem::path beside(const std::filesystem::path& path) {
   static std::atomic<unsigned> count = 0;
@@ -67,13 +77,16 @@ InputFile::~InputFile() {
 }
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // A named pipe that nobody writes to must not hold the program: it is opened without waiting.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return bad_input(path.string() + ": cannot be read: " + why(errno));
   InputFile file(path, descriptor);
   struct stat status {};
-  if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
-    return bad_input(path.string() + ": expected a file, got a folder");
-  }
+  if (::fstat(descriptor, &status) != 0)
+    return bad_input(path.string() + ": cannot be read: " + why(errno));
+  if (!S_ISREG(status.st_mode) && !is_own_end(path))
+    return bad_input(path.string() + ": expected a file, got " + kind_of(status.st_mode));
+  ::fcntl(descriptor, F_SETFL, 0);
   return file;
 }
 

@@ -14,7 +14,8 @@ namespace selfcal {
 /// A file open for reading in pieces; closed at the end of its life.
 class InputFile {
  public:
-  /// Fails on a missing or unreadable file and on a folder.
+  /// Fails on a missing or unreadable file, a folder, a device and a named pipe, but for the ends
+  /// that the program was given (/dev/stdin, /dev/fd/N).
   static Result<InputFile> open(const std::filesystem::path& path);
 
   InputFile(InputFile&& other) noexcept;

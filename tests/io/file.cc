@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -33,6 +35,26 @@ TEST(File, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
 TEST(File, ReadsAnEmptyFile) {
   const Scratch scratch;
   EXPECT_EQ(read_file(scratch.write("empty", ""), 10).value(), "");
+}
+
+TEST(File, RefusesAtOnceWhatIsNoFile) {
+  const Scratch scratch;
+  const std::filesystem::path pipe = scratch.folder() / "rows.csv";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(read_file(pipe, 10).error().what,
+              HasSubstr("rows.csv: expected a file, got a named pipe"));
+  EXPECT_THAT(read_file("/dev/zero", 10).error().what, HasSubstr("expected a file, got a device"));
+  EXPECT_THAT(read_file(scratch.folder(), 10).error().what, HasSubstr("got a folder"));
+  EXPECT_EQ(read_file("/dev/null", 10).value(), "");
+}
+
+TEST(File, ReadsTheEndOfAPipeThatItWasGiven) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "rows", 4), 4);
+  close(ends[1]);
+  EXPECT_EQ(read_file("/dev/fd/" + std::to_string(ends[0]), 10).value(), "rows");
+  close(ends[0]);
 }
 
 TEST(File, RefusesAFileAboveTheLimitOnly) {
