@@ -17,6 +17,9 @@ namespace {
 /// Of what is asked for by the million: not in long double.
 using Fast = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
+/// Beyond it Boost's F loses its digits, and the limit is reached to all of them.
+constexpr double kMostFreedom = 1e9;
+
 struct Ranks {
   double positive = 0;  ///< sum of the ranks of positive differences
   double ties = 0;      ///< sum of t^3 - t over groups of equal size
@@ -24,7 +27,7 @@ struct Ranks {
 };
 
 Ranks rank(std::vector<double> d) {
-  std::erase(d, 0.0);
+  std::erase_if(d, [](double each) { return each == 0 || std::isnan(each); });
   std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   Ranks r;
   r.count = static_cast<int>(d.size());
@@ -69,9 +72,10 @@ double chi_quantile(int freedom, double probability) {
 }
 
 double chi_square_exceeds(double value, double freedom) {
-  if (!(freedom > 0)) return 1;
-  return boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared_distribution<double>(freedom), value));
+  if (!(value > 0 && freedom > 0)) return 1;
+  if (std::isinf(value)) return 0;
+  return boost::math::cdf(boost::math::complement(
+      boost::math::chi_squared_distribution<double>(std::min(freedom, kMostFreedom)), value));
 }
 
 double log_chi_square_below(double value, double freedom) {
@@ -90,15 +94,19 @@ double log_chi_square_below(double value, double freedom) {
 }
 
 double f_exceeds(double value, double upper_freedom, double lower_freedom) {
-  return boost::math::cdf(boost::math::complement(
-      boost::math::fisher_f_distribution<double>(upper_freedom, lower_freedom), value));
+  if (!(value > 0 && upper_freedom > 0 && lower_freedom > 0)) return 1;
+  if (std::isinf(value)) return 0;
+  const boost::math::fisher_f_distribution<double> distribution(
+      std::min(upper_freedom, kMostFreedom), std::min(lower_freedom, kMostFreedom));
+  return boost::math::cdf(boost::math::complement(distribution, value));
 }
 
 double student_quantile(double probability, double freedom) {
-  return boost::math::quantile(boost::math::students_t(freedom), probability);
+  return boost::math::quantile(boost::math::students_t(freedom > 0 ? freedom : 1), probability);
 }
 
 double student_below(double value, double freedom) {
+  if (std::isnan(value) || !(freedom > 0)) return 0.5;
   return boost::math::cdf(boost::math::students_t_distribution<double, Fast>(freedom), value);
 }
 

@@ -1,4 +1,4 @@
-// The few distributions that the identification judges by.
+// The few distributions that the identification judges by. Of what is no number they say: 1.
 #pragma once
 
 #include <vector>
@@ -15,15 +15,15 @@ double log_chi_square_below(double value, double freedom);
 /// Probability that an F variable exceeds `value`.
 double f_exceeds(double value, double upper_freedom, double lower_freedom);
 
-/// Value that a Student t variable of `freedom` (any positive number) stays below with
-/// `probability`.
+/// Value that a Student t variable of `freedom` (any positive number; 1 for others) stays below
+/// with `probability`.
 double student_quantile(double probability, double freedom);
 /// Probability that a Student t variable of `freedom` (any positive number) stays below `value`.
 double student_below(double value, double freedom);
 
 /// One-sided Wilcoxon signed-rank test that the differences are positive rather than symmetric
 /// about zero; exact up to 50 differences without ties, normal approximation with tie correction
-/// beyond. Zeros are dropped; 1 when nothing is left.
+/// beyond. Zeros and what is no number are dropped; 1 when nothing is left.
 double signed_rank_p(const std::vector<double>& differences);
 
 /// Median; 0 of nothing.

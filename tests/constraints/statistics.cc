@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace selfcal {
@@ -64,6 +65,26 @@ TEST(FExceeds, IsThePublishedLevelAtThePublishedQuantile) {
   EXPECT_NEAR(f_exceeds(3.3258, 5, 10), 0.05, 1e-5);
   EXPECT_NEAR(f_exceeds(10.0443, 1, 10), 0.01, 1e-5);
   EXPECT_NEAR(f_exceeds(161.4476, 1, 1), 0.05, 1e-6);
+}
+
+TEST(Statistics, SayNothingOfWhatIsNoNumber) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinite = std::numeric_limits<double>::infinity();
+  for (const double none : {kNone, -1.0, 0.0}) {
+    EXPECT_EQ(f_exceeds(none, 3, 4), 1);
+    EXPECT_EQ(f_exceeds(2, none, 4), 1);
+    EXPECT_EQ(f_exceeds(2, 3, none), 1);
+    EXPECT_EQ(chi_square_exceeds(none, 4), 1);
+    EXPECT_EQ(chi_square_exceeds(2, none), 1);
+    EXPECT_EQ(student_below(2, none), 0.5);
+    EXPECT_EQ(student_quantile(0.9, none), student_quantile(0.9, 1));
+  }
+  EXPECT_EQ(student_below(kNone, 4), 0.5);
+  EXPECT_EQ(signed_rank_p({kNone, 1, -2, kNone, 3}), signed_rank_p({1, -2, 3}));
+  EXPECT_EQ(f_exceeds(kInfinite, 3, 4), 0);
+  EXPECT_EQ(chi_square_exceeds(kInfinite, 4), 0);
+  // Of many lower freedoms F is chi-square over its own.
+  EXPECT_NEAR(f_exceeds(18.307 / 10, 10, kInfinite), 0.05, 1e-5);
 }
 
 /// Differences 1 to n, positive so that their ranks add up to `sum`.
