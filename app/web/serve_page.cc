@@ -30,6 +30,13 @@ std::vector<std::string> own_names() {
 Result<std::string> token_for(const PageOptions& options) {
   if (!options.token_file.empty()) return read_token(options.token_file);
   if (options.address.loopback) return std::string();
+  // What goes anywhere else is kept: in a journal, in a file, by who reads them.
+  if (isatty(STDERR_FILENO) == 0)
+    return tl::unexpected<Failure>(
+        {kMisused,
+         "others reach " + options.address.url() +
+             ", so that it asks for a token, and one that is made is printed to a terminal alone: "
+             "give one by --token FILE (umask 077; openssl rand -hex 16 > FILE)"});
   return new_token();
 }
 

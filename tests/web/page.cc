@@ -1,7 +1,9 @@
 // The program as its user runs it: `selfcal monitor --web` beside services that this test plays.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -281,14 +283,18 @@ TEST_F(LivePage, EndsWhenItIsTold) {
 }
 
 TEST_F(LivePage, PrintsATokenWhereOthersReachIt) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  ASSERT_EQ(grantpt(terminal), 0);
+  ASSERT_EQ(unlockpt(terminal), 0);
   monitor = std::make_unique<Running>(
       std::vector<std::string>{"monitor", "--web", "0.0.0.0:0", "--domain", std::to_string(domain)},
-      log);
+      ptsname(terminal));
   const std::string before = "#token=";
-  std::string token;
+  std::string token, text;
   ASSERT_TRUE(eventually([&] {
-    const std::string text = std::filesystem::exists(log) ? text_of(log) : "";
-    const std::size_t at = text.find(before), end = text.find('\n', at);
+    char some[256];
+    if (const ssize_t got = ::read(terminal, some, sizeof some); got > 0) text.append(some, got);
+    const std::size_t at = text.find(before), end = text.find('\r', at);
     if (at == std::string::npos || end == std::string::npos) return false;
     token = text.substr(at + before.size(), end - at - before.size());
     port = std::stoi(text.substr(text.find("0.0.0.0:") + 8));
@@ -297,6 +303,34 @@ TEST_F(LivePage, PrintsATokenWhereOthersReachIt) {
   EXPECT_EQ(token.size(), 32);
   EXPECT_EQ(status_of(ask(port, get("/state"))), 401);
   EXPECT_EQ(status_of(ask(port, get("/state", "Authorization: Bearer " + token + "\r\n"))), 200);
+  monitor.reset();
+  close(terminal);
+}
+
+TEST_F(LivePage, PrintsNoTokenIntoALog) {
+  monitor = std::make_unique<Running>(
+      std::vector<std::string>{"monitor", "--web", "0.0.0.0:0", "--domain", std::to_string(domain)},
+      log);
+  EXPECT_EQ(monitor->wait(), kMisused);
+  EXPECT_NE(text_of(log).find("give one by --token FILE"), std::string::npos) << text_of(log);
+  EXPECT_EQ(text_of(log).find("#token="), std::string::npos);
+
+  const std::string secret = "0123456789abcdef0123456789abcdef", file = log.string() + ".token";
+  std::ofstream(file) << secret << "\n";
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  monitor = std::make_unique<Running>(
+      std::vector<std::string>{"monitor", "--web", "0.0.0.0:0", "--domain", std::to_string(domain),
+                               "--token", file},
+      log);
+  ASSERT_TRUE(
+      eventually([&] { return text_of(log).find("asks for the token") != text_of(log).npos; }));
+  const std::string all = text_of(log);
+  port = std::stoi(all.substr(all.find("0.0.0.0:", all.find("the page is at")) + 8));
+  EXPECT_EQ(status_of(ask(port, get("/state"))), 401);
+  EXPECT_EQ(status_of(ask(port, get("/state", "Authorization: Bearer " + secret + "\r\n"))), 200);
+  EXPECT_EQ(monitor->end(SIGTERM), 0);
+  monitor.reset();
+  EXPECT_EQ(text_of(log).find(secret), std::string::npos);
 }
 
 }  // namespace
