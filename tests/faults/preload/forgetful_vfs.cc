@@ -8,7 +8,8 @@
 // real ones.
 //
 // FORGETFUL_KEEP=SEED makes it harsher: each write reaches the real file at once with probability
-// 1/2, without order, as from a disk's cache.
+// 1/2, without order, as from a disk's cache; FORGETFUL_KEEP=all: every one does.
+// FORGETFUL_CUT=N cuts the power by itself before the N-th write, truncation, sync or deletion.
 //
 // Creations and deletions take effect at once, as SQLite assumes of a name once its folder is
 // synced: it syncs the folder after it creates a log or a journal and deletes only what it needs no
@@ -17,6 +18,7 @@
 // Other processes may read while this one writes, for what they are shown was synced (with
 // synchronous=FULL); they may not write: this process would not see it.
 #include <fcntl.h>
+#include <signal.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -62,12 +64,23 @@ sqlite3_vfs* real = nullptr;
 
 /// Whether this write reaches the real file at once.
 bool passes_at_once() {
+  static const char* const kept = std::getenv("FORGETFUL_KEEP");
+  if (kept != nullptr && std::string_view(kept) == "all") return true;
   static std::optional<std::mt19937_64> generator = []() -> std::optional<std::mt19937_64> {
     const char* seed = std::getenv("FORGETFUL_KEEP");
     if (seed == nullptr) return std::nullopt;
     return std::mt19937_64(std::strtoull(seed, nullptr, 10));
   }();
   return generator && ((*generator)() & 1) != 0;
+}
+
+/// Something is about to be done to the disk.
+void count_down() {
+  static long left = [] {
+    const char* cut = std::getenv("FORGETFUL_CUT");
+    return cut != nullptr ? std::atol(cut) : 0;
+  }();
+  if (left > 0 && --left == 0) kill(getpid(), SIGKILL);
 }
 
 std::optional<Key> key_of(const char* path) {
@@ -95,6 +108,7 @@ int put(sqlite3_file* inner, const Change& change) {
 }
 
 int keep(File& file, Change change) {
+  count_down();
   if (passes_at_once()) {
     if (const int code = put(file.inner, change); code != SQLITE_OK) return code;
   }
@@ -155,6 +169,7 @@ int sync_file(sqlite3_file* handle, int flags) {
   const std::scoped_lock lock(mutex);
   File& file = file_of(handle);
   if (file.key) {
+    count_down();
     for (const Change& change : file.content().pending) {
       if (const int code = put(file.inner, change); code != SQLITE_OK) return code;
     }
@@ -239,6 +254,7 @@ int open_file(sqlite3_vfs*, const char* name, sqlite3_file* handle, int flags, i
 int delete_file(sqlite3_vfs*, const char* name, int sync_folder) {
   const std::scoped_lock lock(mutex);
   const std::optional<Key> key = key_of(name);
+  if (key) count_down();
   const int code = real->xDelete(real, name, sync_folder);
   if (code != SQLITE_OK || !key) return code;
   const auto found = contents().find(*key);
