@@ -14,6 +14,7 @@
 #include "constraints/estimation/angles.h"
 #include "constraints/estimation/fit.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/estimation/two_planes.h"
 #include "constraints/identifiability/gauge.h"
 #include "constraints/statistics.h"
 #include "kinematics/readable.h"
@@ -193,15 +194,28 @@ std::vector<TriedSlip> moved_zeros(const Robot& robot, const DataSet& data) {
   return list;
 }
 
+/// Sets of touches that may be of two planes each.
+std::vector<Slip> slips_of_planes(const Robot& robot, const DataSet& data) {
+  std::vector<Slip> list;
+  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
+    if (auto parted = parted_planes(robot, data, s))
+      list.push_back(
+          {"the touches of set " + data.sets[static_cast<size_t>(s)].name + " are of two planes",
+           nullptr, std::move(parted->rows), std::move(parted->sets)});
+  return list;
+}
+
 /// What each slip leaves, best first.
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
                              const std::vector<Slip>& others) {
   std::vector<Slip> slips = others;
   std::ranges::move(slips_of_rows(robot, data.rows), std::back_inserter(slips));
+  std::ranges::move(slips_of_planes(robot, data), std::back_inserter(slips));
   std::vector<TriedSlip> list;
   for (const Slip& slip : slips) {
     DataSet changed = data;
     if (slip.rows) changed.rows = *slip.rows;
+    if (!slip.sets.empty()) changed.sets = slip.sets;
     const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, {});
     if (left.any) list.push_back({slip.what, left.left});
   }

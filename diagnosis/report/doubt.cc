@@ -28,6 +28,7 @@ constexpr double kTooFar = 3;          ///< of the usual largest drift: a step m
 constexpr double kBeyondSheet = 10;    ///< of the data sheet's noise
 constexpr double kConfirmed = 0.3;     ///< of the noise: repeats that show so much confirm it
 constexpr double kHardlyCloses = 0.8;  ///< of what calibration leaves is still there: little gain
+constexpr double kForcesCost = 0.97;   ///< of what is left: less without the forces is a slip
 constexpr double kWithdrawn = 0.95;    ///< probability of `unknown` that is left then
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
@@ -80,6 +81,49 @@ bool drifts_too_far(const std::vector<CauseResult>& named) {
   });
 }
 
+/// What is named is worth nothing on rows that no choice has seen.
+std::string closes_nothing(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (diagnosis.named.empty() || gap.rows == 0 || gap.rms_after < gap.rms_before) return {};
+  std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
+                    " of the rows that no choice has seen, and calibration alone " +
+                    millimetres(gap.rms_before);
+  if (gap.noise_floor > kBeyondSheet * gap.rms_before)
+    why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
+           ": is it in metres, and 1 sigma?";
+  return why;
+}
+
+/// What calibration with all that was found leaves of the rows.
+double left_of(const LinearisedModel& view, const DataSet& data, const Correction& found) {
+  Problems problems;
+  const std::shared_ptr<const Robot> robot =
+      correct(view.shared_geometry(), entries_of(found), view.site(), problems);
+  expects(robot != nullptr, "what was found is effects that the robot can have");
+  Options options;
+  for (const Parameter& p : robot->parameters())
+    if (p.part == Part::effect) options.free.push_back(p.name);
+  return identify(*robot, data, options).residual.fit.rms_after;
+}
+
+/// A joint, a link or a tool is said to give way, and does so better without the forces of the
+/// rows, by gravity alone: they are not what acted.
+std::string forces_that_never_were(const LinearisedModel& view, const DataSet& data,
+                                   const Diagnosis& diagnosis) {
+  const bool gives_way = std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
+    return each.effect.ends_with("_compliance");
+  });
+  if (!gives_way || data.rows.wrench.rows() == 0) return {};
+  DataSet unforced = data;
+  unforced.rows.wrench.resize(0, 6);
+  const double with = left_of(view, data, diagnosis.found);
+  const double without = left_of(view, unforced, diagnosis.found);
+  if (!(without < kForcesCost * with)) return {};
+  return "the rows fit better without their forces and torques (fx to tz), " +
+         millimetres(without) + " in place of " + millimetres(with) +
+         ": are they those that acted on the tool, in its frame, without its own weight?";
+}
+
 /// The steps that are left when what was found and stays the same from row to row is in the model.
 std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& view, const DataSet& data,
                                                const Correction& found) {
@@ -115,6 +159,8 @@ std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Dia
   if (std::string why = moved_between_rows(view, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
+  if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
+  if (std::string why = forces_that_never_were(view, data, diagnosis); !why.empty()) return why;
   const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();
   return !settled && hardly_closes(diagnosis) ? beyond_sheet(view, data) : std::string();
 }

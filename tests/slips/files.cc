@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "kinematics/description.h"
@@ -47,6 +48,18 @@ void Files::write(const std::filesystem::path& folder) const {
   std::ofstream out(folder / "observations.csv");
   write_line(out, header);
   for (const Row& row : rows) write_line(out, row);
+}
+
+void Files::scale_robot(double factor) {
+  const std::regex length(R"(\b([dr]): (-?[0-9.e-]+))");
+  std::string scaled;
+  auto from = robot.cbegin();
+  for (std::sregex_iterator at(robot.cbegin(), robot.cend(), length), end; at != end; ++at) {
+    scaled.append(from, (*at)[2].first);
+    scaled += format_number(factor * std::stod((*at)[2]));
+    from = (*at)[2].second;
+  }
+  robot = scaled.append(from, robot.cend());
 }
 
 bool Files::has(const std::string& column) const {

@@ -22,6 +22,8 @@ struct Files {
               const std::function<void(std::vector<double>&, double)>& change);
   /// A further column, or another one of that name.
   void set_column(const std::string& column, const std::function<double(double)>& value);
+  /// The lengths d and r of every frame of the robot times `factor`.
+  void scale_robot(double factor);
   /// Replaces each `what`, which must be there, in `text`.
   static void replace_all(std::string& text, const std::string& what, const std::string& by);
 

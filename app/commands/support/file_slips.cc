@@ -1,5 +1,6 @@
 #include "app/commands/support/file_slips.h"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "app/report/format.h"
@@ -19,6 +20,18 @@ std::shared_ptr<const Robot> changed_robot(const Node& file, const auto& change)
   return robot ? std::shared_ptr<const Robot>(*std::move(robot)) : nullptr;
 }
 
+/// The lengths of every frame times `factor`.
+void scale_lengths(Node& node, double factor) {
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    if (node.keys[i] != "frames") continue;
+    for (Node& frame : node.items[i].items)
+      for (std::size_t k = 0; k < frame.keys.size(); ++k)
+        if (frame.keys[k] == "d" || frame.keys[k] == "r")
+          frame.items[k].text =
+              format_number(factor * std::strtod(frame.items[k].text.c_str(), nullptr));
+  }
+}
+
 /// Its table of numbers may be meant by the other convention; its tool may be missing.
 std::vector<Slip> slips_of_robot(const Node& file) {
   std::vector<Slip> slips;
@@ -36,6 +49,12 @@ std::vector<Slip> slips_of_robot(const Node& file) {
                          : "the table is standard DH (convention: standard)",
                      other,
                      {}});
+  for (const double factor : {0.5, 2.0})
+    if (auto scaled = changed_robot(file, [&](Node& node) { scale_lengths(node, factor); }))
+      slips.push_back({std::string("the lengths in the robot's file are ") +
+                           (factor < 1 ? "twice" : "half") + " what they are",
+                       std::move(scaled),
+                       {}});
   const Node* frames = file.find("frames");
   const Node* last =
       frames && !frames->items.empty() ? frames->items.back().find("joint") : nullptr;
