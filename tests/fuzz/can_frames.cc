@@ -110,7 +110,7 @@ void try_bus(std::string_view input) {
       read_can_settings(*node, joint_names(*node), given_folder().path(), problems);
   if (problems.any()) return;
   expect_meaning(settings.map);
-  Bytes bytes(reinterpret_cast<const std::uint8_t*>(parts[2].data()), parts[2].size());  // NOLINT
+  Bytes bytes(reinterpret_cast<const std::uint8_t*>(parts[2].data()), parts[2].size());
   std::vector<std::int64_t> counts;
   for (const CanJoint& joint : settings.map.joints)
     counts.push_back(counts_of(joint.scale, bytes.number()));

@@ -22,7 +22,7 @@ inline void promise(bool holds, const std::string& what) {
 }
 
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const char*>(data), size};  // NOLINT
+  return {reinterpret_cast<const char*>(data), size};
 }
 
 /// `count` parts of an input, which lines of five equals signs part; the last ones may be empty.

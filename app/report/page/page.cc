@@ -52,6 +52,7 @@ nlohmann::ordered_json page_begin(const char* kind, const PageSubject& subject) 
 }
 
 std::string page_of(const nlohmann::ordered_json& data) {
+  // cppcheck-suppress comparePointers  // the assembler's labels are of one object
   const std::string_view page(selfcal_page_begin,
                               static_cast<std::size_t>(selfcal_page_end - selfcal_page_begin));
   const std::size_t at = page.find(kPlace);
