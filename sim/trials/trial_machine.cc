@@ -67,6 +67,7 @@ class TrialMaker {
   /// Names of the causes: a quarter nothing, a tenth of all two.
   std::vector<std::string> mixture() {
     const double u = uniform(random_, 0, 1);
+    if (!request_.second.empty()) return {request_.effect, request_.second};
     if (!request_.effect.empty()) return {request_.effect};
     if (u < 0.25) return {"none"};
     if (u < 0.40) return {"unknown"};

@@ -20,6 +20,7 @@ struct TrialRequest {
   unsigned long long seed = 1;
   int number = 0;           ///< of the trial; each has its own draws
   std::string effect;       ///< or "none", "unknown"; empty: drawn, alone or in a pair
+  std::string second = {};  ///< beside `effect`; empty: that one alone
   std::optional<double> r;  ///< drawn when missing
   /// Other laws of the same effects, by name, in place of the generator's own; of an effect that it
   /// lacks the generator's.

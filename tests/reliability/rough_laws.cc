@@ -45,6 +45,40 @@ TrialCause rough_compliance(const TrialWorld& world, Random& random) {
           }};
 }
 
+/// A beam whose flange opens: it bends twice as far once the moment about it exceeds the preload,
+/// and more one way than the other.
+TrialCause rough_beam(const TrialWorld& world, Random& random) {
+  std::vector<size_t> beams;
+  const auto& poses = world.rows.front().poses;
+  for (int j = 0; j < world.joints(); ++j) {
+    const auto k = static_cast<size_t>(world.robot->statics()->mechanics().link_of(j));
+    if (k + 1 < poses.size() && (poses[k + 1].translation() - poses[k].translation()).norm() > 0.1)
+      beams.push_back(k);
+  }
+  if (beams.empty()) return {};
+  const size_t link = beams[static_cast<size_t>(pick(random, static_cast<int>(beams.size())))];
+  const auto moment_of = [&world, link](const Instant& at) {
+    Eigen::Vector3d force, moment;
+    world.load(at, static_cast<int>(link) + 1, at.poses[link].translation(), force, moment);
+    return moment;
+  };
+  double most = 0;
+  for (const Instant& row : world.rows) most = std::max(most, moment_of(row).norm());
+  if (most < 1) return {};
+  const double preload = uniform(random, 0.3, 0.7) * most, one_way = uniform(random, 0.7, 1.4);
+  return {.where = {world.links()[link].frame, world.links()[link + 1].frame},
+          .physics = "a beam whose flange opens beyond its preload",
+          .act = [=](const Instant& at, Deviation& out) {
+            const Eigen::Vector3d moment = moment_of(at);
+            double way = moment.norm() + std::max(0.0, moment.norm() - preload);
+            if (moment.dot(at.poses[link].linear().col(1)) > 0) way *= one_way;
+            out.tip += kSome / most * way *
+                       moment.normalized().cross(
+                           at.poses.back().translation() -
+                           0.5 * (at.poses[link].translation() + at.poses[link + 1].translation()));
+          }};
+}
+
 /// Play that is taken up at once, that sticks where the joint hardly moves, and wears in a sector.
 TrialCause rough_backlash(const TrialWorld& world, Random& random) {
   const ActingJoint joint = draw_joints(world, random, 0).front();
@@ -205,10 +239,15 @@ TrialCause rough_unknown(const TrialWorld& world, Random& random) {
 }  // namespace
 
 std::map<std::string, CauseMaker> rough_laws() {
-  return {{"joint_compliance", rough_compliance},     {"backlash", rough_backlash},
-          {"transmission_error", rough_transmission}, {"joint_coupling", rough_coupling},
-          {"thermal_expansion", rough_expansion},     {"base_drift", rough_drift},
-          {"zero_shift", rough_zero_shift},           {"unknown", rough_unknown}};
+  return {{"joint_compliance", rough_compliance},
+          {"link_compliance", rough_beam},
+          {"backlash", rough_backlash},
+          {"transmission_error", rough_transmission},
+          {"joint_coupling", rough_coupling},
+          {"thermal_expansion", rough_expansion},
+          {"base_drift", rough_drift},
+          {"zero_shift", rough_zero_shift},
+          {"unknown", rough_unknown}};
 }
 
 }  // namespace selfcal

@@ -10,6 +10,10 @@
 
 namespace selfcal {
 
+/// Of joints, links, warmth and the base, and of what no list has.
 std::map<std::string, CauseMaker> rough_laws();
+/// Of the tool (in rough_site_laws.cc), of surfaces and of instruments; of those that only touches
+/// or only instruments see, nothing comes where these are not.
+std::map<std::string, CauseMaker> rough_site_laws();
 
 }  // namespace selfcal
