@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/outcome.h"
 #include "io/result.h"
 
 namespace selfcal {
@@ -45,7 +46,7 @@ struct ProgressMessage {
 };
 
 /// The outcome of a session.
-struct ResultMessage {
+struct ResultMessage : ResultFigures {
   std::int64_t unix_ms = 0;
   std::string robot, model_hash;
   std::int64_t session = 0;
@@ -53,14 +54,7 @@ struct ResultMessage {
   std::string answer;    ///< of ResultAnswer: "not-improved"
   std::string decision;  ///< of ResultDecision: "applied"
   std::string why;
-  double p_value = 0;         ///< of the paired test, or that the active model explains the touches
-  double check_before = 0;    ///< m, rms on rows kept aside with the active model
-  double check_after = 0;     ///< m, with the candidate
-  double endpoint_sigma = 0;  ///< m, rms over the workspace
-  std::uint32_t touches = 0;  ///< that count as rows, those put aside too
-  std::uint32_t rejected = 0;    ///< of them put aside when identifying; outliers that judge count
-  std::uint32_t identified = 0;  ///< parameters
-  std::string json;              ///< result.json's content; empty for a check
+  std::string json;  ///< result.json's content; empty for a check
   bool operator==(const ResultMessage&) const = default;
 };
 

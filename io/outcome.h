@@ -26,6 +26,19 @@ enum class ResultDecision : std::uint8_t {
   rolled_back,  ///< applied, and given up by a person afterwards
 };
 
+/// Figures of a session's result, as they are ruled on, stored and published.
+struct ResultFigures {
+  double p_value = 0;         ///< of the paired test, or that the active model explains the touches
+  double check_before = 0;    ///< m, rms on rows kept aside with the active model; of a check, what
+                              ///< is expected
+  double check_after = 0;     ///< m, with the candidate; of a check, of its touches
+  double endpoint_sigma = 0;  ///< m, rms over the workspace
+  std::uint32_t touches = 0;  ///< that count as rows, those put aside too
+  std::uint32_t rejected = 0;    ///< of them put aside when identifying; outliers that judge count
+  std::uint32_t identified = 0;  ///< parameters
+  bool operator==(const ResultFigures&) const = default;
+};
+
 /// As the store and the messages have it: "not-improved".
 std::string_view to_string(ResultAnswer answer);
 std::string_view to_string(ResultDecision decision);

@@ -67,6 +67,10 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
                                   const Solution& candidate, const Solution& unchanged) {
   AcceptanceDecision ruling;
   ruling.answer = candidate.verdict.answer;
+  ruling.p_value = candidate.verdict.p_value;
+  ruling.endpoint_sigma = candidate.workspace.rms;
+  ruling.rejected = rows_put_aside(candidate);
+  ruling.identified = parameters_identified(candidate);
   std::tie(ruling.check_before, ruling.check_after) =
       rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
   if (candidate.verdict.answer != Answer::improved) {
@@ -106,31 +110,34 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
   return ruling;
 }
 
-int parameters_identified(const Solution& solution) {
-  return static_cast<int>(
+std::uint32_t parameters_identified(const Solution& solution) {
+  return static_cast<std::uint32_t>(
       std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
 }
 
-int rows_put_aside(const Solution& solution) {
-  return static_cast<int>(std::ranges::count(solution.rejected, false, &Outlier::check));
+std::uint32_t rows_put_aside(const Solution& solution) {
+  return static_cast<std::uint32_t>(std::ranges::count(solution.rejected, false, &Outlier::check));
 }
 
 CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p) {
   CheckRuling ruling;
   const Figures& before = then.residual.check;
   const Figures& after = now.residual.check;
-  ruling.rms = after.rms_after;
-  ruling.expected = before.rms_without_rejected;
-  if (before.rows == 0 || after.rows == 0 || !(ruling.expected > 0) || !std::isfinite(ruling.rms)) {
+  ruling.check_after = after.rms_after;
+  ruling.check_before = before.rms_without_rejected;
+  if (before.rows == 0 || after.rows == 0 || !(ruling.check_before > 0) ||
+      !std::isfinite(ruling.check_after)) {
     ruling.why = "nothing to compare with";
     return ruling;
   }
-  ruling.p_value = f_exceeds(std::pow(ruling.rms / ruling.expected, 2), after.rows, before.rows);
+  ruling.p_value =
+      f_exceeds(std::pow(ruling.check_after / ruling.check_before, 2), after.rows, before.rows);
   ruling.explained = ruling.p_value >= least_p;
-  ruling.why = sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s",
-                        after.rows, 1e3 * ruling.rms, 1e3 * ruling.expected, ruling.p_value,
-                        ruling.explained ? "the active model explains them"
-                                         : "the active model does not explain them");
+  ruling.why =
+      sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s", after.rows,
+               1e3 * ruling.check_after, 1e3 * ruling.check_before, ruling.p_value,
+               ruling.explained ? "the active model explains them"
+                                : "the active model does not explain them");
   return ruling;
 }
 

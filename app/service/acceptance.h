@@ -5,16 +5,16 @@
 
 #include "app/service/config.h"
 #include "constraints/solution.h"
+#include "io/outcome.h"
 
 namespace selfcal {
 
-struct AcceptanceDecision {
+/// Its figures are those of the candidate, but for the touches.
+struct AcceptanceDecision : ResultFigures {
   bool acceptable = false;
   bool asks = false;  ///< acceptable, but by a person alone: a lock was put aside
   Answer answer = Answer::not_determined;  ///< the verdict's
   std::string why;
-  double check_before = 0;  ///< m (rad of angles alone), rms of the check rows, active
-  double check_after = 0;   ///< m, with the candidate's
 };
 
 /// Judges a candidate, identified from rows starting at `active`, against the active parameters;
@@ -26,17 +26,15 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
                                   const Solution& candidate, const Solution& unchanged);
 
 /// Parameters that the rows determine.
-int parameters_identified(const Solution& solution);
+std::uint32_t parameters_identified(const Solution& solution);
 /// Rows put aside, from which nothing was identified. Outliers among the check rows are named in
 /// the result, but count all the same.
-int rows_put_aside(const Solution& solution);
+std::uint32_t rows_put_aside(const Solution& solution);
 
-/// Whether the active model explains the touches of a quick check.
-struct CheckRuling {
+/// Whether the active model explains the touches of a quick check: check_after is their rms,
+/// check_before that of the rows that judged the session behind the active parameters (m).
+struct CheckRuling : ResultFigures {
   bool explained = false;
-  double p_value = 0;
-  double rms = 0;       ///< m, of the new touches
-  double expected = 0;  ///< m, of the rows that judged the session behind the active parameters
   std::string why;
 };
 

@@ -1,118 +1,83 @@
 #include "app/service/service.h"
 
-#include <spdlog/spdlog.h>
+#include <cmath>
+#include <cstdio>
 
 namespace selfcal {
 namespace {
 
-constexpr std::size_t kMostEvents = 1024;
+constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
+constexpr Nanoseconds kRemember = 60 * kSecond;       // between two savings of the hours of motion
 
 }  // namespace
 
 Service::Service(Config config, const Ports& ports, Messenger& messenger, Store& store,
-                 Journal& journal, Models models, std::string damaged)
-    : config_(std::move(config)),
-      ports_(ports),
-      messenger_(messenger),
-      store_(store),
-      journal_(journal),
-      models_(std::move(models)),
-      damaged_(std::move(damaged)),
-      reflex_(ports, nanoseconds(config_.touch.debounce)),
-      senses_(ports, reflex_, config_.touch.rest, nanoseconds(config_.silence)) {
-  now_ = test_began_ = last_turn_ = began_ = ports_.clock->now();
-  // Requests of an earlier life must not be taken for ours.
-  motion_id_ = static_cast<std::uint64_t>(ports_.clock->unix_ms()) * 1000;
-  situation_.since = now_;
-  situation_.why = "testing encoders, trigger and store";
+                 Journal& journal, Models models, const std::string& damaged)
+    : c_{std::move(config), ports, messenger, store, journal, std::move(models)},
+      collector_(c_),
+      analyst_(c_, collector_),
+      reporter_(c_, collector_, analyst_, damaged) {
+  c_.now = test_began_ = last_turn_ = began_ = c_.ports.clock->now();
+  c_.situation.since = c_.now;
+  c_.situation.why = "testing encoders, trigger and store";
   testing_ = true;
-  if (!damaged_.empty())
-    tell("error", "the store was damaged: " + damaged_);
+  if (!damaged.empty())
+    c_.tell("error", "the store was damaged: " + damaged);
   else
-    recall_damage();
-  if (!models_.refused().empty()) tell("error", models_.refused());
-  const auto unfinished = store_.unfinished();
-  if (stored(unfinished)) situation_.unfinished = unfinished->has_value();
+    reporter_.recall_damage();
+  if (!c_.models.refused().empty()) c_.tell("error", c_.models.refused());
+  const auto unfinished = c_.store.unfinished();
+  if (c_.stored(unfinished)) c_.situation.unfinished = unfinished->has_value();
   finish_interrupted_apply();
-  recall_use();
-  situation_.candidate = models_.candidate();
-  outstanding_ = situation_.unfinished;  // of an earlier life, told to stop until it stands
-  if (outstanding_) stop("the service has started");
-  tell("info", "started with " + models_.name() + " parameters");
-  supervisor_.ready();
+  recall();
+  c_.situation.candidate = c_.models.candidate();
+  if (c_.situation.unfinished) {  // of an earlier life, told to stop until it stands
+    collector_.expect_motion();
+    collector_.stop("the service has started");
+  }
+  c_.tell("info", "started with " + c_.models.name() + " parameters");
+  reporter_.ready();
 }
-
-void Service::put(Event event) {
-  event.now = now_;
-  if (events_.size() < kMostEvents) events_.push_back(std::move(event));
-}
-
-void Service::put(Event::What what, bool ok, std::string why) {
-  Event event;
-  event.what = what;
-  event.ok = ok;
-  event.why = std::move(why);
-  put(std::move(event));
-}
-
-template <class T>
-bool Service::stored(const Result<T>& result) {
-  if (result) return true;
-  spdlog::error("{}", result.error().what);
-  put(Event::What::broken, false, "store: " + result.error().what);
-  return false;
-}
-template bool Service::stored(const Result<void>&);
-template bool Service::stored(const Result<std::optional<SessionRecord>>&);
-template bool Service::stored(const Result<std::optional<ResultRecord>>&);
-template bool Service::stored(const Result<std::int64_t>&);
 
 void Service::turn() {
-  now_ = ports_.clock->now();
-  listen();
+  c_.now = c_.ports.clock->now();
+  collector_.listen();
+  if (collector_.senses().moving()) c_.use.motion_hours += seconds(c_.now - last_turn_) / 3600;
+  handle_commands();
   check_rivals();
   check_self();
-  check_rest();
-  check_stop();
+  collector_.check_rest();
+  collector_.check_stop();
   check_schedule();
-  std::string failure;
-  if (computation_.take(failure) && when_computed_) std::exchange(when_computed_, {})(failure);
-  put(Event::What::tick);
+  analyst_.take();
+  c_.put(Event::What::tick);
   handle_events();
-  report();
-  if (reflex_.alive(now_)) supervisor_.alive(now_);
-  last_turn_ = now_;
-  ports_.clock->wait(longest_wait());
-}
-
-void Service::listen() {
-  senses_.listen(now_, events_);
-  check_senses();
-  if (senses_.moving()) motion_hours_ += seconds(now_ - last_turn_) / 3600;
-  std::vector<CommandMessage> commands;
-  messenger_.take(commands);
-  for (const CommandMessage& command : commands) handle_command(command);
-  tell_refused();
+  reporter_.report();
+  remember();
+  if (collector_.reflex().alive(c_.now)) reporter_.alive();
+  last_turn_ = c_.now;
+  c_.ports.clock->wait(longest_wait());
 }
 
 void Service::handle_events() {
-  while (!events_.empty()) {
-    const Event event = std::move(events_.front());
-    events_.pop_front();
-    if (event.what == Event::What::moved) reached_ = asked_;
-    Transition transition = step(situation_, event, config_.limits);
-    const bool held = situation_.held;
-    situation_ = std::move(transition.next);
-    if (situation_.held != held) remember_held();
+  while (!c_.events.empty()) {
+    const Event event = std::move(c_.events.front());
+    c_.events.pop_front();
+    if (event.what == Event::What::moved) collector_.arrived();
+    Transition transition = step(c_.situation, event, c_.config.limits);
+    const bool held = c_.situation.held;
+    c_.situation = std::move(transition.next);
+    if (c_.situation.held != held)
+      c_.stored(c_.store.remember("held", c_.situation.held ? "yes" : ""));
     for (const Action& action : transition.actions) act(action);
   }
 }
 
 Nanoseconds Service::longest_wait() const {
-  switch (situation_.state) {
+  switch (c_.situation.state) {
     case ServiceState::collecting:
       // An edge ends the wait early where the trigger can say so.
-      return situation_.phase == Phase::touch || situation_.phase == Phase::settle
+      return c_.situation.phase == Phase::touch || c_.situation.phase == Phase::settle
                  ? 8 * kMillisecond
                  : 20 * kMillisecond;
     case ServiceState::idle:
@@ -124,12 +89,86 @@ Nanoseconds Service::longest_wait() const {
   }
 }
 
+void Service::begin_test() {
+  testing_ = true;
+  test_began_ = c_.now;
+}
+
+/// Two services of one robot would both move it: neither does.
+void Service::check_rivals() {
+  if (testing_ || c_.situation.state == ServiceState::fault) return;
+  if (std::string others = collector_.rivals(); !others.empty())
+    c_.put(Event::What::broken, false, std::move(others));
+}
+
+void Service::check_self() {
+  if (!testing_) return;
+  const std::string why = collector_.missing();
+  if (!why.empty() && c_.now - test_began_ < c_.config.limits.self_test) return;
+  testing_ = false;
+  Event event;
+  event.what = Event::What::self_tested;
+  event.ok = why.empty();
+  event.why = why;
+  event.resume = c_.config.resume && !c_.situation.tested && c_.now - began_ < kResumeWithin;
+  c_.put(std::move(event));
+}
+
+void Service::check_schedule() {
+  if (c_.situation.state != ServiceState::idle || !c_.config.schedule.any()) return;
+  if (c_.now - last_due_ < kSecond) return;
+  last_due_ = c_.now;
+  const std::int64_t unix_ms = c_.unix_ms();
+  Since& last = c_.use.since;
+  // Before the first session, and after the clock was set back, the interval begins now.
+  if (last.unix_ms == 0 || last.unix_ms > unix_ms + 3'600'000) last.unix_ms = unix_ms;
+  Since since = last;
+  since.motion_hours = c_.use.motion_hours - last.motion_hours;
+  since.calibrated = analyst_.can_check();
+  const auto next =
+      due(c_.config.schedule, since, unix_ms, collector_.senses().celsius(), utc_offset(unix_ms));
+  if (!next) return;
+  Event event;
+  event.what = Event::What::due;
+  event.kind = next->kind;
+  event.why = next->why;
+  c_.put(std::move(event));
+}
+
+/// Writing may take long: not while the robot is to be stopped at a touch.
+void Service::remember() {
+  const bool touching = c_.situation.state == ServiceState::collecting &&
+                        (c_.situation.phase == Phase::touch || c_.situation.phase == Phase::settle);
+  if (c_.now - last_remembered_ < kRemember || touching) return;
+  last_remembered_ = c_.now;
+  c_.remember_use();
+}
+
+void Service::recall() {
+  // What cannot be read must not let the robot begin by itself.
+  const auto held = c_.store.remembered("held");
+  c_.situation.held = !held || *held == "yes";
+  const auto line = c_.store.remembered("use");
+  Since& since = c_.use.since;
+  long long unix_ms = 0;
+  double temperature = std::nan("");
+  if (line && std::sscanf(line->c_str(), "%lf %lld %lf %lf %d", &c_.use.motion_hours, &unix_ms,
+                          &since.motion_hours, &temperature, &since.checks) == 5) {
+    since.unix_ms = unix_ms;
+    if (!std::isnan(temperature)) since.temperature = temperature;
+  }
+  const auto results = c_.store.results(1);
+  if (!results || results->empty()) return;
+  const auto last = c_.store.result(results->front().session);
+  if (c_.stored(last) && *last) reporter_.result(**last);
+}
+
 void Service::shut_down() {
-  if (may_move(situation_.state)) stop("the service is shutting down");
-  if (situation_.engaged) release();
-  remember_use();
-  tell("info", "shut down");
-  supervisor_.stopping();
+  if (may_move(c_.situation.state)) collector_.stop("the service is shutting down");
+  if (c_.situation.engaged) collector_.release();
+  c_.remember_use();
+  c_.tell("info", "shut down");
+  reporter_.stopping();
 }
 
 }  // namespace selfcal

@@ -8,14 +8,22 @@ constexpr std::size_t kMostName = 64;  // of who sends a command
 
 }  // namespace
 
+void Service::handle_commands() {
+  std::vector<CommandMessage> commands;
+  c_.messenger.take(commands);
+  for (const CommandMessage& command : commands) handle_command(command);
+  tell_refused();
+  reporter_.refused(refused_.total);
+}
+
 void Service::handle_command(const CommandMessage& command) {
   const std::optional<Verb> verb = verb_of(command.verb);
   if (!verb)
     return refuse(command, "no command is called '" + command.verb.substr(0, kMostName) +
                                "'; known: start, check, abort, accept, reject, rollback");
-  if (const std::string forbidden = config_.commands.forbids(*verb); !forbidden.empty())
+  if (const std::string forbidden = c_.config.commands.forbids(*verb); !forbidden.empty())
     return refuse(command, forbidden);
-  if (*verb == Verb::check && !can_check())
+  if (*verb == Verb::check && !analyst_.can_check())
     return refuse(command,
                   "a quick check compares with an accepted session of this robot and "
                   "configuration, and there is none: start a full one");
@@ -25,7 +33,7 @@ void Service::handle_command(const CommandMessage& command) {
   Event event;
   event.what = Event::What::asked;
   event.verb = *verb;
-  put(std::move(event));
+  c_.put(std::move(event));
   handle_events();
   command_.reset();
 }
@@ -33,12 +41,12 @@ void Service::handle_command(const CommandMessage& command) {
 void Service::answer(const Action& action) {
   if (!command_) return;
   if (action.what != Action::Do::grant) return refuse(*command_, action.why);
-  messenger_.reply({command_->id, command_->verb, true, action.why});
-  tell("info", "command " + command_->verb + " from " + command_->from.substr(0, kMostName));
+  c_.messenger.reply({command_->id, command_->verb, true, action.why});
+  c_.tell("info", "command " + command_->verb + " from " + command_->from.substr(0, kMostName));
 }
 
 void Service::refuse(const CommandMessage& command, const std::string& why) {
-  messenger_.reply({command.id, command.verb, false, why});
+  c_.messenger.reply({command.id, command.verb, false, why});
   ++refused_.total;
   refused_.last =
       command.verb.substr(0, kMostName) + " from " + command.from.substr(0, kMostName) + ": " + why;
@@ -46,17 +54,17 @@ void Service::refuse(const CommandMessage& command, const std::string& why) {
 
 /// Once a second at most: who asks again and again must not fill the log, nor keep the loop.
 void Service::tell_refused() {
-  const std::uint64_t unheard = messenger_.refused();
+  const std::uint64_t unheard = c_.messenger.refused();
   if (unheard > refused_.unheard) refused_.last = "too many in a second";
   refused_.total += unheard - refused_.unheard;
   refused_.unheard = unheard;
-  if (refused_.total == refused_.told || now_ - refused_.told_at < kSecond) return;
+  if (refused_.total == refused_.told || c_.now - refused_.told_at < kSecond) return;
   const std::uint64_t count = refused_.total - refused_.told;
-  tell("warning",
-       (count == 1 ? "refused " : std::to_string(count) + " commands refused, the last: ") +
-           refused_.last);
+  c_.tell("warning",
+          (count == 1 ? "refused " : std::to_string(count) + " commands refused, the last: ") +
+              refused_.last);
   refused_.told = refused_.total;
-  refused_.told_at = now_;
+  refused_.told_at = c_.now;
 }
 
 }  // namespace selfcal

@@ -114,22 +114,18 @@ dds::Result borrow(const ResultMessage& result) {
 }
 
 ResultMessage to_plain(const dds::Result& result) {
-  return {.unix_ms = milliseconds(result.stamp_),
-          .robot = result.robot_,
-          .model_hash = result.model_hash_,
-          .session = result.session_,
-          .kind = result.kind_,
-          .answer = result.answer_,
-          .decision = result.decision_,
-          .why = result.why_,
-          .p_value = result.p_value_,
-          .check_before = result.check_before_,
-          .check_after = result.check_after_,
-          .endpoint_sigma = result.endpoint_sigma_,
-          .touches = result.touches_,
-          .rejected = result.rejected_,
-          .identified = result.identified_,
-          .json = result.json_};
+  const ResultFigures figures{.p_value = result.p_value_,
+                              .check_before = result.check_before_,
+                              .check_after = result.check_after_,
+                              .endpoint_sigma = result.endpoint_sigma_,
+                              .touches = result.touches_,
+                              .rejected = result.rejected_,
+                              .identified = result.identified_};
+  return {figures,         milliseconds(result.stamp_),
+          result.robot_,   result.model_hash_,
+          result.session_, result.kind_,
+          result.answer_,  result.decision_,
+          result.why_,     result.json_};
 }
 
 dds::Command borrow(const CommandMessage& command) {

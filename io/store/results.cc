@@ -75,9 +75,9 @@ ResultRecord Store::figures_of(const sqlite::Statement& row) {
   result.check_before = row.real(6);
   result.check_after = row.real(7);
   result.endpoint_sigma = row.real(8);
-  result.touches = static_cast<int>(row.integer(9));
-  result.rejected = static_cast<int>(row.integer(10));
-  result.identified = static_cast<int>(row.integer(11));
+  result.touches = static_cast<std::uint32_t>(row.integer(9));
+  result.rejected = static_cast<std::uint32_t>(row.integer(10));
+  result.identified = static_cast<std::uint32_t>(row.integer(11));
   return result;
 }
 

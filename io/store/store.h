@@ -74,13 +74,11 @@ struct SessionRecord {
   int steps = 0;
 };
 
-struct ResultRecord {
+struct ResultRecord : ResultFigures {
   std::int64_t session = 0, unix_ms = 0;
   ResultAnswer answer = ResultAnswer::failed;
   ResultDecision decision = ResultDecision::none;
   std::string why;
-  double p_value = 0, check_before = 0, check_after = 0, endpoint_sigma = 0;
-  int touches = 0, rejected = 0, identified = 0;
   std::string json;        ///< result.json; empty for a check
   std::string robot_text;  ///< the calibrated robot; empty for a check
 };

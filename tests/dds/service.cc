@@ -111,22 +111,15 @@ TEST_F(DdsService, TellsItsProgress) {
 }
 
 TEST_F(DdsService, TellsItsResultHoweverLong) {
-  const ResultMessage sent{.unix_ms = 6,
-                           .robot = "r",
-                           .model_hash = "h",
-                           .session = 4,
-                           .kind = "full",
-                           .answer = "improved",
-                           .decision = "applied",
-                           .why = "w",
-                           .p_value = 1e-9,
-                           .check_before = 1e-3,
-                           .check_after = 2e-5,
-                           .endpoint_sigma = 1e-5,
-                           .touches = 240,
-                           .rejected = 3,
-                           .identified = 25,
-                           .json = std::string(300'000, 'x')};
+  const ResultFigures figures{.p_value = 1e-9,
+                              .check_before = 1e-3,
+                              .check_after = 2e-5,
+                              .endpoint_sigma = 1e-5,
+                              .touches = 240,
+                              .rejected = 3,
+                              .identified = 25};
+  const ResultMessage sent{figures, 6,          "r",       "h", 4,
+                           "full",  "improved", "applied", "w", std::string(300'000, 'x')};
   const auto told = service("r");
   const auto watch = monitor("r");
 

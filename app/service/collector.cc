@@ -1,0 +1,187 @@
+// From the plan to the last touch: how a session begins or goes on, and what comes of each touch.
+#include <cmath>
+
+#include "app/service/collector.h"
+
+namespace selfcal {
+namespace {
+
+constexpr double kNearPath = 0.05;  // rad or m
+
+/// Distance from a straight joint path, largest joint.
+double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
+  const Eigen::VectorXd from = vector_of(step.start), way = vector_of(step.end) - from;
+  const double length = way.squaredNorm();
+  const double s = length > 0 ? std::clamp((q - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (q - from - s * way).cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+Collector::Collector(ServiceContext& context)
+    : c_(context),
+      reflex_(context.ports, nanoseconds(context.config.touch.debounce)),
+      senses_(context.ports, reflex_, context.config.touch.rest,
+              nanoseconds(context.config.silence)) {
+  // Requests of an earlier life must not be taken for ours.
+  motion_id_ = static_cast<std::uint64_t>(c_.unix_ms()) * 1000;
+}
+
+void Collector::open(Session session) {
+  auto meaning = read_meaning(session.record.config);
+  if (!meaning) return c_.put(Event::What::planned, false, meaning.error().what);
+  meaning_ = std::move(*meaning);
+  session_ = std::move(session);
+  collecting_since_ = c_.now;
+  touches_this_run_ = 0;
+  announce_plan();
+}
+
+void Collector::resume() {
+  const auto record = c_.store.unfinished();
+  if (!c_.stored(record)) return;
+  const auto give_up = [&](const std::string& why) {
+    if (*record) c_.stored(c_.store.set_state((*record)->id, SessionState::aborted, c_.unix_ms()));
+    c_.put(Event::What::planned, false, why);
+  };
+  if (!*record) return give_up("there is no unfinished session");
+  if ((*record)->model_hash != c_.models.hash() || (*record)->config_hash != c_.config_hash())
+    return give_up("session " + std::to_string((*record)->id) +
+                   " was begun with another robot or configuration and is ended");
+  auto plan = c_.store.plan((*record)->id);
+  auto touches = c_.store.touches((*record)->id);
+  if (!plan || !touches)
+    return c_.put(Event::What::broken, false, (!plan ? plan.error() : touches.error()).what);
+  open({**record, std::move(*plan), std::move(*touches)});
+}
+
+/// The touches of a quick check are made twice, so that a false trigger is no alarm.
+int Collector::repeats() const {
+  return session_.kind() == SessionKind::check ? std::max(2, c_.config.touch.repeats)
+                                               : c_.config.touch.repeats;
+}
+
+int Collector::next() const { return next_step(session_, repeats(), c_.config.limits.attempts); }
+
+double Collector::seconds_each() const {
+  return touches_this_run_ > 0 ? seconds(c_.now - collecting_since_) / touches_this_run_
+                               : std::nan("");
+}
+
+void Collector::announce_plan() {
+  Event event;
+  event.what = Event::What::planned;
+  event.kind = session_.kind();
+  event.session = session_.record.id;
+  event.steps = static_cast<int>(session_.plan.size());
+  event.step = next();
+  event.via_home = true;
+  event.lock = lock_of(event.step);
+  if (!senses_.encoders_alive(c_.now) || senses_.at_rest() != true)
+    return c_.put(Event::What::planned, false, "the robot does not stand still, or is silent");
+  if (const std::string strangers = two_senders(); !strangers.empty())
+    return c_.put(Event::What::planned, false, strangers);
+  const auto here = senses_.q();
+  if (here) reached_.assign(here->begin(), here->end());
+  if (here && event.step < event.steps) {
+    const StepRecord& step = session_.plan[event.step];
+    // It was in the middle of this very touch: the way back is the way out.
+    const StepRecord* last =
+        session_.touches.empty() ? nullptr : &session_.plan[session_.touches.back().step];
+    // Whatever lock an earlier life has left engaged is released before anything moves.
+    event.release = event.lock != 0 || (last && lock_of(last->index) != 0);
+    // It was in the middle of this very touch: the way back is the way out.
+    const bool in_it = !event.release && off_path(*here, step) < kNearPath;
+    if (in_it) {
+      event.via_home = false;
+    } else if (!event.release && last && off_path(*here, *last) < kNearPath) {
+      // The last touch was stored, and the robot is not out of it yet.
+      event.back_off = true;
+      reached_ = last->start;
+    } else if (!path_is_free(*c_.models.active(), values(*c_.models.active()), *here,
+                             c_.config.plan.home, c_.config.obstacles, 0)) {
+      event.ok = false;
+      event.why = "no free way home from where the robot stands: move it there by hand";
+    }
+  }
+  c_.put(std::move(event));
+}
+
+/// The plan's ways lead from one step to the next; after steps that were left out the way leads
+/// through home.
+void Collector::tell_way(int step, Event& event) const {
+  if (step >= static_cast<int>(session_.plan.size())) return;
+  event.via_home = session_.plan[step].via_home || step > c_.situation.step + 1;
+  event.way = static_cast<int>(session_.plan[step].way.size());
+}
+
+int Collector::lock_of(int step) const {
+  if (step >= static_cast<int>(session_.plan.size())) return 0;
+  const int set = set_index(meaning_, session_.plan[step].set);
+  return meaning_.sets[set].method->planned() == Planned::lock ? set + 1 : 0;
+}
+
+const TouchRecord* Collector::read() { return c_.situation.engaged ? read_visit() : read_touch(); }
+
+/// The readings at rest, with the edge that confirmed the lock.
+const TouchRecord* Collector::read_visit() {
+  TouchRecord visit;
+  visit.step = c_.situation.step;
+  visit.edge = senses_.closing()->time;
+  visit.before = visit.after = senses_.samples().last();
+  const TouchRuling ruling = rule_on_visit(*c_.models.active(), reading_of(visit, meaning_));
+  visit.outcome = ruling.outcome;
+  visit.why = ruling.why;
+  return keep(std::move(visit));
+}
+
+const TouchRecord* Collector::read_touch() {
+  const Nanoseconds edge = senses_.closing()->time;
+  if (!senses_.closing()->timed)
+    return outlier("the trigger's edge got lost, and with it the moment of the touch");
+  const auto around = senses_.samples().around(edge - nanoseconds(c_.config.touch.delay));
+  if (!around) return outlier("no encoder readings just before and after the edge");
+  TouchRecord touch;
+  touch.step = c_.situation.step;
+  touch.edge = edge;
+  std::tie(touch.before, touch.after) = *around;
+  const Reading reading = reading_of(touch, meaning_);
+  const TouchRuling ruling =
+      rule_on_touch(*c_.models.active(), session_, meaning_, session_.plan[touch.step], reading,
+                    c_.config.plan.search, c_.config.touch.tolerance);
+  touch.outcome = ruling.outcome;
+  touch.why = ruling.why;
+  return keep(std::move(touch));
+}
+
+const TouchRecord* Collector::outlier(const std::string& why) {
+  TouchRecord touch;
+  touch.step = c_.situation.step;
+  touch.outcome = TouchOutcome::outlier;
+  touch.why = why;
+  if (!senses_.samples().empty()) touch.before = touch.after = senses_.samples().last();
+  return keep(std::move(touch));
+}
+
+const TouchRecord* Collector::keep(TouchRecord touch) {
+  for (const TouchRecord& other : session_.touches) touch.attempt += other.step == touch.step;
+  touch.unix_ms = c_.unix_ms();
+  touch.temperature = senses_.celsius().value_or(std::nan(""));
+  const std::string called = label();
+  // Before the robot moves on.
+  if (!c_.stored(c_.store.add(session_.record.id, touch))) return nullptr;
+  session_.touches.push_back(touch);
+  ++touches_this_run_;
+  if (touch.outcome != TouchOutcome::taken) c_.tell("warning", called + ": " + touch.why);
+  Event event;
+  event.what = Event::What::read;
+  event.ok = touch.outcome == TouchOutcome::taken;
+  event.why = touch.why;
+  event.step = next();
+  tell_way(event.step, event);
+  event.lock = lock_of(event.step);
+  c_.put(std::move(event));
+  return &session_.touches.back();
+}
+
+}  // namespace selfcal

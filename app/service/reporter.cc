@@ -1,0 +1,103 @@
+// Status on every change, progress after every touch, the result.
+#include "app/service/reporter.h"
+
+#include <cmath>
+
+namespace selfcal {
+
+Reporter::Reporter(ServiceContext& context, const Collector& collector, const Analyst& analyst,
+                   std::string damaged)
+    : c_(context), collector_(collector), analyst_(analyst), damaged_(std::move(damaged)) {}
+
+StatusMessage Reporter::status() const {
+  StatusMessage status;
+  status.unix_ms = c_.unix_ms();
+  status.robot = c_.config.id;
+  status.model_hash = c_.models.hash();
+  status.version = SELFCAL_VERSION;
+  status.state = to_string(c_.situation.state);
+  status.phase = to_string(c_.situation.phase);
+  status.hardware = hardware_may(c_.situation.state, c_.situation.phase);
+  status.why = c_.situation.why;
+  status.session = c_.situation.session;
+  status.kind = c_.situation.session > 0 ? to_string(c_.situation.kind) : "";
+  status.active = c_.models.name();
+  status.active_since_ms = c_.models.since_ms();
+  status.candidate = c_.situation.candidate;
+  status.next_due_ms =
+      next_due(c_.config.schedule, c_.use.since, status.unix_ms, utc_offset(status.unix_ms));
+  status.temperature = collector_.senses().celsius().value_or(std::nan(""));
+  return status;
+}
+
+void Reporter::report() {
+  // The phases of a touch change ten times a second; a subscriber needs the last, not each.
+  const bool changed = c_.situation.state != told_.state || c_.situation.why != told_.why ||
+                       c_.situation.candidate != told_.candidate ||
+                       c_.models.name() != told_active_;
+  const bool second = c_.now - last_report_ >= kSecond;
+  if (changed || second) {
+    c_.messenger.publish(status());
+    supervisor_.status(std::string(to_string(c_.situation.state)) + ": " + c_.situation.why);
+    told_ = c_.situation;
+    told_active_ = c_.models.name();
+  }
+  if (const auto now = analyst_.progress(); now && now->stage != last_stage_)
+    progress(nullptr, last_stage_ = now->stage);
+  report_health(changed || second);
+  if (second) last_report_ = c_.now;
+}
+
+void Reporter::progress(const TouchRecord* touch, const std::string& note) {
+  ProgressMessage progress;
+  progress.unix_ms = c_.unix_ms();
+  progress.robot = c_.config.id;
+  if (c_.situation.state == ServiceState::planning) {  // what is planned has no number yet
+    progress.kind = to_string(c_.situation.kind);
+    progress.seconds_left = progress.residual = std::nan("");
+    progress.note = note;
+    return c_.messenger.publish(progress);
+  }
+  const Session& session = collector_.session();
+  progress.session = session.record.id;
+  progress.kind = session.record.kind;
+  progress.planned = static_cast<std::uint32_t>(session.plan.size());
+  progress.done = static_cast<std::uint32_t>(collector_.next());
+  progress.outlier = static_cast<std::uint32_t>(
+      steps_put_aside(session, collector_.repeats(), c_.config.limits.attempts));
+  progress.seconds_left =
+      collector_.seconds_each() * collector_.repeats() * (progress.planned - progress.done);
+  progress.residual = std::nan("");
+  progress.note = note;
+  if (touch) {
+    progress.set = session.plan[touch->step].set;
+    progress.index = static_cast<std::uint32_t>(touch->step);
+    progress.accepted = touch->outcome == TouchOutcome::taken;
+    if (progress.accepted &&
+        collector_.lock_of(touch->step) == 0) {  // of a lock there is no length
+      const Session recent = lately(session, touch->step);
+      const Robot& robot = *c_.models.active();
+      const DataSet rows = rows_of(robot, recent, collector_.meaning(), Parts::all_fit);
+      progress.residual = running_residual(robot, rows).value_or(std::nan(""));
+    }
+  }
+  c_.messenger.publish(progress);
+}
+
+void Reporter::result(const ResultRecord& result) {
+  ResultMessage message;
+  message.unix_ms = result.unix_ms;
+  message.robot = c_.config.id;
+  message.model_hash = c_.models.hash();
+  message.session = result.session;
+  const auto session = c_.store.session(result.session);
+  message.kind = session ? session->kind : "";
+  message.answer = to_string(result.answer);
+  message.decision = to_string(result.decision);
+  message.why = result.why;
+  static_cast<ResultFigures&>(message) = result;
+  message.json = result.json;
+  c_.messenger.publish(message);
+}
+
+}  // namespace selfcal
