@@ -20,7 +20,7 @@ struct StatusMessage {
   std::string hardware;              ///< what the hardware may do in this state, in words
   std::string why;                   ///< why it is in this state, in words
   std::int64_t session = 0;          ///< running or last one; 0 before the first
-  std::string kind;                  ///< "full", "check" or empty
+  std::string kind;                  ///< "full", "check", "cause" or empty
   std::string active;                ///< "factory" or "session 12"
   std::int64_t active_since_ms = 0;  ///< 0 for factory
   bool candidate = false;            ///< a result waits for acceptance
@@ -50,11 +50,14 @@ struct ResultMessage : ResultFigures {
   std::int64_t unix_ms = 0;
   std::string robot, model_hash;
   std::int64_t session = 0;
-  std::string kind;      ///< "full" or "check"
+  std::string kind;      ///< "full", "check" or "cause"
   std::string answer;    ///< of ResultAnswer: "not-improved"
   std::string decision;  ///< of ResultDecision: "applied"
   std::string why;
-  std::string json;  ///< result.json's content; empty for a check
+  std::string json;        ///< result.json's content, or diagnosis.json's; empty for a check
+  std::string cause = {};  ///< what is named, "backlash@j2"; empty where nothing is
+  double cause_probability = 0;
+  double cause_closes = 0;  ///< share of the gap that it closes; NaN where that is not known
   bool operator==(const ResultMessage&) const = default;
 };
 
@@ -70,7 +73,7 @@ struct HealthMessage {
 
 struct CommandMessage {
   std::string id;    ///< chosen by the sender, repeated in the reply
-  std::string verb;  ///< "start", "check", "abort", "accept", "reject", "rollback"
+  std::string verb;  ///< "start", "check", "diagnose", "done", "abort", "accept", "reject", "rollback"
   std::string from;  ///< who asks, for the log
 };
 

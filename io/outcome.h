@@ -14,6 +14,9 @@ enum class ResultAnswer : std::uint8_t {
   explained,      ///< of a check: the active parameters explain its touches
   not_explained,  ///< of a check: they do not
   failed,         ///< it could not be computed
+  cause_named,    ///< of a look for the cause: a known effect
+  cause_unknown,  ///< structure of no known one
+  no_cause,       ///< noise explains what is left
 };
 
 enum class ResultDecision : std::uint8_t {

@@ -107,6 +107,9 @@ enum class MoveKind : std::uint8_t {
 };
 std::string_view to_string(MoveKind kind);
 
+/// What the label of a move ends with that is made with the payload on the tool.
+inline constexpr const char* kWithPayload = ", payload";
+
 /// A straight move in joint space to readings `q` (rad or m).
 struct MotionRequest {
   std::uint64_t id = 0;  ///< grows with every request

@@ -110,7 +110,10 @@ dds::Result borrow(const ResultMessage& result) {
           .touches_ = result.touches,
           .rejected_ = result.rejected,
           .identified_ = result.identified,
-          .json_ = text(result.json)};
+          .json_ = text(result.json),
+          .cause_ = text(result.cause),
+          .cause_probability_ = result.cause_probability,
+          .cause_closes_ = result.cause_closes};
 }
 
 ResultMessage to_plain(const dds::Result& result) {
@@ -121,11 +124,19 @@ ResultMessage to_plain(const dds::Result& result) {
                               .touches = result.touches_,
                               .rejected = result.rejected_,
                               .identified = result.identified_};
-  return {figures,         milliseconds(result.stamp_),
-          result.robot_,   result.model_hash_,
-          result.session_, result.kind_,
-          result.answer_,  result.decision_,
-          result.why_,     result.json_};
+  return {figures,
+          milliseconds(result.stamp_),
+          result.robot_,
+          result.model_hash_,
+          result.session_,
+          result.kind_,
+          result.answer_,
+          result.decision_,
+          result.why_,
+          result.json_,
+          result.cause_,
+          result.cause_probability_,
+          result.cause_closes_};
 }
 
 dds::Command borrow(const CommandMessage& command) {

@@ -9,6 +9,7 @@ namespace selfcal {
 namespace {
 
 constexpr std::uint64_t kMostPlaces = 64;  // that a way leads through
+constexpr std::uint64_t kSlow = 512, kLoaded = 1024;
 
 void put_u(std::string& out, std::uint64_t value) {
   for (; value >= 128; value >>= 7) out += static_cast<char>((value & 127) | 128);
@@ -161,7 +162,8 @@ std::string pack_labels(const std::vector<StepRecord>& plan) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     put_u(steps, place(plan[i].set));
     put_u(steps, place(plan[i].group));
-    put_u(steps, (plan[i].check ? 1U : 0U) + (plan[i].via_home ? 2U : 0U) + 4 * plan[i].way.size());
+    put_u(steps, (plan[i].check ? 1U : 0U) + (plan[i].via_home ? 2U : 0U) + 4 * plan[i].way.size() +
+                     (plan[i].slow ? kSlow : 0U) + (plan[i].loaded ? kLoaded : 0U));
     put_z(steps, plan[i].index - static_cast<std::int64_t>(i));
   }
   std::string out;
@@ -189,8 +191,11 @@ bool unpack_labels(std::string_view packed, std::vector<StepRecord>& plan) {
     step.group = names[group];
     step.check = (flags & 1) != 0;
     step.via_home = (flags & 2) != 0;
-    if (flags / 4 > kMostPlaces) return false;
-    step.way.resize(flags / 4);
+    step.slow = (flags & kSlow) != 0;
+    step.loaded = (flags & kLoaded) != 0;
+    const std::uint64_t places = (flags & ~(kSlow | kLoaded)) / 4;
+    if (places > kMostPlaces) return false;
+    step.way.resize(places);
     step.index = static_cast<int>(plus(in.z(), place++));
   }
   return in.at_end();

@@ -8,7 +8,7 @@
 //   stamps    z before.time, z edge - before.time, z after.time - before.time,
 //             u before.joints, z counts…, u after.joints, z counts - before's…
 //   labels    u steps, u names, s name…; per step: u set, u group (places among the names),
-//             u check + 2 via_home + 4 places of the way, z index - place
+//             u check + 2 via_home + 4 places of the way + 512 slow + 1024 loaded, z index - place
 //   postures  per step start, touch, end, each place of its way: u size, d…
 //
 // Differences are modulo 2^64, so that every number comes back. Counts beyond a sample's joints

@@ -42,7 +42,7 @@ Result<std::int64_t> add_session(sqlite3* database, const SessionRecord& session
 
 Result<void> add_blob(sqlite3* database, const Verified& table, std::int64_t session,
                       const std::string& blob) {
-  const std::string sql = std::string("INSERT INTO ") + table.table + " VALUES(?1, ?2, NULL)";
+  const std::string sql = std::string("INSERT OR REPLACE INTO ") + table.table + " VALUES(?1, ?2, NULL)";
   const auto added = sqlite::run(database, sql.c_str(), {session, sqlite::Blob{blob}});
   if (!added) return tl::unexpected(added.error());
   return put_checksum(database, table, session);
@@ -64,6 +64,29 @@ Result<std::int64_t> Store::begin(const SessionRecord& session,
   }
   if (auto done = commit(*transaction); !done) return tl::unexpected(done.error());
   return id;
+}
+
+Result<void> Store::extend(std::int64_t session, const std::vector<StepRecord>& steps) {
+  Result<std::vector<StepRecord>> plan = this->plan(session);
+  if (!plan) return tl::unexpected(plan.error());
+  for (const StepRecord& step : steps) {
+    plan->push_back(step);
+    plan->back().index = static_cast<int>(plan->size()) - 1;
+  }
+  Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  const auto changed =
+      sqlite::run(database_, "UPDATE session SET steps = ?2 WHERE id = ?1 AND state < 2",
+                  {session, static_cast<std::int64_t>(plan->size())});
+  if (!changed) return tl::unexpected(changed.error());
+  if (*changed == 0)
+    return sqlite::failure(database_, "session " + std::to_string(session) + " has ended");
+  if (auto put = put_checksum(database_, kSessions, session); !put) return put;
+  if (auto put = add_blob(database_, kPlans, session, pack_labels(*plan)); !put) return put;
+  if (auto put = add_blob(database_, kPostures, session, pack_postures(*plan)); !put) return put;
+  if (auto set = set_session_state(database_, session, SessionState::collecting, 0); !set)
+    return set;
+  return commit(*transaction);
 }
 
 Result<void> Store::set_state(std::int64_t session, SessionState state, std::int64_t unix_ms) {

@@ -34,6 +34,8 @@ struct StepRecord {
   int index = 0;  ///< from 0
   std::string set, group;
   bool check = false;                     ///< kept aside to judge
+  bool slow = false;                      ///< touched at a third of the usual speed
+  bool loaded = false;                    ///< with the payload on the tool
   bool via_home = false;                  ///< travel there through the home configuration
   std::vector<std::vector<double>> way;   ///< readings to travel through else
   std::vector<double> start, touch, end;  ///< readings: free, nominal contact, farthest (rad or m)
@@ -64,7 +66,7 @@ enum class SessionState : std::uint8_t {
 
 struct SessionRecord {
   std::int64_t id = 0;
-  std::string kind;    ///< "full" or "check"
+  std::string kind;    ///< "full", "check" or "cause"
   std::string reason;  ///< who or what asked for it
   std::string model_hash, config_hash;
   std::string config;  ///< what the rows mean: the description of a data set, as YAML
@@ -133,6 +135,9 @@ class Store {
 
   /// Begins a session with its whole plan; `session.id` and `.steps` are ignored. Returns the id.
   Result<std::int64_t> begin(const SessionRecord& session, const std::vector<StepRecord>& plan);
+  /// Appends steps to the plan of a session that has not ended, which is collecting then. The
+  /// session has all of its steps with their readings.
+  Result<void> extend(std::int64_t session, const std::vector<StepRecord>& steps);
   /// Finished and aborted set `ended_ms`, the others clear it.
   Result<void> set_state(std::int64_t session, SessionState state, std::int64_t unix_ms);
   /// The newest session that is `collecting` or `collected`.

@@ -118,8 +118,9 @@ TEST_F(DdsService, TellsItsResultHoweverLong) {
                               .touches = 240,
                               .rejected = 3,
                               .identified = 25};
-  const ResultMessage sent{figures, 6,          "r",       "h", 4,
-                           "full",  "improved", "applied", "w", std::string(300'000, 'x')};
+  const ResultMessage sent{figures,       6,          "r",       "h", 4,
+                           "full",        "improved", "applied", "w", std::string(300'000, 'x'),
+                           "backlash@j2", 0.96,       0.8};
   const auto told = service("r");
   const auto watch = monitor("r");
 

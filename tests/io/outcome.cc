@@ -10,7 +10,7 @@ namespace {
 
 TEST(Outcome, ReadsBackEveryAnswerAndDecisionFromItsText) {
   std::set<std::string_view> texts;
-  for (int i = 0; i <= static_cast<int>(ResultAnswer::failed); ++i) {
+  for (int i = 0; i <= static_cast<int>(ResultAnswer::no_cause); ++i) {
     const auto answer = static_cast<ResultAnswer>(i);
     EXPECT_EQ(parse_answer(to_string(answer)), answer);
     texts.insert(to_string(answer));

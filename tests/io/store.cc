@@ -41,6 +41,33 @@ TEST(Store, GivesBackASession) {
   EXPECT_EQ(back.steps, 5);
 }
 
+TEST(Store, ExtendsThePlanOfASessionThatGoesOn) {
+  const Scratch scratch;
+  const auto store = opened(scratch.folder());
+  const std::int64_t id = store->begin(some_session(), some_plan(3, 6)).value();
+  ASSERT_TRUE(store->set_state(id, SessionState::collected, 5));
+
+  ASSERT_TRUE(store->extend(id, some_plan(2, 6, 9)));
+
+  const auto back = opened(scratch.folder())->plan(id).value();
+  ASSERT_EQ(back.size(), 5);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(back[static_cast<std::size_t>(i)].index, i);
+  EXPECT_EQ(back[2].start, some_plan(3, 6)[2].start);
+  EXPECT_EQ(back[4].end, some_plan(2, 6, 9)[1].end);
+  const SessionRecord session = store->session(id).value();
+  EXPECT_EQ(session.steps, 5);
+  EXPECT_EQ(session.state, SessionState::collecting);
+}
+
+TEST(Store, ExtendsNoSessionThatHasEnded) {
+  const Scratch scratch;
+  const auto store = opened(scratch.folder());
+  const std::int64_t id = store->begin(some_session(), some_plan(3, 6)).value();
+  ASSERT_TRUE(store->set_state(id, SessionState::aborted, 5));
+  expect_failure(store->extend(id, some_plan(2, 6)), "session 1 has ended");
+  EXPECT_EQ(store->plan(id).value().size(), 3);
+}
+
 TEST(Store, GivesBackAPlanBitByBit) {
   const Scratch scratch;
   const auto store = opened(scratch.folder());
@@ -61,6 +88,8 @@ TEST(Store, GivesBackAPlanBitByBit) {
     EXPECT_EQ(back[i].group, plan[i].group);
     EXPECT_EQ(back[i].check, plan[i].check);
     EXPECT_EQ(back[i].via_home, plan[i].via_home);
+    EXPECT_EQ(back[i].slow, plan[i].slow);
+    EXPECT_EQ(back[i].loaded, plan[i].loaded);
     EXPECT_EQ(back[i].way, plan[i].way);
     EXPECT_EQ(back[i].start, plan[i].start);
     EXPECT_EQ(back[i].touch, plan[i].touch);
