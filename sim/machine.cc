@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/corrected_robot.h"
 #include "sim/true_sets.h"
 
 namespace selfcal {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kFinestStep = 1e-9;  // rad or m, of an encoder without a step
 constexpr Nanoseconds kBounce = 40'000;
+constexpr double kDrifts = 3600;  // s, over which a base drifts
 constexpr Nanoseconds kAfterglow = kSecond / 2;
 
 template <class T>
@@ -87,8 +89,36 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
       problems.list.push_back("machine fault misread: the robot has no joint " + fault.joint);
   if (problems.any()) return;
   surfaces_ = true_surfaces(scenario, sets_, truth_.nuisance);
+  add_effects(problems);
   const double step = scenario.encoder_step > 0 ? scenario.encoder_step : kFinestStep;
   scales_.assign(robot_->joints().size(), {step, 0});
+}
+
+/// From here on the true robot is the nominal one with what the model lacks.
+void Machine::add_effects(Problems& problems) {
+  if (settings_.effects.empty()) return;
+  Site site;
+  site.end = kDrifts;
+  site.velocities = site.speeds = true;
+  for (const Set& set : sets_) site.sets.emplace_back().name = set.name;
+  for (const TrueSurface& surface : surfaces_) {
+    SiteSet& set = site.sets[static_cast<std::size_t>(surface.set)];
+    set.touch = true;
+    set.centre = surface.within.centre;
+    set.normal = surface.outward;
+  }
+  if (settings_.warming != 0)
+    for (double t = 0; t <= 24 * 3600; t += 60) {
+      site.times.push_back(t);
+      site.temperatures.push_back(settings_.temperature + settings_.warming * t / 3600);
+    }
+  std::shared_ptr<const Robot> robot = correct(robot_, settings_.effects, site, problems);
+  if (!robot) return;
+  const Eigen::Index geometry = truth_.xi.size();
+  const Eigen::VectorXd all = values(*robot);
+  truth_.xi.conservativeResize(all.size());
+  truth_.xi.tail(all.size() - geometry) = all.tail(all.size() - geometry);
+  robot_ = std::move(robot);
 }
 
 bool Machine::broken(MachineFault::What what, Nanoseconds t) const {

@@ -91,6 +91,8 @@ class Machine {
   void stick(Nanoseconds until);
   Nanoseconds period() const { return nanoseconds(settings_.encoder_period); }
 
+  void add_effects(Problems& problems);
+
   // sim/machine_lock.cc
   void turn_lock(const MotionRequest& request);
   void pass_lock(Nanoseconds until);
@@ -111,6 +113,9 @@ class Machine {
   double offset(const MotionRequest& request, int set);
   Random stream_of(const std::string& label) const;
   Eigen::ArrayXXd true_joints(const Eigen::ArrayXXd& readings) const;
+  Conditions conditions(const MotionRequest& request, const Trajectory& path,
+                        const TrueSurface& surface) const;
+  void hang_payload(ConfigurationBlock& block) const;
 
   Scenario scenario_;
   MachineScenario settings_;

@@ -61,6 +61,33 @@ double Machine::offset(const MotionRequest& request, int set) {
   return scenario_.sets[set].noise * chance.noise + chance.early;
 }
 
+/// What else holds on a path that meets a surface.
+Conditions Machine::conditions(const MotionRequest& request, const Trajectory& path,
+                               const TrueSurface& surface) const {
+  const Eigen::VectorXd way = path.at(1) - path.at(0);
+  const double most = way.cwiseAbs().maxCoeff();
+  const double speed = most > 0 ? std::min(request.speed, settings_.speed) / most : 0;
+  Conditions held;
+  held.velocity = (speed * way).transpose().replicate(kLanes, 1);
+  held.normal = surface.outward.transpose().replicate(kLanes, 1);
+  held.temperature.setConstant(kLanes, celsius());
+  held.time.setConstant(kLanes, seconds(now_));
+  held.set.assign(kLanes, surface.set);
+  return held;
+}
+
+/// Its weight on the tool, in the axes that each lane has it in.
+void Machine::hang_payload(ConfigurationBlock& block) const {
+  if (!robot_->statics()) return;
+  Locations X;
+  robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
+  block.conditions.wrench.setZero(kLanes, 6);
+  for (int lane = 0; lane < kLanes; ++lane)
+    block.conditions.wrench.row(lane).head<3>() =
+        (settings_.payload * X.R(lane).transpose() * robot_->statics()->mechanics().gravity)
+            .transpose();
+}
+
 std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
                                                   const Trajectory& path) {
   std::vector<Crossing> found;
@@ -76,13 +103,16 @@ std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, path.at(0).size()), kLanes};
   Locations X;
   Closure closure;  // no surface is crossed where the robot cannot stand
+  const bool carries = settings_.payload > 0 && request.label.ends_with(kWithPayload);
   const auto locate = [&](double from, double to) {
     for (int lane = 0; lane < kLanes; ++lane)
       block.q.row(lane) = path.at(from + (to - from) * lane / (kLanes - 1.0)).transpose().array();
     block.q = true_joints(block.q);
+    if (carries) hang_payload(block);
     closure = robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
   };
   for (const TrueSurface& surface : surfaces_) {
+    if (!settings_.effects.empty()) block.conditions = conditions(request, path, surface);
     double off = contact_set_ == surface.set ? contact_offset_ : 0;
     bool drawn = request.kind != MoveKind::touch;
     const auto outside = [&](int lane) { return surface.outward.dot(X.p(lane)) - surface.d - off; };

@@ -78,6 +78,8 @@ MachineScenario read_machine_scenario(const Node& node, Problems& problems) {
   within("temperature", machine.temperature, -40, 80);
   within("warming", machine.warming, -20, 20);
   machine.trigger_pull = fields.text("trigger_pull", "");
+  within("payload", machine.payload, 0, 1000);
+  if (const Node* effects = fields.node("effects")) machine.effects = effects->items;
   if (const Node* faults = fields.node("faults"))
     for (const Node& each : faults->items) machine.faults.push_back(read_fault(each, problems));
   fields.refuse_unknown();

@@ -13,6 +13,11 @@
 //                                            the way to which the lock slips
 //   temperature     20        -40 to 80      °C at the start
 //   warming         0         -20 to 20      °C per hour
+//   effects         []                       what the model lacks: entries as of a robot file's
+//                                            `effects` ({effect: backlash, at: j2, play: 5e-4});
+//                                            moment, begin, end (3600) are s from the start
+//   payload         0         0 to 1000 kg   on the tool, its centre at the tip, in moves whose
+//                                            label ends with ", payload"
 //   trigger_pull    none                     played in a process of its own with a trigger of
 //                                            kind gpio: file of gpio-sim that drives the line,
 //                                            /sys/devices/platform/DEVICE/CHIP/sim_gpioN/pull
@@ -52,6 +57,8 @@ struct MachineScenario {
   double lock_time = 0.2, lock_slip = 1e-3;
   std::vector<int> lock_slips;
   double temperature = 20, warming = 0;
+  std::vector<Node> effects;
+  double payload = 0;
   std::string trigger_pull;
   std::vector<MachineFault> faults;
 };

@@ -164,5 +164,63 @@ TEST(Machine, AnswersEachRequestWithWhatCameOfIt) {
   EXPECT_EQ(outcomes(), "refused ");
 }
 
+// ------------------------------------------------------------------- what the model lacks
+
+/// Height of the end position at a moment, as the model without effects has it (m).
+double height_of_model(const Machine& plain, const Eigen::VectorXd& readings) {
+  return locate(plain.robot(), plain.truth().xi, readings).p.z();
+}
+
+/// Mean of how much higher the model takes the contacts for, of those that `joint` comes to by
+/// falling readings or by rising ones (m).
+double higher_by(const std::string& effects, int joint, bool falling) {
+  Machine plain = machine_of(table()), with = machine_of(table("effects: [" + effects + "]"));
+  double sum = 0;
+  int count = 0;
+  for (const PlannedTouch& planned : planned_touches()) {
+    if ((planned.end[joint] < planned.start[joint]) != falling) continue;
+    const Touched a = touch(plain, planned, "t"), b = touch(with, planned, "t");
+    EXPECT_TRUE(a.closing && b.closing);
+    sum += height_of_model(plain, with.readings(*b.closing)) -
+           height_of_model(plain, plain.readings(*a.closing));
+    ++count;
+    go(plain, MoveKind::retract, planned.start);
+    go(with, MoveKind::retract, planned.start);
+  }
+  EXPECT_GT(count, 0);
+  return sum / std::max(count, 1);
+}
+
+TEST(MachineEffects, HaveAZeroSlipped) {
+  Machine plain = machine_of(table());
+  Machine slipped =
+      machine_of(table("effects: [{effect: zero_shift, at: j2, moment: 0, step: 1.0e-3}]"));
+  const auto at_contact = [&](Machine& machine) {
+    const Touched touched = touch(machine, planned_touches()[0], "a");
+    return machine.readings(*touched.closing);
+  };
+  const Eigen::VectorXd readings = at_contact(slipped);
+  Eigen::VectorXd joints = readings;
+  joints[1] += 1e-3;
+  const double table = height_of_model(plain, at_contact(plain));
+  EXPECT_NEAR(height_of_model(plain, joints), table, 2e-5) << "the table is 4 mrad off level";
+  EXPECT_GT(std::abs(height_of_model(plain, readings) - table), 2e-4);
+}
+
+TEST(MachineEffects, ShowPlayByTheSideOfTheApproach) {
+  const std::string play = "{effect: backlash, at: j3, play: 2.0e-3}";
+  const double rising = higher_by(play, 2, false), falling = higher_by(play, 2, true);
+  EXPECT_LT(rising * falling, 0) << rising << " " << falling;
+  EXPECT_GT(std::abs(rising - falling), 2e-4) << "of 1 mrad at an arm of some 0.5 m";
+}
+
+TEST(MachineEffects, AreRefusedWhereTheRobotCannotHaveThem) {
+  Problems problems;
+  const Machine machine(table("effects: [{effect: backlash, at: j9, play: 1.0e-3}]"),
+                        {std::shared_ptr<void>(), &rx90()}, home(), problems);
+  ASSERT_TRUE(problems.any());
+  EXPECT_NE(problems.list.front().find("j9"), std::string::npos) << problems.list.front();
+}
+
 }  // namespace
 }  // namespace selfcal
