@@ -215,9 +215,10 @@ Eigen::MatrixXd times_between(const Surroundings& cell, const std::vector<Planne
   return time;
 }
 
-/// The touches in an order of short ways, begun at home, one set after the other.
-std::vector<PlannedTouch> order(const Surroundings& cell, const std::vector<Set>& sets,
-                                const std::vector<PlannedTouch>& touches) {
+}  // namespace
+
+std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
+                                         const std::vector<PlannedTouch>& touches) {
   std::vector<PlannedTouch> path;
   for (const int place : short_tour_from_first(times_between(cell, touches))) {
     if (place == 0) continue;
@@ -234,7 +235,23 @@ std::vector<PlannedTouch> order(const Surroundings& cell, const std::vector<Set>
   return path;
 }
 
-}  // namespace
+std::vector<std::vector<PlannedTouch>> usable_touches(const Robot& robot, const Eigen::VectorXd& xi,
+                                                      const std::vector<Set>& sets,
+                                                      const std::vector<TouchTarget>& targets,
+                                                      const std::vector<Obstacle>& obstacles,
+                                                      const TouchPlanOptions& options,
+                                                      Random& random, const Progress& progress) {
+  const Candidates candidates(robot, xi, sets, obstacles, options);
+  std::vector<std::vector<PlannedTouch>> usable;
+  for (const TouchTarget& target : targets) {
+    const auto before = static_cast<double>(usable.size());
+    usable.push_back(candidates.of(target, target.obstacle, random, [&](double share) {
+      if (progress)
+        progress("looking for touches", (before + share) / static_cast<double>(targets.size()));
+    }));
+  }
+  return usable;
+}
 
 TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                        const std::vector<TouchTarget>& targets,
@@ -244,15 +261,12 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
     if (progress) progress(stage, share);
   };
   TouchPlan plan;
-  const Candidates candidates(robot, xi, sets, obstacles, options);
   Random random(options.seed);
-  std::vector<std::vector<PlannedTouch>> usable;
-  for (const TouchTarget& target : targets) {
-    const auto before = static_cast<double>(usable.size());
-    usable.push_back(candidates.of(target, target.obstacle, random, [&](double share) {
-      tell("looking for touches", (before + share) / static_cast<double>(targets.size()));
-    }));
-    const auto found = static_cast<int>(usable.back().size());
+  const auto usable =
+      usable_touches(robot, xi, sets, targets, obstacles, options, random, progress);
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const TouchTarget& target = targets[t];
+    const auto found = static_cast<int>(usable[t].size());
     if (found < target.touches && plan.unreached.empty())
       plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(found) + " of " +
                        std::to_string(target.touches) +
@@ -262,8 +276,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   const std::vector<PlannedTouch> chosen =
       choose(robot, xi, sets, targets, usable, workspace, options.check, random, progress);
   tell("ordering touches", 0);
-  plan.touches =
-      order({robot, xi, obstacles, options.apart, options.home, options.speed}, sets, chosen);
+  plan.touches = in_short_order({robot, xi, obstacles, options.apart, options.home, options.speed},
+                                sets, chosen);
   return plan;
 }
 
@@ -309,8 +323,9 @@ MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const Touc
     if (each.via_home) travel(options.home);
     for (const Eigen::VectorXd& place : each.way) travel(place);
     travel(each.start);
+    const double speed_in = each.slow ? touch_speed / kSlower : touch_speed;
     const double way =
-        (locate(robot, xi, each.touch).p - locate(robot, xi, each.start).p).norm() / touch_speed;
+        (locate(robot, xi, each.touch).p - locate(robot, xi, each.start).p).norm() / speed_in;
     time.touching += repeats * (1 + 1 / kRetreatFaster) * way;
   }
   travel(options.home);

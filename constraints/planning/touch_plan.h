@@ -43,6 +43,8 @@ struct TouchPlanOptions {
 struct PlannedTouch {
   int set = 0, group = -1;
   bool check = false;
+  bool slow = false;                  ///< into the contact at a share of the usual speed
+  bool loaded = false;                ///< with the payload on the tool
   bool via_home = false;              ///< the way there leads through `home`
   std::vector<Eigen::VectorXd> way;   ///< readings that it leads through else; none: straight
   Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up; all the
@@ -61,6 +63,21 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
                        const std::vector<TouchTarget>& targets,
                        const std::vector<Obstacle>& obstacles, const Workspace& workspace,
                        const TouchPlanOptions& options, const Progress& progress = {});
+
+/// Usable touches of each target, four for each that it asks for where there are as many, in no
+/// order; without `way`.
+std::vector<std::vector<PlannedTouch>> usable_touches(
+    const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+    const std::vector<TouchTarget>& targets, const std::vector<Obstacle>& obstacles,
+    const TouchPlanOptions& options, Random& random, const Progress& progress = {});
+
+/// Usable touches in an order of short ways, begun at home, one set after the other, with the ways
+/// between them.
+std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
+                                         const std::vector<PlannedTouch>& touches);
+
+/// Into and out of a slow contact the robot moves so much slower.
+inline constexpr double kSlower = 3;
 
 /// How sure the end position will be, a rigid motion removed.
 struct ExpectedSigma {
