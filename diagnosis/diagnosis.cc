@@ -50,7 +50,7 @@ class Diagnostician {
     result_.where = attribution(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable(view_, *bench_, options_, result_);
-    NextSteps next = next_steps(view_, data_, result_);
+    NextSteps next = next_steps(view_, data_, result_, options_);
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);
     tell("closing the gap", 0.85);

@@ -16,6 +16,12 @@
 
 namespace selfcal {
 
+/// Rows that can be taken next, as the rows of the data set are; nothing measured.
+struct PossibleRows {
+  Observations rows;              ///< of the data set's sets
+  std::vector<std::string> what;  ///< by row, in a few words: "in another posture"
+};
+
 struct DiagnosisOptions {
   SearchRule search;
   /// A cause is named when `none` is less probable than the first of these, and noise looks as much
@@ -25,6 +31,9 @@ struct DiagnosisOptions {
   int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
   double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
   unsigned long long seed = 1;
+  /// Of these the further rows are chosen; null: of what the robot could do on paper.
+  std::shared_ptr<const PossibleRows> possible = {};
+  int most_further = 20;  ///< of them at most
 };
 
 struct NamedValue {
@@ -79,6 +88,7 @@ struct NextStep {
   std::vector<std::string> separates;
   double probability_after = 0;  ///< NaN where it is not known
   Observations rows;  ///< to measure: readings, set, and what else shall hold (nothing measured)
+  std::vector<int> chosen = {};  ///< which of the possible rows these are, from 0
 };
 
 /// What simulated sessions over the same configurations taught.

@@ -6,85 +6,23 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "diagnosis/report/further_rows.h"
+#include "diagnosis/report/row_choice.h"
+#include "diagnosis/report/separation.h"
 #include "diagnosis/search/causes.h"
-#include "kinematics/corrected_robot.h"
-#include "kinematics/expects.h"
-#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
 constexpr double kWorth = 0.02;  ///< of probability that a step must bring to be worth its while
 constexpr size_t kMostSteps = 3, kMostForUnknown = 4;
+constexpr double kLeastAtIssue = 0.02;  ///< probability of a cause that rows are chosen for
+constexpr size_t kMostAtIssue = 5;
+constexpr double kSettled = 0.95;
 constexpr double kEdge = 0.05;  ///< least probable cause that may yet be there where none is named
-
-/// Rows of the geometry, A's own columns and B's, of a data set; whitened.
-class Paper {
- public:
-  Paper(const LinearisedModel& view, const std::vector<Node>& a, const std::vector<Node>& b)
-      : view_(view), of_a_(count(a)) {
-    entries_ = a;
-    entries_.insert(entries_.end(), b.begin(), b.end());
-    value_.resize(0);
-    for (const Node& entry : a) {
-      Problems problems;
-      const auto effect = make_effect(entry, view.geometry(), view.site(), problems);
-      for (size_t k = 0; effect && k < effect->parameters().size(); ++k) {
-        value_.conservativeResize(value_.size() + 1);
-        value_[value_.size() - 1] = effect->parameters()[k].value;
-      }
-    }
-  }
-
-  /// Squared sigmas of A beyond geometry and B.
-  double apart(const DataSet& data) const {
-    Problems problems;
-    const auto robot = correct(view_.shared_geometry(), entries_, view_.site(), problems);
-    expects(robot != nullptr, "causes that were weighed are effects that the robot can have");
-    const Equations equations(*robot, data, Use::fit);
-    State state = view_.adjusted().fitted.state;
-    const Eigen::Index geometry = state.xi.size();
-    state.xi.conservativeResize(static_cast<Eigen::Index>(robot->parameters().size()));
-    state.xi.tail(state.xi.size() - geometry).setZero();
-    const DenseEquations dense = equations.dense(
-        state, view_.noise_of_sets(), std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
-    const Eigen::MatrixXd of_a = dense.W.middleCols(geometry, of_a_);
-    const Eigen::VectorXd left = of_a * value_.head(of_a_);
-    std::vector<int> others;
-    for (int c = 0; c < dense.W.cols(); ++c)
-      if (c < geometry ? view_.adjusted().prior.free[c] != 0 : c >= geometry + of_a_)
-        others.push_back(c);
-    Eigen::MatrixXd explain =
-        Eigen::MatrixXd::Zero(dense.W.rows() + static_cast<Eigen::Index>(others.size()),
-                              static_cast<Eigen::Index>(others.size()));
-    explain.topRows(dense.W.rows()) = dense.W(Eigen::all, others);
-    for (size_t i = 0; i < others.size(); ++i)
-      if (others[i] < geometry)
-        explain(dense.W.rows() + static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) =
-            1 / view_.adjusted().prior.sigma[others[i]];
-    Eigen::VectorXd target = Eigen::VectorXd::Zero(explain.rows());
-    target.head(left.size()) = left;
-    return beyond(explain, target).squaredNorm();
-  }
-
- private:
-  Eigen::Index count(const std::vector<Node>& entries) const {
-    Eigen::Index n = 0;
-    Problems problems;
-    for (const Node& entry : entries)
-      if (const auto effect = make_effect(entry, view_.geometry(), view_.site(), problems))
-        n += static_cast<Eigen::Index>(effect->parameters().size());
-    return n;
-  }
-
-  const LinearisedModel& view_;
-  Eigen::Index of_a_;
-  std::vector<Node> entries_;
-  Eigen::VectorXd value_;
-};
 
 std::string first_label(const CauseResult& cause) {
   return label(cause.effect, cause.where.empty() ? "" : cause.where.front());
@@ -100,6 +38,10 @@ struct Question {
     return {first_label(*one), other ? first_label(*other) : std::string(kNone)};
   }
 };
+
+std::vector<Node> other_entries(const CauseResult* other) {
+  return other ? entries_of(other->correction) : std::vector<Node>{};
+}
 
 double odds(double one, double other) {
   return std::clamp(one / std::max(one + other, 1e-12), 0.01, 0.99);
@@ -142,12 +84,46 @@ bool unknown_at_issue(const Diagnosis& diagnosis) {
          });
 }
 
+double probability_of(const Diagnosis& diagnosis, std::string_view effect) {
+  const auto found = std::ranges::find(diagnosis.candidates, effect, &CauseResult::effect);
+  return found == diagnosis.candidates.end() ? 0 : found->probability;
+}
+
+/// The causes that rows shall tell apart, most probable first: those that are probable, or look
+/// like one that is; none where it is settled.
+std::vector<const CauseResult*> at_issue(const Diagnosis& diagnosis) {
+  const auto looks_alike = [&](const CauseResult& each) {
+    return std::ranges::any_of(diagnosis.candidates, [&](const CauseResult& other) {
+      return other.probability >= kEdge &&
+             std::ranges::any_of(other.confounded_with, [&](const std::string& name) {
+               return name.substr(0, name.find('@')) == each.effect;
+             });
+    });
+  };
+  std::vector<const CauseResult*> list;
+  for (const CauseResult& each : diagnosis.candidates)
+    if (!each.correction.empty() && list.size() < kMostAtIssue &&
+        (each.probability >= kLeastAtIssue || looks_alike(each)))
+      list.push_back(&each);
+  const bool settled =
+      list.empty() || (list.size() == 1 && (list.front()->probability >= kSettled ||
+                                            probability_of(diagnosis, kNone) < kEdge));
+  if (settled || list.front()->probability < kEdge) return {};
+  return list;
+}
+
 class Planner {
  public:
-  Planner(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis)
-      : view_(view), data_(data), diagnosis_(diagnosis), asked_(questions(diagnosis)) {}
+  Planner(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
+          const DiagnosisOptions& options)
+      : view_(view),
+        data_(data),
+        diagnosis_(diagnosis),
+        options_(options),
+        asked_(questions(diagnosis)) {}
 
   NextSteps run() {
+    if (options_.possible) return choose();
     if (asked_.empty() && !unknown_at_issue(diagnosis_)) return {{}, why_nothing()};
     further_ = candidate_rows(view_, data_);
     for (const Question& each : asked_) try_all(each);
@@ -160,6 +136,53 @@ class Planner {
   }
 
  private:
+  /// Those of the possible rows that tell all that is at issue from each other.
+  NextSteps choose() {
+    const std::vector<const CauseResult*> causes = at_issue(diagnosis_);
+    if (causes.empty()) return {{}, why_nothing()};
+    DataSet both = data_;
+    both.rows = joined(data_.rows, options_.possible->rows);
+    const int first = data_.rows.rows();
+    both.rows.check.resize(both.rows.set.size(), 0);
+    if (both.rows.time.size() > 0)
+      both.rows.time.tail(both.rows.rows() - first).setConstant(view_.site().end + 1);
+    std::vector<CausePair> pairs;
+    const double none = probability_of(diagnosis_, kNone);
+    for (const CauseResult* one : causes) {
+      for (const CauseResult* other : causes)
+        if (one != other)
+          pairs.push_back(pair_of(*one, entries_of(other->correction), other->probability));
+      if (none >= kEdge) pairs.push_back(pair_of(*one, {}, none));
+    }
+    if (pairs.empty()) return {{}, why_nothing()};
+    const RowChoice choice = choose_rows(view_, both, first, pairs, options_.most_further);
+    if (choice.rows.empty())
+      return {{}, "none of the rows that can be taken tells these causes apart"};
+    NextStep step;
+    std::map<std::string, int> kinds;
+    for (const int row : choice.rows) {
+      step.chosen.push_back(row - first);
+      ++kinds[options_.possible->what[static_cast<size_t>(row - first)]];
+    }
+    for (const auto& [what, count] : kinds)
+      step.what += (step.what.empty() ? "take " : ", ") + std::to_string(count) + " " + what;
+    for (const CauseResult* each : causes) step.separates.push_back(first_label(*each));
+    if (none >= kEdge) step.separates.emplace_back(kNone);
+    double left = 0;
+    for (size_t k = 0; k < pairs.size(); ++k)
+      left +=
+          2 * pairs[k].weight * std::exp(-choice.apart[k] / 2) / static_cast<double>(pairs.size());
+    step.probability_after = 1 - std::min(left, 1.0);
+    step.rows = taken(both.rows, choice.rows);
+    return {{std::move(step)}, {}};
+  }
+
+  static CausePair pair_of(const CauseResult& one, std::vector<Node> other, double probability) {
+    const double p = std::max(one.probability, kLeastAtIssue),
+                 q = std::max(probability, kLeastAtIssue);
+    return {entries_of(one.correction), std::move(other), p * q / (p + q)};
+  }
+
   std::string why_nothing() const {
     if (names_effect(diagnosis_.verdict.effect)) return "nothing looks like what is named";
     return "no cause is as probable as 5 %: more of the same rows would only lower that";
@@ -173,12 +196,14 @@ class Planner {
 
   /// All that are worth their while; where none is, the best of them, and that it is not.
   void try_all(const Question& asked) {
-    const Paper paper(view_, entries_of(asked.one->correction),
-                      asked.other ? entries_of(asked.other->correction) : std::vector<Node>{});
-    const double now = paper.apart(data_), p = asked.probability;
+    const double p = asked.probability;
     std::vector<NextStep> steps;
     for (const CandidateRows& further : further_) {
-      const double gain = std::max((paper.apart(further.both) - now) / 2, 0.0);
+      Separation causes(view_, entries_of(asked.one->correction), other_entries(asked.other),
+                        further.both, data_.rows.rows());
+      const double now = causes.apart();
+      causes.take_all();
+      const double gain = (causes.apart() - now) / 2;
       steps.push_back(
           {further.what, asked.names(), 1 / (1 + (1 - p) / p * std::exp(-gain)), rows_of(further)});
     }
@@ -209,6 +234,7 @@ class Planner {
   const LinearisedModel& view_;
   const DataSet& data_;
   const Diagnosis& diagnosis_;
+  const DiagnosisOptions& options_;
   const std::vector<Question> asked_;
   std::vector<CandidateRows> further_;
   NextSteps next_;
@@ -216,8 +242,9 @@ class Planner {
 
 }  // namespace
 
-NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis) {
-  return Planner(view, data, diagnosis).run();
+NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
+                     const DiagnosisOptions& options) {
+  return Planner(view, data, diagnosis, options).run();
 }
 
 }  // namespace selfcal

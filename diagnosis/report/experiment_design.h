@@ -15,7 +15,9 @@ struct NextSteps {
 /// probable one and noise: each kind of further rows tried on paper. What a cause of the estimated
 /// size would leave when explained by the other one says how sure one would then be. For structure
 /// that no known effect explains: what would show of which kind it is. The best ones; never none
-/// without a reason.
-NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis);
+/// without a reason. Where `options` has possible rows, one step: those of them that tell all
+/// causes that are at issue from each other.
+NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
+                     const DiagnosisOptions& options = {});
 
 }  // namespace selfcal

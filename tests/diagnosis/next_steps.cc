@@ -106,5 +106,51 @@ TEST_F(NextStepsOfAnArm, SayWhyThereAreNone) {
   EXPECT_THAT(of(diagnosis).why, HasSubstr("nothing looks like what is named"));
 }
 
+// ----------------------------------------------------------- of rows that a cell can take
+
+/// Rows of the data set once more; every second one approached from the other side.
+std::shared_ptr<PossibleRows> once_more(const DataSet& data) {
+  auto possible = std::make_shared<PossibleRows>();
+  std::vector<int> rows;
+  for (int row = 0; row < std::min(data.rows.rows(), 24); ++row) rows.push_back(row);
+  possible->rows = taken(data.rows, rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    possible->what.emplace_back(i % 2 == 0 ? "once more" : "from the other side");
+    if (i % 2 != 0) possible->rows.velocity.row(static_cast<Eigen::Index>(i)) *= -1;
+  }
+  return possible;
+}
+
+TEST_F(NextStepsOfAnArm, AreChosenOfTheRowsThatACellCanTake) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = backlash(0.6);
+  diagnosis.verdict.confounded_with = {"joint_coupling@j3"};
+  diagnosis.named = {diagnosis.verdict};
+  diagnosis.candidates = {diagnosis.verdict, coupling(0.35)};
+  DiagnosisOptions options;
+  options.possible = once_more(*data_);
+  options.most_further = 6;
+  const NextSteps next = next_steps(*view_, *data_, diagnosis, options);
+  ASSERT_EQ(next.steps.size(), 1);
+  const NextStep& step = next.steps.front();
+  ASSERT_FALSE(step.chosen.empty());
+  EXPECT_LE(step.chosen.size(), 6);
+  EXPECT_EQ(step.rows.rows(), static_cast<int>(step.chosen.size()));
+  EXPECT_GT(step.probability_after, 0.5);
+  EXPECT_THAT(step.separates, testing::ElementsAre("backlash@j3", "joint_coupling@j3"));
+}
+
+TEST_F(NextStepsOfAnArm, AskForNoRowWhereTheCauseIsSettled) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = backlash(0.99);
+  diagnosis.named = {diagnosis.verdict};
+  diagnosis.candidates = {backlash(0.99), {.effect = kNone, .probability = 0.001}};
+  DiagnosisOptions options;
+  options.possible = once_more(*data_);
+  const NextSteps next = next_steps(*view_, *data_, diagnosis, options);
+  EXPECT_TRUE(next.steps.empty());
+  EXPECT_NE(next.why, "");
+}
+
 }  // namespace
 }  // namespace selfcal

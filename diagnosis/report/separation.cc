@@ -1,0 +1,103 @@
+#include "diagnosis/report/separation.h"
+
+#include <cmath>
+
+#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
+
+namespace selfcal {
+namespace {
+
+/// 1 over the largest whitened change that any column may explain: it holds what no row tells.
+constexpr double kRidge = 1e-6;
+
+/// Values of all parameters of the entries' effects.
+std::vector<double> values_of(const LinearisedModel& view, const std::vector<Node>& entries) {
+  std::vector<double> list;
+  Problems problems;
+  for (const Node& entry : entries) {
+    const auto effect = make_effect(entry, view.geometry(), view.site(), problems);
+    expects(effect != nullptr, "causes that were weighed are effects that the robot can have");
+    for (const EffectParameter& each : effect->parameters()) list.push_back(each.value);
+  }
+  return list;
+}
+
+}  // namespace
+
+Separation::Separation(const LinearisedModel& view, const std::vector<Node>& cause,
+                       const std::vector<Node>& other, const DataSet& data, int first)
+    : first_(first) {
+  std::vector<Node> entries = cause;
+  entries.insert(entries.end(), other.begin(), other.end());
+  Problems problems;
+  const auto robot = correct(view.shared_geometry(), entries, view.site(), problems);
+  expects(robot != nullptr, "causes that were weighed are effects that the robot can have");
+  const Equations equations(*robot, data, Use::fit);
+  State state = view.adjusted().fitted.state;
+  const Eigen::Index geometry = state.xi.size();
+  state.xi.conservativeResize(static_cast<Eigen::Index>(robot->parameters().size()));
+  state.xi.tail(state.xi.size() - geometry).setZero();
+  const DenseEquations dense = equations.dense(
+      state, view.noise_of_sets(), std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
+  const std::vector<double> value = values_of(view, cause);
+  const auto own = static_cast<Eigen::Index>(value.size());
+  const Eigen::VectorXd t =
+      dense.W.middleCols(geometry, own) * Eigen::Map<const Eigen::VectorXd>(value.data(), own);
+  std::vector<int> others;
+  for (int c = 0; c < dense.W.cols(); ++c)
+    if (c < geometry ? view.adjusted().prior.free[c] != 0 : c >= geometry + own)
+      others.push_back(c);
+  Eigen::MatrixXd X = dense.W(Eigen::all, others);
+  const auto n = X.cols();
+  R_ = kRidge * Eigen::MatrixXd::Identity(n, n);
+  z_.setZero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double size = X.col(i).norm();
+    if (size > 0) X.col(i) /= size;
+    if (const int c = others[static_cast<size_t>(i)]; c < geometry && size > 0)
+      R_(i, i) = std::hypot(kRidge, 1 / (size * view.adjusted().prior.sigma[c]));
+  }
+  std::vector<int> counted;
+  further_.resize(static_cast<size_t>(data.rows.rows() - first));
+  for (int e = 0; e < X.rows(); ++e) {
+    if (const int row = dense.row[static_cast<size_t>(e)]; row >= first)
+      further_[static_cast<size_t>(row - first)].push_back({X.row(e).transpose(), t[e]});
+    else
+      counted.push_back(e);
+  }
+  add(X(counted, Eigen::all), t(counted));
+}
+
+void Separation::add(const Eigen::MatrixXd& X, const Eigen::VectorXd& t) {
+  const Eigen::Index n = R_.cols(), more = X.rows();
+  Eigen::MatrixXd all(n + more, n + 1);
+  all << R_, z_, X, t;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
+  const Eigen::MatrixXd whole =
+      qr.matrixQR().topRows(std::min(n + 1, n + more)).triangularView<Eigen::Upper>();
+  R_ = whole.topLeftCorner(n, n);
+  z_ = whole.topRightCorner(n, 1);
+  if (whole.rows() > n) left_ += whole(n, n) * whole(n, n);
+}
+
+double Separation::gain(int row) const {
+  double sum = 0;
+  for (const Equation& each : further_[static_cast<size_t>(row - first_)]) {
+    const Eigen::VectorXd s = R_.transpose().triangularView<Eigen::Lower>().solve(each.x);
+    const double off = each.t - s.dot(z_);
+    sum += off * off / (1 + s.squaredNorm());
+  }
+  return sum;
+}
+
+void Separation::take(int row) {
+  for (const Equation& each : further_[static_cast<size_t>(row - first_)])
+    add(each.x.transpose(), Eigen::VectorXd::Constant(1, each.t));
+}
+
+void Separation::take_all() {
+  for (size_t i = 0; i < further_.size(); ++i) take(first_ + static_cast<int>(i));
+}
+
+}  // namespace selfcal
