@@ -14,7 +14,7 @@ _selfcal() {
   case $COMP_CWORD:$command in
     1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve bridge monitor command history report --help --version" ;;
     *:identify) words="--fix --free --effects --out --json --help" ;;
-    *:diagnose) words="--sim --tool --since --next --out --json --help" ;;
+    *:diagnose) words="--sim --tool --since --next --cell --out --json --help" ;;
     2:trial) words="seal run score --help" ;;
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
@@ -28,7 +28,7 @@ _selfcal() {
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
     *:bridge) words="--action --touch --acceleration --patience --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --web --allow-commands --token --help" ;;
-    2:command) words="start check abort accept reject rollback --help" ;;
+    2:command) words="start check diagnose done abort accept reject rollback --help" ;;
     *:command) words="--robot --domain --wait --json --help" ;;
     *:history) words="--newest --events --export --report --json --help" ;;
     *:report) words="--out --help" ;;

@@ -54,10 +54,13 @@ void add_command(CLI::App& app, int& status) {
       app.add_subcommand("command", "Ask the service; exit 1 when it refuses, with its reason");
   command
       ->add_option("VERB", arguments->verb,
-                   "start a session, a quick check; abort; accept or reject the result that waits; "
+                   "start a session, a quick check; diagnose what calibration leaves; done with "
+                   "what it asks of a person; abort; "
+                   "accept or reject the result that waits; "
                    "rollback to the parameters before")
       ->required()
-      ->check(CLI::IsMember({"start", "check", "abort", "accept", "reject", "rollback"}));
+      ->check(CLI::IsMember(
+          {"start", "check", "diagnose", "done", "abort", "accept", "reject", "rollback"}));
   add_whom(*command, arguments->whom, "Most seconds to wait for a service, and for its reply");
   command->callback([arguments, &status] { status = ask_command(*arguments); });
 }

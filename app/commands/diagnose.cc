@@ -15,6 +15,7 @@
 #include "app/report/gap_words.h"
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/progress_line.h"
+#include "app/service/cause_search.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
@@ -24,7 +25,7 @@ namespace selfcal {
 namespace {
 
 struct DiagnoseArguments {
-  std::string data_set, since, simulated, tool, next, out;
+  std::string data_set, since, simulated, tool, next, cell, out;
   bool json = false;
 };
 
@@ -94,10 +95,31 @@ void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosi
   diagnosis.next.insert(diagnosis.next.begin(), std::move(step));
 }
 
+/// The further rows are touches that the cell can make.
+Result<DiagnosisOptions> options_in(const std::string& cell, const Inputs& inputs,
+                                    const Progress& progress) {
+  DiagnosisOptions options;
+  if (cell.empty()) return options;
+  const auto config = load_config(cell);
+  if (!config) return tl::unexpected(config.error());
+  if (const std::string why = incomparable(*config->robot, *inputs.robot); !why.empty())
+    return bad_input(cell + " " + why);
+  const CellTouches touches =
+      possible_touches(*inputs.robot, *config, {}, inputs.measured.data, options.seed, progress);
+  if (touches.touches.empty())
+    return bad_input(cell + ": no surface of it is touched in " + inputs.measured.name);
+  options.possible = std::make_shared<PossibleRows>(touches.rows);
+  options.most_further = config->causes.round;
+  return options;
+}
+
 Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) {
   const DataSet& data = inputs.measured.data;
   ProgressLine line;
-  Findings found{inputs.measured.name, diagnose(inputs.robot, data, {}, shown_on(line)), {}, {}};
+  const auto options = options_in(arguments.cell, inputs, shown_on(line));
+  if (!options) return tl::unexpected(options.error());
+  Findings found{
+      inputs.measured.name, diagnose(inputs.robot, data, *options, shown_on(line)), {}, {}};
   if (!found.diagnosis.problem.empty())
     return bad_input(arguments.data_set + ": " + found.diagnosis.problem);
   look_at_files_first(arguments.data_set, inputs, found.diagnosis);
@@ -189,6 +211,8 @@ void add_diagnose(CLI::App& app, int& status) {
   command->add_option("--since", arguments->since,
                       "Earlier data set of the same robot: what changed");
   command->add_option("--next", arguments->next, "File for the rows to measure next");
+  command->add_option("--cell", arguments->cell,
+                      "CONFIG.yaml of the robot's cell: what to measure next are touches in it");
   command->add_option("--out", arguments->out,
                       "Folder for diagnosis.json, report.html and corrected.robot.yaml");
   command->add_flag("--json", arguments->json, "Print diagnosis.json alone on standard output");

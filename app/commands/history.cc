@@ -1,5 +1,6 @@
 // selfcal history: past sessions and results, how the parameters drifted, which slots are filled.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -52,7 +53,8 @@ void print_sessions(const std::vector<Past>& past) {
     std::printf(
         "%-14s  %-9s  %8s %8s %8s  %7d %5d %4s\n", std::string(to_string(r->answer)).c_str(),
         std::string(to_string(r->decision)).c_str(), figure(!failed, r->check_before).c_str(),
-        figure(!failed, r->check_after).c_str(), figure(full && !failed, r->endpoint_sigma).c_str(),
+        figure(!failed, r->check_after).c_str(),
+        figure(full && !failed && std::isfinite(r->endpoint_sigma), r->endpoint_sigma).c_str(),
         r->touches, r->rejected, full ? std::to_string(r->identified).c_str() : "-");
   }
 }

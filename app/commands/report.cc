@@ -6,9 +6,12 @@
 #include "app/commands/support/find_store.h"
 #include "app/commands/support/session_export.h"
 #include "app/report/format.h"
+#include "app/report/page/diagnosis_page.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
+#include "app/service/state.h"
 #include "constraints/estimation/engagements.h"
+#include "diagnosis/diagnosis.h"
 #include "io/files/file.h"
 
 namespace selfcal {
@@ -31,6 +34,21 @@ Result<nlohmann::ordered_json> session_json(Store& store, const SessionRecord& r
   return json;
 }
 
+/// Of a session that looked for a cause: its rows diagnosed once more.
+std::string cause_page(const SessionRows& rows, const nlohmann::ordered_json& session) {
+  ProgressLine line;
+  const Findings found{
+      "session " + std::to_string(rows.record.id),
+      diagnose(rows.robot, rows.data, {},
+               [&](std::string_view stage, double share) { line.show(stage, share); }),
+      {},
+      {}};
+  nlohmann::ordered_json data =
+      diagnosis_data({*rows.robot, rows.data, found.name, unix_now_ms()}, found);
+  data["session"] = session;
+  return page_of(data);
+}
+
 Result<void> write_page(const ReportArguments& arguments) {
   const auto source = find_store(arguments.where);
   if (!source) return tl::unexpected(source.error());
@@ -40,6 +58,8 @@ Result<void> write_page(const ReportArguments& arguments) {
   if (!rows) return tl::unexpected(rows.error());
   const auto session = session_json(**store, rows->record);
   if (!session) return tl::unexpected(session.error());
+  if (rows->record.kind == to_string(SessionKind::cause))
+    return write_file_atomically(arguments.out, cause_page(*rows, *session));
   Engagements found;
   {
     ProgressLine line;

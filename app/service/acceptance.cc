@@ -11,6 +11,10 @@
 namespace selfcal {
 namespace {
 
+constexpr double kFewestFreedoms = 8;  // to compare squares by
+constexpr double kLeastFitP = 1e-3;    // below it what is left is more than noise
+constexpr double kLeastExcess = 1.3;   // of squares over those of noise that are worth a search
+
 template <class... Values>
 std::string sentence(const char* format, Values... values) {
   char text[240];
@@ -30,8 +34,11 @@ std::pair<ParameterChange, ParameterChange> largest_changes(const ByPart& limits
                                                             const Solution& candidate) {
   ParameterChange against_limit, against_sigma;
   double most = 0, most_sigmas = 0;
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+  // The geometry's come first, whatever effects either has.
+  const std::size_t count = std::min(candidate.parameters.size(), active.parameters().size());
+  for (std::size_t i = 0; i < count; ++i) {
     const ParameterResult& each = candidate.parameters[i];
+    if (each.parameter.part == Part::effect) break;
     const double change = each.value - active.parameters()[i].value;
     const double share = std::abs(change) / limits.of(each.parameter);
     if (share > most) {
@@ -107,6 +114,38 @@ AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
     ruling.asks = true;
     ruling.why += "; not applied by itself: the lock of set " + set + " slipped again and again";
   }
+  return ruling;
+}
+
+FitRuling rule_on_fit(const Solution& solution, const std::vector<Set>& sets) {
+  FitRuling ruling;
+  const LackOfFit& fit = solution.uncertainty.lack_of_fit;
+  double ratio = 0;
+  const char* against = "repeats";
+  if (fit.p_value >= 0 && fit.repeat_freedoms >= kFewestFreedoms) {
+    ratio = fit.F;
+    ruling.p_value = fit.p_value;
+  } else {
+    against = "data sheets";
+    double rows = 0;
+    for (const SetResult& each : solution.sets) {
+      const auto set = std::ranges::find(sets, each.name, &Set::name);
+      if (set == sets.end() || set->noise <= 0 || each.noise_sigma <= 0 || each.used == 0) continue;
+      rows += each.used;
+      ratio += each.used * std::pow(each.noise_sigma / set->noise, 2);
+    }
+    const double freedoms = solution.uncertainty.freedoms;
+    if (rows == 0 || freedoms < kFewestFreedoms) {
+      ruling.why = "nothing says how large the noise is";
+      return ruling;
+    }
+    ratio /= rows;
+    ruling.p_value = chi_square_exceeds(ratio * freedoms, freedoms);
+  }
+  ruling.noise = ruling.p_value >= kLeastFitP || ratio < kLeastExcess;
+  ruling.why = sentence("what is left is %.3g times the noise that the %s tell (p = %.2g): %s",
+                        std::sqrt(ratio), against, ruling.p_value,
+                        ruling.noise ? "noise" : "something unmodelled is at work");
   return ruling;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/service/config.h"
+#include "constraints/methods/data_set.h"
 #include "constraints/solution.h"
 #include "io/outcome.h"
 
@@ -24,6 +25,17 @@ struct AcceptanceDecision : ResultFigures {
 /// limit.
 AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
                                   const Solution& candidate, const Solution& unchanged);
+
+/// Whether what a calibration leaves is noise.
+struct FitRuling {
+  bool noise = true;
+  double p_value = 1;
+  std::string why;
+};
+
+/// The squares that are left are compared with those of immediate repeats (F test) or, without
+/// repeats, with the data sheets of the sets that have one (chi square).
+FitRuling rule_on_fit(const Solution& solution, const std::vector<Set>& sets);
 
 /// Parameters that the rows determine.
 std::uint32_t parameters_identified(const Solution& solution);

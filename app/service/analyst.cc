@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "app/service/cause_search.h"
 #include "constraints/site.h"
 
 namespace selfcal {
@@ -47,7 +48,7 @@ bool Analyst::can_check() const {
   return base && base->config_hash == c_.config_hash() && base->model_hash == c_.models.hash();
 }
 
-void Analyst::plan(const std::string& why) {
+SessionRecord Analyst::new_record(const std::string& why) const {
   SessionRecord record;
   record.kind = std::string(to_string(c_.situation.kind));
   record.reason = why;
@@ -57,6 +58,11 @@ void Analyst::plan(const std::string& why) {
   record.started_ms = c_.unix_ms();
   const auto sessions = c_.store.sessions(1);
   record.seed = sessions && !sessions->empty() ? sessions->front().id + 1 : 1;
+  return record;
+}
+
+void Analyst::plan(const std::string& why) {
+  const SessionRecord record = new_record(why);
   TouchPlanOptions options = c_.config.plan;
   options.seed = record.seed;
   const std::vector<TouchTarget> targets =
@@ -94,6 +100,7 @@ void Analyst::analyse() {
   if (!c_.stored(c_.store.set_state(collector_.session().record.id, SessionState::collected,
                                     c_.unix_ms())))
     return;
+  if (collector_.session().kind() == SessionKind::cause) return c_.put(Event::What::computed);
   const bool check = collector_.session().kind() == SessionKind::check;
   data_ = std::make_shared<DataSet>(rows_of(*c_.models.active(), collector_.session(),
                                             collector_.meaning(),
@@ -105,17 +112,38 @@ void Analyst::analyse() {
   join_base();
 }
 
-/// A quick check is judged beside the session behind the active parameters.
+std::optional<Session> Analyst::stored_session(const SessionRecord& record) const {
+  auto plan = c_.store.plan(record.id);
+  auto touches = c_.store.touches(record.id);
+  if (!plan || !touches) return std::nullopt;
+  return Session{record, std::move(*plan), std::move(*touches)};
+}
+
+/// A quick check is judged beside the session behind the active parameters; where that looked for a
+/// cause, beside the full one that it was looked for in, too.
 void Analyst::join_base() {
+  const auto gone = [&] {
+    c_.put(Event::What::computed, false, "the session behind the active parameters is gone");
+  };
   const auto record = c_.store.session(c_.models.session());
-  auto plan = c_.store.plan(c_.models.session());
-  auto touches = c_.store.touches(c_.models.session());
-  if (!record || !plan || !touches)
-    return c_.put(Event::What::computed, false, "the session behind the active parameters is gone");
-  const Session base{*record, std::move(*plan), std::move(*touches)};
-  const auto meaning = read_meaning(base.record.config);
-  if (!meaning) return c_.put(Event::What::computed, false, meaning.error().what);
-  base_ = std::make_shared<DataSet>(rows_of(*c_.models.active(), base, *meaning));
+  if (!record) return gone();
+  std::vector<SessionRecord> behind{*record};
+  if (record->kind == to_string(SessionKind::cause)) {
+    const auto full = base_of_cause(c_.store, record->model_hash, record->config_hash, record->id);
+    if (!full) return gone();
+    behind.insert(behind.begin(), *full);
+  }
+  base_.reset();
+  for (const SessionRecord& each : behind) {
+    const auto session = stored_session(each);
+    if (!session) return gone();
+    const auto meaning = read_meaning(each.config);
+    if (!meaning) return c_.put(Event::What::computed, false, meaning.error().what);
+    DataSet rows = rows_of(*c_.models.active(), *session, *meaning);
+    if (rows.rows.rows() == 0) continue;
+    base_ = std::make_shared<DataSet>(base_ ? merged(*base_, rows) : std::move(rows));
+  }
+  if (!base_) return gone();
   *data_ = joined(*base_, *data_);
   c_.put(Event::What::computed);
 }
@@ -182,7 +210,7 @@ void Analyst::judge() {
     const ResultRecord result = !failure.empty() ? result_of_failure(failure)
                                 : check          ? result_of_check()
                                                  : result_of_candidate();
-    keep_result(result);
+    keep_result(result, !check && failure.empty() && more_than_noise());
   };
 }
 

@@ -26,6 +26,11 @@ class Analyst {
   void identify();
   /// On the rows kept aside; the result is in the store then, with its candidate.
   void judge();
+  /// A full session of this robot and configuration is there to look into.
+  bool can_diagnose() const;
+  /// What the rows of that session and of the touches since say of the cause: further touches that
+  /// tell look-alikes apart, or the result.
+  void diagnose(const std::string& why);
   /// What is under way is not asked for any more.
   void give_up();
   /// Goes on with what has ended since the last turn.
@@ -41,6 +46,7 @@ class Analyst {
   // analyst.cc
   void keep_plan(SessionRecord record, const TouchPlan& plan);
   void join_base();
+  std::optional<Session> stored_session(const SessionRecord& record) const;
   void keep_solution(Engagements found);
 
   // analyst_result.cc
@@ -48,7 +54,18 @@ class Analyst {
   ResultRecord result_of_failure(const std::string& why) const;
   ResultRecord result_of_check();
   ResultRecord result_of_candidate() const;
-  void keep_result(const ResultRecord& result);
+  /// What the calibration leaves, and its cause is looked for by itself.
+  bool more_than_noise() const;
+  void keep_result(const ResultRecord& result, bool cause);
+
+  // analyst_cause.cc
+  struct CauseFindings;
+  /// The full session that the rows of this one belong to.
+  std::optional<SessionRecord> base() const;
+  SessionRecord new_record(const std::string& why) const;
+  void keep_findings(const std::string& why, CauseFindings& found);
+  void touch_more(const std::string& why, const CauseFindings& found);
+  ResultRecord result_of_cause(const CauseFindings& found) const;
 
   ServiceContext& c_;
   Collector& collector_;

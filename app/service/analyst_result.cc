@@ -70,7 +70,15 @@ ResultRecord Analyst::result_of_candidate() const {
   return result;
 }
 
-void Analyst::keep_result(const ResultRecord& result) {
+bool Analyst::more_than_noise() const {
+  const FitRuling ruling = rule_on_fit(*solution_, data_->sets);
+  if (ruling.noise) return false;
+  c_.tell("warning",
+          "session " + std::to_string(collector_.session().record.id) + ": " + ruling.why);
+  return c_.config.causes.automatic;
+}
+
+void Analyst::keep_result(const ResultRecord& result, bool cause) {
   const bool candidate =
       result.decision == ResultDecision::applying || result.decision == ResultDecision::candidate;
   const bool explained = result.answer == ResultAnswer::explained;
@@ -89,6 +97,8 @@ void Analyst::keep_result(const ResultRecord& result) {
   Event event;
   event.what = Event::What::decided;
   event.why = result.why;
+  event.session = result.session;
+  event.cause = cause;
   event.decision = next_after(result);
   c_.put(std::move(event));
 }

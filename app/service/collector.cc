@@ -52,6 +52,7 @@ void Collector::resume() {
   auto touches = c_.store.touches((*record)->id);
   if (!plan || !touches)
     return c_.put(Event::What::broken, false, (!plan ? plan.error() : touches.error()).what);
+  recalled_ = true;
   open({**record, std::move(*plan), std::move(*touches)});
 }
 
@@ -77,6 +78,8 @@ void Collector::announce_plan() {
   event.step = next();
   event.via_home = true;
   event.lock = lock_of(event.step);
+  event.loaded = is_loaded(event.step);
+  event.load_unknown = std::exchange(recalled_, false) && touched_loaded();
   if (!senses_.encoders_alive(c_.now) || senses_.at_rest() != true)
     return c_.put(Event::What::planned, false, "the robot does not stand still, or is silent");
   if (const std::string strangers = two_senders(); !strangers.empty())
@@ -113,6 +116,14 @@ void Collector::tell_way(int step, Event& event) const {
   if (step >= static_cast<int>(session_.plan.size())) return;
   event.via_home = session_.plan[step].via_home || step > c_.situation.step + 1;
   event.way = static_cast<int>(session_.plan[step].way.size());
+}
+
+bool Collector::is_loaded(int step) const {
+  return step < static_cast<int>(session_.plan.size()) && session_.plan[step].loaded;
+}
+
+bool Collector::touched_loaded() const {
+  return std::ranges::any_of(session_.plan, &StepRecord::loaded);
 }
 
 int Collector::lock_of(int step) const {
@@ -180,6 +191,7 @@ const TouchRecord* Collector::keep(TouchRecord touch) {
   event.step = next();
   tell_way(event.step, event);
   event.lock = lock_of(event.step);
+  event.loaded = is_loaded(event.step);
   c_.put(std::move(event));
   return &session_.touches.back();
 }

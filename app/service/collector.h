@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/service/context.h"
-#include "app/service/sensor_front_end.h"
+#include "app/service/senses/sensor_front_end.h"
 #include "app/service/session.h"
 
 namespace selfcal {
@@ -44,6 +44,8 @@ class Collector {
   // collector.cc: from the plan to the last touch
   /// Begins with what is planned or stored; an event says where, or why not.
   void open(Session session);
+  /// One that has nothing to touch.
+  void hold(Session session) { session_ = std::move(session); }
   /// The unfinished session of the store.
   void resume();
   /// Judges and stores the touch whose edge was seen, or the configuration under a lock; null where
@@ -72,6 +74,9 @@ class Collector {
   std::string label() const;
   void announce_plan();
   void tell_way(int step, Event& event) const;
+  bool is_loaded(int step) const;
+  /// The plan has touches with the payload, so that it may be on the tool.
+  bool touched_loaded() const;
   const TouchRecord* read_touch();
   const TouchRecord* read_visit();
   const TouchRecord* keep(TouchRecord touch);
@@ -88,6 +93,7 @@ class Collector {
   Decoding meaning_;
   Nanoseconds collecting_since_ = 0;
   int touches_this_run_ = 0;
+  bool recalled_ = false;  ///< the session is one of an earlier life
 };
 
 }  // namespace selfcal

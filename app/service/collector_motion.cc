@@ -54,7 +54,8 @@ std::string Collector::label() const {
   int attempt = 0;
   for (const TouchRecord& touch : session_.touches) attempt += touch.step == c_.situation.step;
   return std::to_string(session_.record.id) + "/" + std::to_string(c_.situation.step) + "." +
-         std::to_string(attempt) + " " + session_.plan[c_.situation.step].set;
+         std::to_string(attempt) + " " + session_.plan[c_.situation.step].set +
+         (is_loaded(c_.situation.step) ? kWithPayload : "");
 }
 
 double Collector::touch_speed(const StepRecord& step) const {
@@ -63,8 +64,8 @@ double Collector::touch_speed(const StepRecord& step) const {
   const double way =
       (endpoint(*c_.models.active(), to) - endpoint(*c_.models.active(), from)).norm();
   if (way <= 0) return c_.config.speeds.travel;
-  return std::min(c_.config.speeds.travel,
-                  c_.config.speeds.touch / way * (to - from).cwiseAbs().maxCoeff());
+  const double speed = step.slow ? c_.config.speeds.touch / kSlower : c_.config.speeds.touch;
+  return std::min(c_.config.speeds.travel, speed / way * (to - from).cwiseAbs().maxCoeff());
 }
 
 void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) {

@@ -55,6 +55,7 @@ class Reader {
     part(fields, "touch", [&](Fields& f) { read_touch(f); });
     part(fields, "limits", [&](Fields& f) { read_limits(f); });
     part(fields, "accept", [&](Fields& f) { read_accept(f); });
+    part(fields, "causes", [&](Fields& f) { read_causes(f); });
     part(fields, "commands", [&](Fields& f) { read_commands(f); });
     part(fields, "schedule", [&](Fields& f) { read_schedule(f); });
     c_.resume = fields.flag("resume", c_.resume);
@@ -124,7 +125,7 @@ class Reader {
     c_.commands.over = known->second;
     for (const std::string& name : f.texts("allow")) {
       const std::optional<Verb> verb = verb_of(name);
-      if (!verb) return f.fail("allow", "of start, check, abort, accept, reject, rollback");
+      if (!verb) return f.fail("allow", "of " + verb_names());
       c_.commands.allow.push_back(*verb);
     }
     if (c_.commands.over != Over::none && c_.commands.allow.empty())
@@ -173,6 +174,7 @@ class Reader {
     limit("retract", c_.limits.retract);
     limit("lock", c_.limits.lock);
     limit("computing", c_.limits.computing);
+    limit("diagnosing", c_.limits.diagnosing);
   }
 
   void read_accept(Fields& f) {
@@ -181,6 +183,13 @@ class Reader {
     c_.plan.check = c_.accept.check;
     c_.accept.margin = f.number("margin", c_.accept.margin, 0, 0.9);
     part(f, "largest_change", [&](Fields& g) { read_by_part(g, 10, c_.accept.largest_change); });
+  }
+
+  void read_causes(Fields& f) {
+    c_.causes.automatic = f.flag("auto", c_.causes.automatic);
+    c_.causes.touches = f.integer("touches", c_.causes.touches, 0, 1000);
+    c_.causes.round = f.integer("round", c_.causes.round, 4, 100);
+    c_.causes.payload = optional_within(f, "payload", 0.1, 1000);
   }
 
   std::optional<double> optional_within(Fields& f, std::string_view key, double least,

@@ -40,7 +40,7 @@
 //     most_lost      5          1 to 1000       configurations put aside in a row before it stops
 //   limits           {}         1 to 3600 s     time for self_test 10, planning 120, approach 60,
 //                                               touch 60, settle 2, retract 30, lock 30,
-//                                               computing 600
+//                                               computing 600, diagnosing 1800
 //   sets             required                   NAME: {an entry of dataset.yaml's sets, and:
 //     touches        40         4 to 10000      configurations
 //     surface        planes                     {point: [x, y, z], normal: [x, y, z]}, roughly; the
@@ -61,8 +61,16 @@
 //     over           none                       what keeps strangers out: loopback, secured (by DDS
 //                                               Security), network (nothing does), or none: no
 //                                               command is taken
-//     allow          none                       [start, check, abort, accept, reject, rollback]:
-//                                               those that are taken, by name
+//     allow          none                       [start, check, diagnose, done, abort, accept,
+//                                               rollback]: those that are taken, by name
+//   causes           {}                         looking for the cause of what calibration leaves:
+//     auto           true                       by itself, after a full session that leaves more
+//                                               than noise
+//     touches        60         0 to 1000       further ones at most, to tell look-alikes apart
+//     round          20         4 to 100        of them between two diagnoses
+//     payload        none       0.1 to 1000     kg that a person can hang on the tool, its centre
+//     at
+//                                               the tip; without it nobody is asked
 //   schedule         {}                         when it begins by itself; nothing by default:
 //     every_hours    none       0.0001 to 1e5   after the last session or check
 //     at             none       "HH:MM"         once a day, local time
@@ -112,6 +120,13 @@ struct Speeds {
   double touch = 0.01;  ///< m/s
 };
 
+/// How the cause of what calibration leaves is looked for.
+struct CauseRules {
+  bool automatic = true;
+  int touches = 60, round = 20;
+  std::optional<double> payload;  ///< kg
+};
+
 struct Config {
   std::string robot_text;  ///< the robot file's content, as the maker gives it
   std::shared_ptr<const Robot> robot;
@@ -135,6 +150,7 @@ struct Config {
   std::vector<Obstacle> obstacles;
   Node description;  ///< of the data set that a session's touches make
   Acceptance accept;
+  CauseRules causes;
   CommandRules commands;
   Schedule schedule;
   bool resume = true;

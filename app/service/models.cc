@@ -2,6 +2,7 @@
 
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
+#include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
@@ -45,9 +46,12 @@ Result<Models> Models::load(std::shared_ptr<const Robot> factory, Store& store) 
                   record.model_hash.substr(0, 15) + "…, not " + models.hash_.substr(0, 15) + "…)");
   auto robot = robot_of(record.robot_text, "active parameters");
   if (!robot) return refuse(before + robot.error().what);
-  // The maker's file as it is today (limits, tolerances), with the values of the slot.
+  // The maker's file as it is today (limits, tolerances), with the values of the slot; a corrected
+  // robot as it is, with the masses that its effects were found by.
   Problems problems;
-  models.active_ = make_robot(models.factory_->text().describe(values(**robot)), problems);
+  models.active_ = effects_of(**robot).empty()
+                       ? make_robot(models.factory_->text().describe(values(**robot)), problems)
+                       : std::move(*robot);
   if (problems.any()) return bad_input(problems);
   models.session_ = record.session;
   models.since_ms_ = record.since_ms;

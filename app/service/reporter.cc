@@ -2,8 +2,29 @@
 #include "app/service/reporter.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace selfcal {
+namespace {
+
+/// What a diagnosis names, of its json; nothing of another one, or of one that is pruned.
+void name_cause(const std::string& text, ResultMessage& message) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("gap")) return;
+  const auto& verdict = json["verdict"];
+  const auto& named = verdict["named"];
+  if (named.empty()) return;
+  message.cause = verdict["effect"];
+  if (const auto& where = verdict["where"]; !where.empty())
+    message.cause += "@" + where.front().get<std::string>();
+  const auto number = [](const nlohmann::json& each) {
+    return each.is_number() ? each.get<double>() : std::nan("");
+  };
+  message.cause_probability = number(verdict["probability"]);
+  message.cause_closes = number(named.front()["closes_alone"]);
+}
+
+}  // namespace
 
 Reporter::Reporter(ServiceContext& context, const Collector& collector, const Analyst& analyst,
                    std::string damaged)
@@ -97,6 +118,7 @@ void Reporter::result(const ResultRecord& result) {
   message.why = result.why;
   static_cast<ResultFigures&>(message) = result;
   message.json = result.json;
+  name_cause(result.json, message);
   c_.messenger.publish(message);
 }
 

@@ -66,9 +66,13 @@ void Service::handle_events() {
     if (event.what == Event::What::moved) collector_.arrived();
     Transition transition = step(c_.situation, event, c_.config.limits);
     const bool held = c_.situation.held;
+    const auto wanted = c_.situation.wanted;
     c_.situation = std::move(transition.next);
     if (c_.situation.held != held)
       c_.stored(c_.store.remember("held", c_.situation.held ? "yes" : ""));
+    // Before the command is answered: what was granted is not lost.
+    if (const auto& now = c_.situation.wanted; now != wanted)
+      c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
     for (const Action& action : transition.actions) act(action);
   }
 }
@@ -148,6 +152,8 @@ void Service::recall() {
   // What cannot be read must not let the robot begin by itself.
   const auto held = c_.store.remembered("held");
   c_.situation.held = !held || *held == "yes";
+  if (const auto wanted = c_.store.remembered("wanted"); wanted)
+    c_.situation.wanted = kind_of(*wanted);
   const auto line = c_.store.remembered("use");
   Since& since = c_.use.since;
   long long unix_ms = 0;

@@ -39,6 +39,8 @@ void Service::act(const Action& action) {
       return analyst_.identify();
     case Do::judge:
       return analyst_.judge();
+    case Do::diagnose:
+      return analyst_.diagnose(action.why);
     case Do::apply:
       return apply(action.why);
     case Do::reject:

@@ -20,13 +20,17 @@ void Service::handle_command(const CommandMessage& command) {
   const std::optional<Verb> verb = verb_of(command.verb);
   if (!verb)
     return refuse(command, "no command is called '" + command.verb.substr(0, kMostName) +
-                               "'; known: start, check, abort, accept, reject, rollback");
+                               "'; known: " + verb_names());
   if (const std::string forbidden = c_.config.commands.forbids(*verb); !forbidden.empty())
     return refuse(command, forbidden);
   if (*verb == Verb::check && !analyst_.can_check())
     return refuse(command,
                   "a quick check compares with an accepted session of this robot and "
                   "configuration, and there is none: start a full one");
+  if (*verb == Verb::diagnose && !analyst_.can_diagnose())
+    return refuse(command,
+                  "a cause is looked for in what a full session of this robot and configuration "
+                  "leaves, and there is none: start one");
   // What came in before the command is handled first, so that it meets the situation as it is.
   handle_events();
   command_ = command;

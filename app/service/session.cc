@@ -54,6 +54,17 @@ std::string cannot_stand(const Robot& robot, const Eigen::VectorXd& q) {
   return closure.closes(0) ? "" : "the assembly mode is lost: " + closure.why[0];
 }
 
+/// Of a mass (kg) whose centre is at the tip: on the tool, in its axes; nothing of a robot without
+/// statics.
+Eigen::RowVectorXd wrench_of(const Robot& robot, const Eigen::VectorXd& q, double mass) {
+  Eigen::RowVectorXd wrench = Eigen::RowVectorXd::Zero(6);
+  if (robot.statics())
+    wrench.head<3>() = (mass * locate(robot, values(robot), q).R.transpose() *
+                        robot.statics()->mechanics().gravity)
+                           .transpose();
+  return wrench;
+}
+
 void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
   rows.q.setZero(count, joints);
   rows.position.setConstant(count, 3, std::nan(""));
@@ -85,6 +96,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& readings) {
 std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales) {
   Node node = config.description;
   node.set("delay", Node::of(config.touch.delay));
+  if (config.causes.payload) node.set("payload", Node::of(*config.causes.payload));
   Node list = Node::list();
   for (const EncoderScale& scale : scales) {
     Node each = Node::map();
@@ -118,6 +130,7 @@ Result<Decoding> read_meaning(const std::string& text) {
   if (const Node* workspace = fields.node("workspace"))
     meaning.workspace = read_workspace(*workspace, problems);
   meaning.delay = fields.number("delay");
+  meaning.payload = fields.number("payload", 0.0);
   if (const Node* list = fields.node("encoders"))
     for (const Node& each : list->items) {
       Fields scale(each, "encoder", problems);
@@ -141,6 +154,8 @@ std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& 
     step.set = sets[touch.set].name;
     if (touch.group >= 0) step.group = "g" + std::to_string(touch.group);
     step.check = touch.check;
+    step.slow = touch.slow;
+    step.loaded = touch.loaded;
     step.via_home = touch.via_home;
     for (const Eigen::VectorXd& place : touch.way) step.way.push_back(list_of(place));
     step.start = list_of(touch.start);
@@ -303,6 +318,10 @@ DataSet rows_of(const Robot& robot, const Session& session, const Decoding& mean
     const double noise = touch_noise(data.sets[set]);
     out.noise_factor[row] = std::hypot(
         1, speed_out(robot, reading, meaning.outward[configured]) * reading.sigma_time / noise);
+    if (step.loaded) {
+      if (out.wrench.rows() == 0) out.wrench.setZero(out.q.rows(), 6);
+      out.wrench.row(row) = wrench_of(robot, reading.q, meaning.payload);
+    }
     out.set.push_back(set);
     out.group.push_back(group_index(data.sets[set], step.group));
     out.check.push_back(parts == Parts::as_planned ? step.check : parts == Parts::all_check);

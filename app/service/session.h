@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/service/config.h"
-#include "app/service/reading.h"
+#include "app/service/senses/reading.h"
 #include "constraints/methods/data_set.h"
 #include "io/store/store.h"
 
@@ -16,16 +16,15 @@ struct Session {
   SessionRecord record;
   std::vector<StepRecord> plan;
   std::vector<TouchRecord> touches;
-  SessionKind kind() const {
-    return record.kind == "check" ? SessionKind::check : SessionKind::full;
-  }
+  SessionKind kind() const { return kind_of(record.kind).value_or(SessionKind::full); }
 };
 
 /// What is stored with a session so that its raw counts can be understood in ten years.
 struct Decoding {
   double target = 1e-3;  ///< m, in the workspace
   Workspace workspace;
-  double delay = 0;  ///< s, of the trigger
+  double delay = 0;    ///< s, of the trigger
+  double payload = 0;  ///< kg, on the tool in the touches that are made with it
   std::vector<EncoderScale> scales;
   std::vector<Eigen::Vector3d> outward;  ///< by set, way out of the contact (world)
   std::vector<Set> sets;

@@ -1,6 +1,12 @@
 #include "app/service/state.h"
 
 namespace selfcal {
+namespace {
+
+constexpr Verb kAllVerbs[] = {Verb::start, Verb::check,  Verb::diagnose, Verb::done,
+                              Verb::abort, Verb::accept, Verb::reject,   Verb::rollback};
+
+}  // namespace
 
 std::string_view to_string(ServiceState state) {
   switch (state) {
@@ -18,6 +24,10 @@ std::string_view to_string(ServiceState state) {
       return "identifying";
     case ServiceState::judging:
       return "judging";
+    case ServiceState::diagnosing:
+      return "diagnosing";
+    case ServiceState::awaiting_person:
+      return "awaiting-person";
     case ServiceState::awaiting_acceptance:
       return "awaiting-acceptance";
     case ServiceState::applying:
@@ -53,7 +63,15 @@ std::string_view to_string(Phase phase) {
 }
 
 std::string_view to_string(SessionKind kind) {
-  return kind == SessionKind::full ? "full" : "check";
+  switch (kind) {
+    case SessionKind::full:
+      return "full";
+    case SessionKind::check:
+      return "check";
+    case SessionKind::cause:
+      return "cause";
+  }
+  return "";
 }
 
 std::string_view to_string(Verb verb) {
@@ -62,6 +80,10 @@ std::string_view to_string(Verb verb) {
       return "start";
     case Verb::check:
       return "check";
+    case Verb::diagnose:
+      return "diagnose";
+    case Verb::done:
+      return "done";
     case Verb::abort:
       return "abort";
     case Verb::accept:
@@ -75,10 +97,22 @@ std::string_view to_string(Verb verb) {
 }
 
 std::optional<Verb> verb_of(std::string_view text) {
-  for (const Verb verb :
-       {Verb::start, Verb::check, Verb::abort, Verb::accept, Verb::reject, Verb::rollback})
+  for (const Verb verb : kAllVerbs)
     if (text == to_string(verb)) return verb;
   return std::nullopt;
+}
+
+std::optional<SessionKind> kind_of(std::string_view text) {
+  for (const SessionKind kind : {SessionKind::full, SessionKind::check, SessionKind::cause})
+    if (text == to_string(kind)) return kind;
+  return std::nullopt;
+}
+
+std::string verb_names() {
+  std::string names;
+  for (const Verb verb : kAllVerbs)
+    names += (names.empty() ? "" : ", ") + std::string(to_string(verb));
+  return names;
 }
 
 std::string_view hardware_may(ServiceState state, Phase phase) {
@@ -87,6 +121,8 @@ std::string_view hardware_may(ServiceState state, Phase phase) {
       return "stand still; encoders and trigger are listened to";
     case ServiceState::collecting:
       break;
+    case ServiceState::awaiting_person:
+      return "stand still; a person changes the payload on its tool";
     case ServiceState::fault:
       return "stand still; told to stop; nothing moves until a person says start";
     case ServiceState::idle:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace selfcal {
@@ -15,6 +16,8 @@ enum class ServiceState : std::uint8_t {
   analysing,
   identifying,
   judging,
+  diagnosing,
+  awaiting_person,
   awaiting_acceptance,
   applying,
   publishing,
@@ -24,9 +27,10 @@ enum class ServiceState : std::uint8_t {
 /// Where a touch is, while collecting; lock, visit and release are of a joint's lock.
 enum class Phase : std::uint8_t { none, approach, touch, settle, retract, lock, visit, release };
 
-enum class SessionKind : std::uint8_t { full, check };
+/// A full calibration, a quick check, or a look for the cause of what calibration leaves.
+enum class SessionKind : std::uint8_t { full, check, cause };
 
-enum class Verb : std::uint8_t { start, check, abort, accept, reject, rollback };
+enum class Verb : std::uint8_t { start, check, diagnose, done, abort, accept, reject, rollback };
 
 std::string_view to_string(ServiceState state);
 std::string_view to_string(Phase phase);  ///< empty for none
@@ -35,6 +39,9 @@ std::string_view to_string(Verb verb);
 
 /// Nothing for a text that is none of them.
 std::optional<Verb> verb_of(std::string_view text);
+std::optional<SessionKind> kind_of(std::string_view text);
+/// All of them: "start, check, …".
+std::string verb_names();
 
 /// What the hardware may do, in words; the service asks for nothing else in this state.
 std::string_view hardware_may(ServiceState state, Phase phase);

@@ -71,11 +71,18 @@ void TransitionStep::fault(const std::string& why) {
   let_go();
   act(Do::give_up);
   act(Do::tell, "fault: " + why);
-  // While a session is being planned the store has none of it yet.
-  if (in_session() && s_.state != ServiceState::planning) s_.unfinished = true;
+  tell_of_load();
+  if (in_session()) s_.unfinished = s_.unfinished || s_.stored;
+  if (in_session() || s_.follow_up) s_.wanted.reset();
   s_.held = s_.held || s_.tested;  // before the first self-test has passed nothing has moved
-  s_.follow_up = false;            // what was to come by itself does not come after a fault
+  s_.follow_up.reset();            // what was to come by itself does not come after a fault
   enter(ServiceState::fault, why);
+}
+
+/// Nothing may begin later with a payload on the tool that nobody knows of.
+void TransitionStep::tell_of_load() {
+  if (std::exchange(s_.loaded, false))
+    act(Do::tell, "the payload is still on the tool: take it off");
 }
 
 std::string TransitionStep::touch_name() const {

@@ -4,6 +4,8 @@
 //   self-test → idle → planning → collecting ⟲ (approach → touch → settle → retract)
 //     or of a lock: approach → lock ⟲ (visit → settle) → release
 //     → analysing → identifying → judging → awaiting acceptance → applying → publishing → idle
+//   looking for a cause: idle → diagnosing ⟲ (collecting → analysing) → as after judging, with
+//   awaiting person while the payload is changed between two touches
 //   and from everywhere: fault, which stops motion and keeps what was collected.
 #pragma once
 
@@ -26,6 +28,7 @@ struct Limits {
   Nanoseconds retract = 30 * kSecond;
   Nanoseconds lock = 30 * kSecond;        ///< a lock's engaging, or its release
   Nanoseconds computing = 600 * kSecond;  ///< analysing, identifying, judging
+  Nanoseconds diagnosing = 1800 * kSecond;
   Nanoseconds retry_self_test = 10 * kSecond;
   int attempts = 3;       ///< of one touch, before it is put aside
   int most_failures = 5;  ///< touches put aside in a row, before the session stops
@@ -51,15 +54,21 @@ struct Situation {
   bool out = false;            ///< what was asked has ended; the trigger may not have followed
   int lock = 0;                ///< that the step wants engaged; 0 for none
   int next_lock = 0;           ///< of the step after this one
+  bool loaded = false;         ///< the payload is on the tool
+  bool next_loaded = false;    ///< of the step after this one
   bool engaged = false;        ///< a lock was asked for and has not been released
-  bool follow_up = false;      ///< a full session comes after what is being published
-  bool closed = false;         ///< the trigger's debounced level
-  bool candidate = false;      ///< a result waits for a person
-  bool unfinished = false;     ///< a session can be resumed by `start`
-  int published = 0;           ///< results since the start
-  bool tested = false;         ///< the self-test has been passed since the start
-  bool held = false;  ///< after a fault or an abort: nothing moves until a person says start
-  bool felt = false;  ///< a touch has been felt in this run of the session
+  std::optional<SessionKind> follow_up;  ///< comes after what is being published
+  std::string follow_up_why;
+  bool closed = false;      ///< the trigger's debounced level
+  bool candidate = false;   ///< a result waits for a person
+  bool unfinished = false;  ///< a session can be resumed by `start`
+  bool stored = false;      ///< the session in progress is in the store
+  /// Granted or due, and not in the store yet: a restart begins it.
+  std::optional<SessionKind> wanted;
+  int published = 0;    ///< results since the start
+  bool tested = false;  ///< the self-test has been passed since the start
+  bool held = false;    ///< after a fault or an abort: nothing moves until a person says start
+  bool felt = false;    ///< a touch has been felt in this run of the session
 };
 
 struct Event {
@@ -68,7 +77,7 @@ struct Event {
     self_tested,  ///< ok or not, `why`; `resume` when a session shall go on by itself
     asked,        ///< `verb`
     due,          ///< `kind`, `why`
-    planned,      ///< `session`, `steps`, `step` to begin with
+    planned,      ///< `session`, `steps`, `step` to begin with, or further steps of it
     moved,        ///< the last motion has ended as asked
     refused,      ///< the last motion was refused or stopped by others, `why`
     closed,       ///< the trigger closed, debounced
@@ -76,7 +85,7 @@ struct Event {
     at_rest,   ///< joints stand, and the samples around the edge are there
     read,      ///< the touch was judged and is stored: `ok` or put aside; then comes `step`
     computed,  ///< the stage in progress has ended; `ok`, `why`
-    decided,   ///< after judging: `decision`
+    decided,   ///< after judging or diagnosing: `decision`; `cause` when one is to be looked for
     applied,
     published,
     broken,  ///< a port or the store has failed: `why`
@@ -94,8 +103,12 @@ struct Event {
   bool via_home = false;  ///< of the step that comes next
   int way = 0;            ///< as well: places that the way leads through
   int lock = 0;           ///< of the step that comes next
-  bool release = false;   ///< of `planned`: whatever lock may be engaged, first
+  bool loaded = false;    ///< as well
+  bool load_unknown =
+      false;             ///< of `planned`: an earlier life may have left the payload on the tool
+  bool release = false;  ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
+  bool cause = false;  ///< of `decided`: more than noise is left
 };
 
 struct Action {
@@ -103,7 +116,7 @@ struct Action {
     stop,     ///< motion, now; `why`
     give_up,  ///< whatever is being computed
     test,     ///< begin the self-test
-    plan,     ///< a session of the situation's kind
+    plan,     ///< a session of the situation's kind, full or check
     resume,   ///< the unfinished session
     go_home,
     go_along,  ///< to the next place of the step's way
@@ -119,6 +132,7 @@ struct Action {
     analyse,
     identify,
     judge,
+    diagnose,  ///< what the rows say of the cause, and what to touch next
     apply,
     reject,
     roll_back,

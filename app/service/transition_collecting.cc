@@ -6,8 +6,10 @@
 namespace selfcal {
 
 void TransitionStep::planned() {
-  if (s_.state != ServiceState::planning) return;
+  if (s_.state != ServiceState::planning && s_.state != ServiceState::diagnosing) return;
   if (!event_.ok) return fault(event_.why);
+  s_.stored = true;
+  s_.wanted.reset();
   s_.session = event_.session;
   s_.kind = event_.kind;
   s_.step = event_.step;
@@ -15,7 +17,9 @@ void TransitionStep::planned() {
   s_.steps = event_.steps;
   s_.lost_in_a_row = 0;
   s_.unfinished = false;
-  if (s_.step >= s_.steps) return analyse();
+  s_.next_loaded = event_.loaded;
+  if (event_.load_unknown) s_.loaded = !event_.loaded;
+  if (s_.step >= s_.steps && s_.loaded == event_.loaded) return analyse();
   if (s_.closed && event_.via_home && !event_.back_off && !event_.release)
     return fault("the trigger is closed away from any touch: move the robot out by hand");
   enter(ServiceState::collecting, s_.why);
@@ -24,7 +28,7 @@ void TransitionStep::planned() {
   s_.next_via_home = event_.via_home;
   s_.next_way = event_.way;
   if (event_.release) return release();
-  if (!event_.back_off) return approach();
+  if (!event_.back_off) return go_on_loaded();
   s_.attempt = s_.failures = 0;
   s_.stray = true;
   back_off();
@@ -118,8 +122,22 @@ void TransitionStep::back_out() {
 void TransitionStep::go_on() {
   s_.step = s_.next_step;
   s_.lock = s_.next_lock;
+  go_on_loaded();
+}
+
+/// With the payload that the step wants; without any after the last one.
+void TransitionStep::go_on_loaded() {
+  if (s_.loaded != s_.next_loaded) return ask_for_load();
   if (s_.step >= s_.steps) return analyse();
   approach();
+}
+
+void TransitionStep::ask_for_load() {
+  enter(ServiceState::awaiting_person,
+        std::string(s_.next_loaded ? "hang the payload on the tool"
+                                   : "take the payload off the tool") +
+            ", then say done (selfcal command done)");
+  act(Do::tell, s_.why);
 }
 
 /// Out of a contact that was not looked for.
@@ -128,6 +146,7 @@ void TransitionStep::backed_off() {
   if (++s_.failures >= limits_.attempts)
     return fault("the trigger closes again and again on the way to " + touch_name() +
                  ": something stands in the way");
+  if (s_.loaded != s_.next_loaded) return go_on_loaded();
   s_.via_home = true;
   s_.way = 0;
   go_nearer();
@@ -140,6 +159,7 @@ void TransitionStep::read() {
   s_.next_via_home = event_.via_home;
   s_.next_way = event_.way;
   s_.next_lock = event_.lock;
+  s_.next_loaded = event_.loaded;
   s_.out = false;
   if (event_.ok)
     s_.lost_in_a_row = 0;

@@ -15,6 +15,10 @@ void TransitionStep::asked() {
       return asked_to_start(SessionKind::full);
     case Verb::check:
       return asked_to_start(SessionKind::check);
+    case Verb::diagnose:
+      return asked_to_start(SessionKind::cause);
+    case Verb::done:
+      return told_done();
     case Verb::abort:
       return asked_to_abort();
     case Verb::accept:
@@ -34,12 +38,22 @@ void TransitionStep::asked_to_start(SessionKind kind) {
   }
   if (s_.state == ServiceState::awaiting_acceptance) return refuse(kResultWaits);
   if (s_.state != ServiceState::idle) return refuse_in_this_state();
-  if (kind == SessionKind::check && s_.unfinished)
+  if (kind != SessionKind::full && s_.unfinished)
     return refuse("an unfinished session waits: start or abort it first");
   s_.held = false;
   grant();
   if (s_.unfinished) return resume("resumed by command");
   begin(kind, "by command");
+}
+
+void TransitionStep::told_done() {
+  if (s_.state != ServiceState::awaiting_person)
+    return refuse("nothing is waited for that a person does");
+  grant();
+  s_.loaded = s_.next_loaded;
+  enter(ServiceState::collecting, "goes on after the payload was changed");
+  s_.next_via_home = !s_.closed;  // out of a contact that an earlier life has left, first
+  go_on_loaded();
 }
 
 void TransitionStep::asked_to_abort() {
@@ -50,15 +64,23 @@ void TransitionStep::asked_to_abort() {
   grant();
   act(Do::stop, "aborted by command");
   let_go();
+  tell_of_load();
   act(Do::abort, "aborted by command");
   s_.unfinished = false;
+  s_.wanted.reset();
   s_.held = true;
   if (running || s_.state == ServiceState::idle)
     go_idle("aborted by command; what was collected is kept");
 }
 
+/// One that waits is not decided on while its cause is looked for.
+void TransitionStep::refuse_without_result() {
+  if (s_.candidate && in_session()) return refuse_in_this_state();
+  refuse(kNoResultWaits);
+}
+
 void TransitionStep::asked_to_accept() {
-  if (s_.state != ServiceState::awaiting_acceptance) return refuse(kNoResultWaits);
+  if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
   grant();
   s_.candidate = false;
   enter(ServiceState::applying, "accepted by command");
@@ -66,7 +88,7 @@ void TransitionStep::asked_to_accept() {
 }
 
 void TransitionStep::asked_to_reject() {
-  if (s_.state != ServiceState::awaiting_acceptance) return refuse(kNoResultWaits);
+  if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
   grant();
   s_.candidate = false;
   act(Do::reject, "rejected by command");

@@ -11,8 +11,19 @@ void TransitionStep::test() {
 void TransitionStep::self_tested() {
   if (s_.state != ServiceState::self_test) return;
   if (!event_.ok) return fault("self-test: " + event_.why);
-  if (event_.resume && s_.unfinished && !s_.held) return resume("resumed after a restart");
+  const bool goes_on = event_.resume && !s_.held;
+  if (goes_on && s_.unfinished) return resume("resumed after a restart");
   s_.tested = true;
+  if (goes_on && s_.wanted) {
+    act(Do::tell, "begun after a restart: the " + std::string(to_string(*s_.wanted)) +
+                      " session that was to begin before it");
+    return begin(*s_.wanted, "to begin before a restart");
+  }
+  if (s_.wanted && !s_.held) {
+    const std::string kind(to_string(*s_.wanted));
+    s_.wanted.reset();
+    return go_idle("the " + kind + " session that was to begin before a restart was not begun");
+  }
   go_idle(s_.unfinished ? "an unfinished session can be resumed: start, or abort"
           : s_.held     ? "ready; after a fault or an abort nothing begins by itself before a start"
                         : "ready");
@@ -33,6 +44,9 @@ void TransitionStep::due() {
 
 void TransitionStep::begin(SessionKind kind, const std::string& why) {
   s_.kind = kind;
+  s_.wanted = kind;
+  s_.stored = false;
+  if (kind == SessionKind::cause) return diagnose(why);
   enter(ServiceState::planning, why);
   act(Do::plan, why);
 }
@@ -51,6 +65,8 @@ bool TransitionStep::in_session() const {
     case ServiceState::analysing:
     case ServiceState::identifying:
     case ServiceState::judging:
+    case ServiceState::diagnosing:
+    case ServiceState::awaiting_person:
       return true;
     default:
       return false;

@@ -32,6 +32,7 @@ class TransitionStep {
   void enter(ServiceState state, std::string why);
   void enter(Phase phase);
   void fault(const std::string& why);
+  void tell_of_load();
   std::string touch_name() const;
   std::string release_name() const;
 
@@ -48,11 +49,13 @@ class TransitionStep {
   void asked();
   void asked_to_start(SessionKind kind);
   void asked_to_abort();
+  void told_done();
   void asked_to_accept();
   void asked_to_reject();
   void asked_to_roll_back();
   void grant() { act(Do::grant, std::string(to_string(event_.verb))); }
   void refuse(const std::string& why) { act(Do::refuse, why); }
+  void refuse_without_result();
   void refuse_in_this_state() { refuse("the service is " + std::string(to_string(s_.state))); }
 
   // transition_collecting.cc
@@ -67,6 +70,8 @@ class TransitionStep {
   void back_off();
   void back_out();
   void go_on();
+  void go_on_loaded();
+  void ask_for_load();
   void backed_off();
   void read();
   void refused();
@@ -83,6 +88,7 @@ class TransitionStep {
   // transition_computing.cc
   void analyse();
   void computed();
+  void diagnose(std::string why);
   void decided();
   void applied();
   void publish();

@@ -16,6 +16,8 @@ void TransitionStep::tick() {
     case ServiceState::identifying:
     case ServiceState::judging:
       return late(limits_.computing, std::string(to_string(s_.state)));
+    case ServiceState::diagnosing:
+      return late(limits_.diagnosing, "diagnosing");
     case ServiceState::fault:
       // Encoders or the robot may be back; a session is resumed by a person only.
       if (longer_than(limits_.retry_self_test)) test();

@@ -14,8 +14,8 @@ namespace {
 
 using RouteJson = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 6> kVerbs = {"start",  "check",  "abort",
-                                                    "accept", "reject", "rollback"};
+constexpr std::array<std::string_view, 8> kVerbs = {"start", "check",  "diagnose", "done",
+                                                    "abort", "accept", "reject",   "rollback"};
 
 std::string query_of(const WebRequest& request, const char* name) {
   const auto found = request.query.find(name);

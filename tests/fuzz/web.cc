@@ -57,7 +57,8 @@ void try_routes(Bytes& bytes) {
   while (!bytes.empty()) request.body += bytes.text();
   const WebResponse response = handle(request);
   promise(nlohmann::json::accept(response.body), "answers no JSON: " + response.body);
-  static constexpr std::array kVerbs = {"start", "check", "abort", "accept", "reject", "rollback"};
+  static constexpr std::array kVerbs = {"start", "check",  "diagnose", "done",
+                                        "abort", "accept", "reject",   "rollback"};
   promise(asked_verb.empty() || std::ranges::find(kVerbs, asked_verb) != kVerbs.end(),
           "a verb of its own: " + asked_verb);
 }

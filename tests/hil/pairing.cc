@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <random>
 
-#include "app/service/sensor_front_end.h"
+#include "app/service/senses/sensor_front_end.h"
 #include "io/can/encoders.h"
 #include "io/can/faults.h"
 #include "io/clock.h"

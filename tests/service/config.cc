@@ -105,6 +105,10 @@ const CellKeys kValues = {{"id", "cell-7"},
                           {"schedule.check_touches", "10"},
                           {"schedule.check_p", "0.05"},
                           {"schedule.full_after_checks", "7"},
+                          {"causes.auto", "false"},
+                          {"causes.touches", "30"},
+                          {"causes.round", "10"},
+                          {"causes.payload", "5"},
                           {"resume", "false"},
                           {"store_mb", "50"},
                           {"simulation", "s.yaml"}};
@@ -116,8 +120,8 @@ TEST(Config, AcceptsEveryKeyOfItsTable) {
   std::set<std::string> known;
   for (const auto& [path, value] : kValues) known.insert(path);
   for (const auto& [path, value] : cell) known.insert(path);
-  const std::set<std::string> parts = {"encoders", "trigger", "motion",   "touch",   "limits",
-                                       "sets",     "accept",  "commands", "schedule"};
+  const std::set<std::string> parts = {"encoders", "trigger", "motion",   "touch",    "limits",
+                                       "sets",     "accept",  "commands", "schedule", "causes"};
   for (const Key& key : keys) {
     if (parts.contains(key.path) || key.path == "sets.places" || key.path == "sets.way_out")
       continue;  // of sockets: see below
@@ -178,6 +182,9 @@ TEST(Config, HasTheDefaultsOfItsTable) {
       {"limits.retract", seconds(config->limits.retract)},
       {"limits.lock", seconds(config->limits.lock)},
       {"limits.computing", seconds(config->limits.computing)},
+      {"limits.diagnosing", seconds(config->limits.diagnosing)},
+      {"causes.touches", config->causes.touches},
+      {"causes.round", config->causes.round},
       {"sets.touches", config->targets[0].touches},
       {"accept.check", config->plan.check},
       {"accept.margin", config->accept.margin},

@@ -1,5 +1,5 @@
 // What the joints read at the moment of an edge, against numbers worked out by hand.
-#include "app/service/reading.h"
+#include "app/service/senses/reading.h"
 
 #include <gtest/gtest.h>
 

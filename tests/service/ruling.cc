@@ -47,6 +47,48 @@ TEST(AcceptanceDecision, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   EXPECT_THAT(ruling.why, HasSubstr("(100 sigma)"));
 }
 
+/// A set of 100 rows whose data sheet says 20 um, and what was found.
+Solution left_of(double noise, double freedoms) {
+  Solution solution;
+  solution.sets.resize(1);
+  solution.sets[0].name = "table";
+  solution.sets[0].used = 100;
+  solution.sets[0].noise_sigma = noise;
+  solution.uncertainty.freedoms = freedoms;
+  return solution;
+}
+
+std::vector<Set> sheet_of(double noise) {
+  std::vector<Set> sets(1);
+  sets[0].name = "table";
+  sets[0].noise = noise;
+  return sets;
+}
+
+TEST(FitRuling, ComparesWhatIsLeftWithDataSheets) {
+  EXPECT_TRUE(rule_on_fit(left_of(21e-6, 80), sheet_of(20e-6)).noise);
+  const FitRuling more = rule_on_fit(left_of(28e-6, 80), sheet_of(20e-6));  // twice the squares
+  EXPECT_FALSE(more.noise);
+  EXPECT_LT(more.p_value, 1e-3);
+  EXPECT_THAT(more.why, HasSubstr("1.4 times the noise that the data sheets tell"));
+  EXPECT_TRUE(rule_on_fit(left_of(28e-6, 9), sheet_of(20e-6)).noise) << "too few freedoms to tell";
+}
+
+TEST(FitRuling, BelievesRepeatsRatherThanDataSheets) {
+  Solution solution = left_of(20e-6, 80);
+  solution.uncertainty.lack_of_fit = {4.0, 1e-6, 60, 40};
+  EXPECT_FALSE(rule_on_fit(solution, sheet_of(20e-6)).noise);
+  solution = left_of(100e-6, 80);
+  solution.uncertainty.lack_of_fit = {1.05, 0.4, 60, 40};
+  EXPECT_TRUE(rule_on_fit(solution, sheet_of(20e-6)).noise);
+}
+
+TEST(FitRuling, SaysNothingWhereNobodySaysHowLargeTheNoiseIs) {
+  const FitRuling ruling = rule_on_fit(left_of(1e-3, 80), sheet_of(0));
+  EXPECT_TRUE(ruling.noise);
+  EXPECT_THAT(ruling.why, HasSubstr("nothing says"));
+}
+
 TEST(AcceptanceDecision, RefusesWhatTheVerdictDoesNotCallImproved) {
   for (const Answer answer : {Answer::not_improved, Answer::not_determined}) {
     Case bad;

@@ -48,6 +48,8 @@ inline std::string name_of(Action::Do what) {
       return "identify";
     case Do::judge:
       return "judge";
+    case Do::diagnose:
+      return "diagnose";
     case Do::apply:
       return "apply";
     case Do::reject:
@@ -95,7 +97,7 @@ struct Script {
     return on(event);
   }
   Script& planned(int steps, SessionKind kind = SessionKind::full, int first = 0,
-                  bool via_home = true) {
+                  bool via_home = true, bool loaded = false) {
     Event event;
     event.what = Event::What::planned;
     event.session = 7;
@@ -103,6 +105,7 @@ struct Script {
     event.steps = steps;
     event.step = first;
     event.via_home = via_home;
+    event.loaded = loaded;
     return on(event);
   }
   /// What the store says after a touch: good or not, and which step comes next.
@@ -158,6 +161,9 @@ inline Script script_at(ServiceState state, Phase phase = Phase::approach) {
   if (state == ServiceState::fault) return script.on(What::broken, false, "no reading");
   script.on(What::self_tested);
   if (state == ServiceState::idle) return script;
+  if (state == ServiceState::diagnosing) return script.ask(Verb::diagnose);
+  if (state == ServiceState::awaiting_person)
+    return script.ask(Verb::diagnose).planned(5, SessionKind::cause, 0, true, true);
   script.ask(Verb::start);
   if (state == ServiceState::planning) return script;
   script.planned(state == ServiceState::collecting ? 5 : 1);
@@ -182,11 +188,12 @@ inline Script script_at(ServiceState state, Phase phase = Phase::approach) {
 }
 
 inline constexpr ServiceState kAllStates[] = {
-    ServiceState::self_test, ServiceState::idle,
-    ServiceState::planning,  ServiceState::collecting,
-    ServiceState::analysing, ServiceState::identifying,
-    ServiceState::judging,   ServiceState::awaiting_acceptance,
-    ServiceState::applying,  ServiceState::publishing,
+    ServiceState::self_test,  ServiceState::idle,
+    ServiceState::planning,   ServiceState::collecting,
+    ServiceState::analysing,  ServiceState::identifying,
+    ServiceState::judging,    ServiceState::awaiting_acceptance,
+    ServiceState::applying,   ServiceState::publishing,
+    ServiceState::diagnosing, ServiceState::awaiting_person,
     ServiceState::fault};
 inline constexpr Phase kAllPhases[] = {Phase::approach, Phase::touch, Phase::settle,
                                        Phase::retract};

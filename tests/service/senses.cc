@@ -1,5 +1,5 @@
 // What the service hears of a trigger that does not behave.
-#include "app/service/sensor_front_end.h"
+#include "app/service/senses/sensor_front_end.h"
 
 #include <gtest/gtest.h>
 

@@ -13,19 +13,23 @@ using testing::HasSubstr;
 using What = Event::What;
 using Do = Action::Do;
 
-constexpr Verb kVerbs[] = {Verb::start,  Verb::check,  Verb::abort,
-                           Verb::accept, Verb::reject, Verb::rollback};
+constexpr Verb kVerbs[] = {Verb::start, Verb::check,  Verb::diagnose, Verb::done,
+                           Verb::abort, Verb::accept, Verb::reject,   Verb::rollback};
 
 /// Where a command is accepted, as the README has it.
 bool accepted(Verb verb, ServiceState state) {
   switch (verb) {
     case Verb::start:
     case Verb::check:
+    case Verb::diagnose:
       return state == ServiceState::idle || state == ServiceState::fault;
     case Verb::abort:
       return state == ServiceState::planning || state == ServiceState::collecting ||
              state == ServiceState::analysing || state == ServiceState::identifying ||
-             state == ServiceState::judging;
+             state == ServiceState::judging || state == ServiceState::diagnosing ||
+             state == ServiceState::awaiting_person;
+    case Verb::done:
+      return state == ServiceState::awaiting_person;
     case Verb::accept:
     case Verb::reject:
       return state == ServiceState::awaiting_acceptance;
@@ -65,8 +69,9 @@ TEST(Command, AbortsByStoppingTheRobotBeforeAnythingElseHappens) {
   for (const Phase phase : kAllPhases)
     EXPECT_EQ(script_at(ServiceState::collecting, phase).ask(Verb::abort).done(),
               "grant, stop, abort");
-  for (const ServiceState state : {ServiceState::planning, ServiceState::analysing,
-                                   ServiceState::identifying, ServiceState::judging}) {
+  for (const ServiceState state :
+       {ServiceState::planning, ServiceState::analysing, ServiceState::identifying,
+        ServiceState::judging, ServiceState::diagnosing}) {
     Script script = script_at(state);
     EXPECT_EQ(script.ask(Verb::abort).done(), "grant, stop, abort");
     EXPECT_EQ(script.s.state, ServiceState::idle);
@@ -102,8 +107,11 @@ Event random_event(std::mt19937_64& random, const Situation& s) {
   event.ok = below(6) != 0;
   event.resume = below(2) == 0;
   event.why = "because";
-  event.verb = kVerbs[below(6)];
-  event.kind = below(2) == 0 ? SessionKind::full : SessionKind::check;
+  event.verb = kVerbs[below(8)];
+  event.kind = static_cast<SessionKind>(below(3));
+  event.cause = below(4) == 0;
+  event.loaded = below(4) == 0;
+  event.load_unknown = below(4) == 0;
   event.session = 1;
   event.steps = event.what == What::planned ? 1 + below(5) : 0;
   event.step = event.what == What::planned ? below(event.steps + 1) : s.step + below(2);
@@ -134,7 +142,8 @@ TEST(Transition, HoldsItsPromisesWhateverHappensInWhateverOrder) {
       const Transition t = step(s, event, limits);
       const std::string at = "seed " + std::to_string(seed) + ", event " + std::to_string(i) +
                              " in " + std::string(to_string(s.state));
-      if (event.what == What::asked && (event.verb == Verb::start || event.verb == Verb::check))
+      if (event.what == What::asked &&
+          (event.verb == Verb::start || event.verb == Verb::check || event.verb == Verb::diagnose))
         needs_start = false;
       for (const Action& action : t.actions)
         ASSERT_TRUE(!moves(action.what) || (may_move(t.next.state) && !needs_start))

@@ -27,7 +27,8 @@ TEST(Transition, StopsAndSaysWhyWhenAPortBreaksInAnyState) {
     expect_fault(script.on(What::broken, false, "no encoder reading for 0.5 s"),
                  "no encoder reading for 0.5 s");
     const bool collected = state == ServiceState::collecting || state == ServiceState::analysing ||
-                           state == ServiceState::identifying || state == ServiceState::judging;
+                           state == ServiceState::identifying || state == ServiceState::judging ||
+                           state == ServiceState::awaiting_person;
     EXPECT_EQ(script.s.unfinished, collected) << to_string(state);
   }
   for (const Phase phase : kAllPhases)

@@ -141,6 +141,32 @@ TEST(Kill, LosesNoTouchAndChangesNoAnswer) {
   kill_at_random(true, "", repetitions("SELFCAL_KILLS", 12), 1);
 }
 
+/// A start that was granted, and the service killed before its session had a plan.
+TEST(Kill, LosesNoStartThatWasGranted) {
+  const int kills = repetitions("SELFCAL_KILLS", 5);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> instants(0.0, 0.3);
+  int planning = 0;
+  for (int i = 0; i < kills && !testing::Test::HasFailure(); ++i) {
+    CellOptions options;
+    options.touches = 8;
+    options.id = "granted";
+    Cell cell(options);
+    cell.start_service();
+    ASSERT_TRUE(cell.start_session());
+    const Nanoseconds end = monotonic_now() + nanoseconds(instants(random));
+    cell.until([&] { return monotonic_now() > end; });
+    cell.kill_service();
+    planning += must(cell.store()->sessions(10)).empty();
+    cell.start_service();
+    cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); });
+    EXPECT_EQ(must(cell.store()->sessions(10)).size(), 1U) << "the one that was asked for";
+  }
+  std::printf("%d kills after a start was granted, %d of them while it was planned\n", kills,
+              planning);
+  EXPECT_GT(planning, 0);
+}
+
 TEST(PowerCut, LosesNoTouchAndChangesNoAnswer) {
   kill_at_random(false, SELFCAL_FORGETFUL_VFS, repetitions("SELFCAL_POWER_CUTS", 12), 2);
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "app/report/format.h"
+#include "app/service/cause_search.h"
 #include "app/service/session.h"
 #include "io/files/file.h"
 #include "io/files/observations_text.h"
@@ -74,6 +75,8 @@ Result<Session> stored_session(Store& store, const SessionRecord& record) {
   auto touches = store.touches(record.id);
   if (!touches) return tl::unexpected(touches.error());
   Session session{record, std::move(*plan), std::move(*touches)};
+  // A cause may be found without any touch.
+  if (session.kind() == SessionKind::cause) return session;
   for (const StepRecord& step : session.plan)
     if (!good_touches(session, step.index).empty()) return session;
   return bad_input(session_name(record.id) +
@@ -90,11 +93,20 @@ Result<SessionRows> session_rows(Store& store, std::int64_t session,
   if (!kept) return tl::unexpected(kept.error());
   const auto meaning = read_meaning(record->config);
   if (!meaning) return tl::unexpected(meaning.error());
-  auto robot_file = nominal_text(store, *record, robot_text);
+  const auto base = record->kind == to_string(SessionKind::cause)
+                        ? base_of_cause(store, record->model_hash, record->config_hash, session)
+                        : std::nullopt;
+  auto robot_file = nominal_text(store, base.value_or(*record), robot_text);
   if (!robot_file) return tl::unexpected(robot_file.error());
   auto robot = robot_of(*robot_file, session_name(session));
   if (!robot) return tl::unexpected(robot.error());
   DataSet data = rows_of(**robot, *kept, *meaning);
+  if (base) {
+    const auto full = stored_session(store, *base);
+    if (!full) return tl::unexpected(full.error());
+    const DataSet before = rows_of(**robot, *full, *meaning);
+    data = data.rows.rows() > 0 ? merged(before, data) : before;
+  }
   return SessionRows{*record, *std::move(robot_file), *std::move(robot), std::move(data)};
 }
 

@@ -19,7 +19,8 @@ struct SessionRows {
   DataSet data;
 };
 
-/// The rows that the session's good touches make. The robot is that of the session's result with
+/// The rows that the session's good touches make; of a look for a cause after those of the full
+/// session that it is looked for in. The robot is that of the session's result with
 /// its maker's figures as values, or `robot_text` where there is no result (of an aborted session,
 /// of a check); empty `robot_text` is a failure then. Fails as well when the raw rows are no longer
 /// kept.

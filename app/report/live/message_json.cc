@@ -79,6 +79,9 @@ Json to_json(const ResultMessage& result) {
                        {"touches", result.touches},
                        {"rejected", result.rejected},
                        {"identified", result.identified},
+                       {"cause", result.cause},
+                       {"cause_probability", finite(result.cause_probability)},
+                       {"cause_closes", finite(result.cause_closes)},
                        {"result", std::move(nuisance)}});
 }
 

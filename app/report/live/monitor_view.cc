@@ -29,7 +29,8 @@ Tone tone_of(Health level) {
 
 Tone tone_of(const ResultMessage& result) {
   const bool good = parse_decision(result.decision) == ResultDecision::applied ||
-                    parse_answer(result.answer) == ResultAnswer::explained;
+                    parse_answer(result.answer) == ResultAnswer::explained ||
+                    parse_answer(result.answer) == ResultAnswer::no_cause;
   return good ? Tone::good : Tone::warning;
 }
 
@@ -198,6 +199,12 @@ std::string figures(const ResultMessage& result) {
   if (result.kind == "check")
     return "check " + mm(result.check_after) + " mm where " + mm(result.check_before) +
            " mm are expected" + p;
+  if (result.kind == "cause")
+    return (result.cause.empty()
+                ? "nothing is named; "
+                : result.cause + printed(" (probability %.2f); ", result.cause_probability)) +
+           "calibrated " + mm(result.check_before) + " mm, with the cause in the model " +
+           mm(result.check_after) + " mm" + p;
   return "check " + mm(result.check_before) + " mm before, " + mm(result.check_after) +
          " mm after; end position " + mm(result.endpoint_sigma) + " mm (1 sigma)" + p;
 }

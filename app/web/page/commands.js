@@ -3,6 +3,8 @@
 const VERBS = {
   start: {title: "Start a session", able: status => idle(status)},
   check: {title: "Quick check", able: status => idle(status)},
+  diagnose: {title: "Look for the cause", able: status => idle(status) && status.state !== "awaiting-acceptance"},
+  done: {title: "Done", main: true, able: status => status.state === "awaiting-person"},
   abort: {title: "Abort", stop: true, able: status => !idle(status) && status.state !== "awaiting-acceptance"},
   accept: {title: "Accept", main: true, able: status => status.candidate},
   reject: {title: "Reject", able: status => status.candidate},
@@ -71,6 +73,8 @@ function words_for(verb) {
   switch (verb) {
     case "start": return motion_words("as often as its configuration says" + (progress && progress.kind === "full" && progress.planned ? " (" + progress.planned + " times in the last full session)" : ""));
     case "check": return motion_words("about a dozen times, and says whether the active parameters still explain them");
+    case "diagnose": return motion_words("where that tells apart what may cause the gap that calibration leaves, and says what it is");
+    case "done": return [paragraph("What the robot waits for is done: " + status.why + ". It moves on by itself, and nobody may stand in its way.")];
     case "abort": return [paragraph("Motion stops, and session " + status.session + " ends without a result." + (progress && progress.session === status.session
       ? " Its " + plural(progress.done, "touch", "touches") + " of " + progress.planned + " stay in the store." : "")),
       paragraph((status.active === "factory" ? "The factory's parameters" : "The parameters of " + status.active) + " stay active.", "soft")];

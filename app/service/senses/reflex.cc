@@ -1,4 +1,4 @@
-#include "app/service/reflex.h"
+#include "app/service/senses/reflex.h"
 
 #include <algorithm>
 #include <utility>

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/service/debounce.h"
+#include "app/service/senses/debounce.h"
 
 namespace selfcal {
 

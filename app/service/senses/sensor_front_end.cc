@@ -1,4 +1,4 @@
-#include "app/service/sensor_front_end.h"
+#include "app/service/senses/sensor_front_end.h"
 
 #include <algorithm>
 

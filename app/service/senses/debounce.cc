@@ -1,4 +1,4 @@
-#include "app/service/debounce.h"
+#include "app/service/senses/debounce.h"
 
 #include <algorithm>
 

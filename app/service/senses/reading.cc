@@ -1,4 +1,4 @@
-#include "app/service/reading.h"
+#include "app/service/senses/reading.h"
 
 #include <algorithm>
 #include <cmath>

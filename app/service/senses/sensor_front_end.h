@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "app/service/reading.h"
-#include "app/service/reflex.h"
+#include "app/service/senses/reading.h"
+#include "app/service/senses/reflex.h"
 #include "app/service/transition.h"
 
 namespace selfcal {
