@@ -72,8 +72,9 @@ struct HealthMessage {
 };
 
 struct CommandMessage {
-  std::string id;    ///< chosen by the sender, repeated in the reply
-  std::string verb;  ///< "start", "check", "diagnose", "done", "abort", "accept", "reject", "rollback"
+  std::string id;  ///< chosen by the sender, repeated in the reply
+  std::string
+      verb;  ///< "start", "check", "diagnose", "done", "abort", "accept", "reject", "rollback"
   std::string from;  ///< who asks, for the log
 };
 

@@ -7,7 +7,8 @@ namespace {
 
 // In the order of the enumerations.
 constexpr std::array<std::string_view, 9> kAnswers = {
-    "improved", "not-improved", "not-determined", "explained", "not-explained", "failed", "cause-named", "cause-unknown", "no-cause"};
+    "improved", "not-improved", "not-determined", "explained", "not-explained",
+    "failed",   "cause-named",  "cause-unknown",  "no-cause"};
 constexpr std::array<std::string_view, 7> kDecisions = {
     "none", "rejected", "candidate", "applying", "applied", "replaced", "rolled-back"};
 

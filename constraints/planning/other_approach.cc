@@ -6,11 +6,11 @@
 namespace selfcal {
 namespace {
 
-constexpr int kDraws = 12;          // of directions, for each way that is asked for
-constexpr int kSecants = 4;         // until the start is as far out as it shall be
-constexpr double kMostTurn = 0.6;   // rad or m, that a joint moves on the way in
-constexpr double kMostAside = 2.5;  // times the clearance, that the tip moves along the surface
-constexpr double kNearHeight = 0.02;      // of the wanted height
+constexpr int kDraws = 12;            // of directions, for each way that is asked for
+constexpr int kSecants = 4;           // until the start is as far out as it shall be
+constexpr double kMostTurn = 0.6;     // rad or m, that a joint moves on the way in
+constexpr double kMostAside = 2.5;    // times the clearance, that the tip moves along the surface
+constexpr double kNearHeight = 0.02;  // of the wanted height
 
 class ApproachFinder {
  public:
@@ -28,7 +28,8 @@ class ApproachFinder {
     for (int i = 0; i < kSecants; ++i) {
       if (!(std::abs(b) * direction.cwiseAbs().maxCoeff() < kMostTurn)) return std::nullopt;
       const double at_b = height_of(touch_.touch + b * direction);
-      if (std::abs(at_b - height) < kNearHeight * std::abs(height)) return touch_.touch + b * direction;
+      if (std::abs(at_b - height) < kNearHeight * std::abs(height))
+        return touch_.touch + b * direction;
       if (at_b == at_a) return std::nullopt;
       const double next = b + (height - at_b) * (b - a) / (at_b - at_a);
       a = b;

@@ -8,8 +8,9 @@
 namespace selfcal {
 namespace {
 
-constexpr double kLeastConfusion = 0.002;  ///< of the confusion at first, below which no row is worth it
-constexpr double kLeastGain = 0.01;   ///< of the confusion now that a row must take
+constexpr double kLeastConfusion =
+    0.002;                           ///< of the confusion at first, below which no row is worth it
+constexpr double kLeastGain = 0.01;  ///< of the confusion now that a row must take
 
 }  // namespace
 

@@ -42,7 +42,8 @@ Result<std::int64_t> add_session(sqlite3* database, const SessionRecord& session
 
 Result<void> add_blob(sqlite3* database, const Verified& table, std::int64_t session,
                       const std::string& blob) {
-  const std::string sql = std::string("INSERT OR REPLACE INTO ") + table.table + " VALUES(?1, ?2, NULL)";
+  const std::string sql =
+      std::string("INSERT OR REPLACE INTO ") + table.table + " VALUES(?1, ?2, NULL)";
   const auto added = sqlite::run(database, sql.c_str(), {session, sqlite::Blob{blob}});
   if (!added) return tl::unexpected(added.error());
   return put_checksum(database, table, session);

@@ -79,9 +79,10 @@ TEST(Manners, RefusesAWrongCommandWithTheReason) {
   Cell cell(small());
   cell.start_service();
   ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
-  EXPECT_EQ(cell.command("dance").why,
-            "no command is called 'dance'; known: start, check, diagnose, done, abort, accept, reject, "
-            "rollback");
+  EXPECT_EQ(
+      cell.command("dance").why,
+      "no command is called 'dance'; known: start, check, diagnose, done, abort, accept, reject, "
+      "rollback");
   EXPECT_EQ(cell.command("accept").why, "no result waits for acceptance");
   EXPECT_FALSE(cell.command("rollback").accepted);
   EXPECT_FALSE(cell.command("check").accepted) << "no session to compare with";
