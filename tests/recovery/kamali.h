@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "constraints/methods/data_set.h"
 #include "constraints/solution.h"
+#include "kinematics/robot.h"
 
 namespace selfcal::recovery {
 
