@@ -17,14 +17,8 @@ namespace {
 struct Covered {
   const char* title;
   const char* robot;  ///< a kind of kind_examples, or rx90
-  const char* errors;
   const char* sets;
 };
-
-constexpr const char* kPlatformErrors = "{length: 1.0e-3, angle: 1.0e-3}";
-constexpr const char* kArmErrors =
-    "{length: 1.0e-3, angle: 1.0e-3, base_length: 5.0e-3, base_angle: 5.0e-3, tool_length: 5.0e-3, "
-    "tool_angle: 5.0e-3}";
 
 constexpr const char* kPlanes =
     "  a: {method: plane, noise: 2.0e-5, rows: 50}\n"
@@ -48,6 +42,19 @@ std::string circle_sets() {
 
 std::unique_ptr<Robot> robot_named(const std::string& name) {
   return robot_of(name == "rx90" ? kRx90 : kind_examples().at(name));
+}
+
+/// Every parameter that is free is off by as much as its maker's tolerance says.
+std::string drawn_errors_of(const Robot& robot, int seed) {
+  Random random(static_cast<unsigned>(seed));
+  std::normal_distribution<double> normal;
+  std::string text;
+  for (const Parameter& p : robot.parameters()) {
+    const double off = p.tolerance * normal(random);
+    if (p.free && p.part != Part::gear)
+      text += (text.empty() ? "" : ", ") + p.name + ": " + format_number(off);
+  }
+  return "{parameters: {" + text + "}}";
 }
 
 struct Tally {
@@ -78,7 +85,8 @@ TEST_P(Coverage, IsWhatIsStated) {
   const std::string sets = *each.sets == 0 ? circle_sets() : each.sets;
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto node = parse_yaml("robot: r\nseed: " + std::to_string(seed) +
-                                     "\nerrors: " + each.errors + "\ncheck: 0.25\nsets:\n" + sets,
+                                     "\nerrors: " + drawn_errors_of(*robot, seed) +
+                                     "\ncheck: 0.25\nsets:\n" + sets,
                                  "scenario");
     ASSERT_TRUE(node) << node.error().what;
     Problems problems;
@@ -108,40 +116,40 @@ TEST_P(Coverage, IsWhatIsStated) {
 INSTANTIATE_TEST_SUITE_P(
     Stated, Coverage,
     testing::Values(
-        Covered{"StewartLocks", "gough-stewart", kPlatformErrors,
+        Covered{"StewartLocks", "gough-stewart",
                 "  u1: {method: locked-joint, lock: {leg: 1, joint: universal}, noise: 2.0e-5, "
                 "rows: 60}\n"
                 "  u3: {method: locked-joint, lock: {leg: 3, joint: universal}, noise: 2.0e-5, "
                 "rows: 60}\n"
                 "  s5: {method: locked-joint, lock: {leg: 5, joint: spherical}, noise: 2.0e-5, "
                 "rows: 60}\n"},
-        Covered{"StewartPlanes", "gough-stewart", kPlatformErrors, kPlanes},
-        Covered{"StewartInclinometers", "gough-stewart", kPlatformErrors,
+        Covered{"StewartPlanes", "gough-stewart", kPlanes},
+        Covered{"StewartInclinometers", "gough-stewart",
                 "  tilt: {method: inclinometers, noise: 2.0e-5, rows: 120}\n"},
-        Covered{"StewartPositions", "gough-stewart", kPlatformErrors, kPositions},
-        Covered{"StewartLocations", "gough-stewart", kPlatformErrors, kLocations},
-        Covered{"HexaSlideLink", "hexaslide", kPlatformErrors,
+        Covered{"StewartPositions", "gough-stewart", kPositions},
+        Covered{"StewartLocations", "gough-stewart", kLocations},
+        Covered{"HexaSlideLink", "hexaslide",
                 "  link: {method: constraint-link, length: 0.75, noise: 1.0e-6, noise_angle: "
                 "2.0e-5, noise_joints: 2.0e-5, rows: 80}\n"},
-        Covered{"HexaSlidePlanes", "hexaslide", kPlatformErrors, kPlanes},
-        Covered{"HexaSlidePositions", "hexaslide", kPlatformErrors, kPositions},
-        Covered{"HexaSlideLocations", "hexaslide", kPlatformErrors, kLocations},
-        Covered{"DeltaPlanes", "linear-delta", kPlatformErrors, kPlanes},
-        Covered{"DeltaPositions", "linear-delta", kPlatformErrors, kPositions},
-        Covered{"ArmCirclePoints", "rx90", kArmErrors, ""},
-        Covered{"ArmInclinometers", "rx90", kArmErrors,
+        Covered{"HexaSlidePlanes", "hexaslide", kPlanes},
+        Covered{"HexaSlidePositions", "hexaslide", kPositions},
+        Covered{"HexaSlideLocations", "hexaslide", kLocations},
+        Covered{"DeltaPlanes", "linear-delta", kPlanes},
+        Covered{"DeltaPositions", "linear-delta", kPositions},
+        Covered{"ArmCirclePoints", "rx90", ""},
+        Covered{"ArmInclinometers", "rx90",
                 "  tilt: {method: inclinometers, noise: 2.0e-5, rows: 120}\n"},
-        Covered{"ArmTheodolites", "rx90", kArmErrors,
+        Covered{"ArmTheodolites", "rx90",
                 "  one: {method: bearing, frame: unknown, noise: 2.0e-5, rows: 80}\n"
                 "  two: {method: bearing, frame: unknown, noise: 2.0e-5, rows: 80}\n"
                 "  a: {method: plane, noise: 2.0e-5, rows: 30}\n"
                 "  b: {method: plane, noise: 2.0e-5, rows: 30, parallel_to: {set: a, distance: "
                 "0.2, noise: 2.0e-6}}\n"},
-        Covered{"ArmCables", "rx90", kArmErrors,
+        Covered{"ArmCables", "rx90",
                 "  a: {method: fixed-point-distance, offset: unknown, noise: 1.0e-4, rows: 80}\n"
                 "  b: {method: fixed-point-distance, offset: unknown, noise: 1.0e-4, rows: 80}\n"
                 "  c: {method: fixed-point-distance, offset: unknown, noise: 1.0e-4, rows: 80}\n"},
-        Covered{"ArmLockedJoint", "rx90", kArmErrors,
+        Covered{"ArmLockedJoint", "rx90",
                 "  tip: {method: position-constraint, locked: [j4], noise: 2.0e-5, rows: 60, "
                 "rows_per_group: 12}\n"
                 "  tracker: {method: position, frame: unknown, noise: 2.0e-5, rows: 60}\n"}),
