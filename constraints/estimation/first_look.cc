@@ -84,7 +84,8 @@ Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
   return result;
 }
 
-/// What the maker's tolerances leave at the end (m, or rad where `lengths` is false).
+/// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs carry
+/// they turn, by a length over that of a leg.
 double expected_misfit(const Robot& robot, bool lengths) {
   double reach = 0, squares = 0;
   for (const Parameter& p : robot.parameters())
@@ -92,7 +93,9 @@ double expected_misfit(const Robot& robot, bool lengths) {
   for (const Parameter& p : robot.parameters()) {
     if (p.part != Part::link) continue;
     if (p.quantity == Quantity::angle) squares += std::pow(p.tolerance * (lengths ? reach : 1), 2);
-    if (p.quantity == Quantity::length && lengths) squares += std::pow(p.tolerance, 2);
+    if (p.quantity != Quantity::length) continue;
+    if (lengths || robot.leg_parameter(0) >= 0)
+      squares += std::pow(p.tolerance / (lengths ? 1 : size_of(robot)), 2);
   }
   return std::sqrt(squares);
 }
