@@ -9,7 +9,7 @@ namespace selfcal {
 namespace {
 
 /// 1 over the largest whitened change that any column may explain: it holds what no row tells.
-constexpr double kRidge = 1e-6;
+constexpr double kRidge = 1e-5;
 
 /// Values of all parameters of the entries' effects.
 std::vector<double> values_of(const LinearisedModel& view, const std::vector<Node>& entries) {

@@ -20,7 +20,7 @@ TEST(Outcome, ReadsBackEveryAnswerAndDecisionFromItsText) {
     EXPECT_EQ(parse_decision(to_string(decision)), decision);
     texts.insert(to_string(decision));
   }
-  EXPECT_EQ(texts.size(), 12);
+  EXPECT_EQ(texts.size(), 15);
 }
 
 TEST(Outcome, KnowsNoOtherText) {

@@ -77,6 +77,7 @@ TEST(Store, GivesBackAPlanBitByBit) {
   plan[5].set = "";
   plan[6].group = std::string("with\0 zero, µ and\n", 19);
   plan[7].index = -3;
+  plan[8].slow = plan[9].loaded = plan[10].slow = plan[10].loaded = true;
   const std::int64_t id = store->begin(some_session(), plan).value();
 
   const std::vector<StepRecord> back = store->plan(id).value();

@@ -48,8 +48,6 @@ inline std::vector<StepRecord> some_plan(int steps, int joints, std::uint64_t se
     step.group = std::to_string(i / 4 % 4);
     step.check = i % 7 == 6;
     step.via_home = i % 5 == 4;
-    step.slow = i % 11 == 3;
-    step.loaded = i % 9 == 2;
     for (std::vector<double>* q : {&step.start, &step.touch, &step.end}) {
       for (int joint = 0; joint < joints; ++joint) q->push_back(reading(generator));
     }
