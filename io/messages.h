@@ -72,14 +72,8 @@ struct HealthMessage {
 };
 
 struct CommandMessage {
-<<<<<<< ours
-  std::string id;  ///< chosen by the sender, repeated in the reply
-  std::string
-      verb;  ///< "start", "check", "diagnose", "done", "abort", "accept", "reject", "rollback"
-=======
   std::string id;    ///< chosen by the sender, repeated in the reply
   std::string verb;  ///< "start", "abort": one of those that the service takes
->>>>>>> theirs
   std::string from;  ///< who asks, for the log
 };
 
