@@ -15,6 +15,7 @@
 #include "app/commands/support/signals.h"
 #include "app/commands/support/simulated_robot.h"
 #include "app/report/progress_line.h"
+#include "app/service/pose_answers.h"
 #include "app/service/service.h"
 #include "io/clock.h"
 #include "io/dds/messenger.h"
@@ -120,9 +121,16 @@ void set_up_log(const std::string& level) {
   spdlog::set_default_logger(std::move(log));
 }
 
-void run_sessions(Service& service, int sessions) {
-  while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions))
+void run_sessions(Service& service, int sessions, DdsPoses* poses) {
+  PoseAnswers answers;
+  while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions)) {
     service.turn();
+    if (!poses) continue;
+    const Models& models = service.models();
+    poses->answer([&](const PoseRequestMessage& request) {
+      return answers.answer(request, models.factory(), models.active(), models.name());
+    });
+  }
   service.shut_down();
 }
 
@@ -162,13 +170,21 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   auto messenger = DdsMessenger::open(*participant, config.id, wakeup);
   if (!messenger) return tl::unexpected(messenger.error());
 
+  // Who may command it may ask it for readings.
+  std::unique_ptr<DdsPoses> poses;
+  if (config.commands.over != CommandRules::Over::none) {
+    auto opened_poses = DdsPoses::open(*participant, config.id, wakeup);
+    if (!opened_poses) return tl::unexpected(opened_poses.error());
+    poses = *std::move(opened_poses);
+  }
+
   auto beside = Store::open(config.state);
   if (!beside) return tl::unexpected(beside.error());
   Journal journal(std::move(beside->store));
   const auto serve_with = [&](const Ports& ports) {
     Service service(config, ports, **messenger, *opened->store, journal, std::move(*models),
                     opened->set_aside);
-    run_sessions(service, arguments.sessions);
+    run_sessions(service, arguments.sessions, poses.get());
     return Result<void>{};
   };
   if (!arguments.simulate) {

@@ -24,6 +24,7 @@ class Service {
   void shut_down();
 
   const Situation& situation() const { return c_.situation; }
+  const Models& models() const { return c_.models; }
 
  private:
   // service.cc: the turn

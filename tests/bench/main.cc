@@ -11,9 +11,11 @@
 #include "constraints/equations/equations.h"
 #include "constraints/equations/streaming_qr.h"
 #include "constraints/estimation/identification.h"
+#include "constraints/identifiability/observability.h"
 #include "constraints/planning/detmax.h"
 #include "diagnosis/diagnosis.h"
 #include "kinematics/expects.h"
+#include "kinematics/inverse/compensation_stream.h"
 #include "kinematics/linear_algebra.h"
 #include "tests/bench/arm.h"
 #include "tests/bench/contenders.h"
@@ -263,6 +265,63 @@ void choice_values(benchmark::State& state) {
         });
 }
 
+// ------------------------------------------------------- a plan of many, commands in a loop
+
+constexpr int kMany = 10000, kPlanned = 100;
+
+std::vector<Eigen::MatrixXd> many_rows() {
+  const Task& task = task_of(kMany);
+  const Eigen::MatrixXd W = stored_W(kMany);
+  const Eigen::Index rows = W.rows() / kMany;
+  std::vector<Eigen::MatrixXd> list;
+  for (int i = 0; i < kMany; ++i)
+    list.push_back(W.middleRows(i * rows, rows)(Eigen::all, task.unknowns));
+  return list;
+}
+
+void plan_of_many(benchmark::State& state) {
+  const auto candidates = many_rows();
+  for (auto _ : state) {
+    std::mt19937_64 random(1);
+    benchmark::DoNotOptimize(detmax(candidates, kPlanned, random).o1);
+  }
+}
+
+/// One evaluation of a choice for each of the candidates.
+void observability_of_many(benchmark::State& state) {
+  const auto candidates = many_rows();
+  Eigen::MatrixXd W(3 * kPlanned, kUnknowns);
+  for (int i = 0; i < kPlanned; ++i)
+    W.middleRows(3 * i, 3) = candidates[static_cast<std::size_t>(i)];
+  for (auto _ : state)
+    for (int i = 0; i < kMany; ++i) benchmark::DoNotOptimize(observability(W, kPlanned).o1);
+}
+
+/// The example robot, 1 mm and 1 mrad off, along a path of small steps.
+void commands_in_a_loop(benchmark::State& state) {
+  static const std::shared_ptr<const Robot> nominal(&example_robot(), [](const Robot*) {});
+  Eigen::VectorXd xi = values(*nominal);
+  for (Eigen::Index i = 0; i < xi.size(); ++i)
+    if (nominal->parameters()[static_cast<std::size_t>(i)].free) xi[i] += i % 2 == 0 ? 1e-3 : -1e-3;
+  Problems problems;
+  const std::shared_ptr<const Robot> calibrated =
+      make_robot(nominal->text().describe(xi), problems);
+  std::vector<Location> path;
+  Eigen::VectorXd q = (Eigen::VectorXd(6) << 0.0, -0.6, 0.9, 0.0, 1.2, 0.0).finished();
+  for (int i = 0; i < 1000; ++i) {
+    q[0] = 0.5 * std::sin(2 * M_PI * i / 1000);
+    q[2] = 0.9 + 0.2 * std::cos(2 * M_PI * i / 1000);
+    path.push_back(locate(*nominal, values(*nominal), q));
+  }
+  auto stream = CompensationStream::of(calibrated, q);
+  expects(stream.has_value(), "the example robot is a chain");
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const StreamedCommand command = stream->command(path[i++ % path.size()]);
+    expects(command.status == Streamed::reached, "every pose of the path is reached");
+  }
+}
+
 // --------------------------------------------------------------------------- the diagnosis
 
 void whole_diagnosis(benchmark::State& state) {
@@ -310,6 +369,9 @@ void register_all() {
   add("choice/selfcal", choice_selfcal)->Unit(benchmark::kMillisecond);
   add("choice/cholesky", choice_cholesky)->Unit(benchmark::kMillisecond);
   add("choice/singular-values", choice_values)->Unit(benchmark::kMillisecond)->Iterations(1);
+  add("plan/100-of-10000", plan_of_many)->Unit(benchmark::kMillisecond)->Iterations(1);
+  add("plan/observability", observability_of_many)->Unit(benchmark::kMillisecond)->Iterations(1);
+  add("compensation/loop", commands_in_a_loop);
   add("diagnosis/selfcal", whole_diagnosis)->Unit(benchmark::kMillisecond)->Iterations(1);
 }
 
@@ -351,6 +413,11 @@ class Ratios final : public benchmark::ConsoleReporter {
     line("choice over a Cholesky a trial", "choice/cholesky", "choice/selfcal", 15);
     line("choice over singular values a trial", "choice/singular-values/iterations:1",
          "choice/selfcal", 1000);
+    line("100 of 10000 over an observability each", "plan/100-of-10000/iterations:1",
+         "plan/observability/iterations:1", 100, true);
+    if (time_.contains("compensation/loop"))
+      std::printf("%-38s %6.3g us\n", "a command in a control loop",
+                  1e6 * time_.at("compensation/loop"));
     line("diagnosis over identification, 400", "diagnosis/selfcal/iterations:1",
          "whole/selfcal/400", 20, true);
     if (rate_.contains("peak") && rate_.contains("pass/selfcal/10000"))
