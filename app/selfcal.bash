@@ -19,7 +19,7 @@ _selfcal() {
     *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
     *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
     *:compensate) words="--nominal --payload --payload-centre --temperature --all --controller --out --help" ;;
-    *:plan) words="--method --separate --step --unknown --lock --count --candidates --criterion --workspace --start --groups --noise --noise-angle --speed --target --seed --out --json --help" ;;
+    *:plan) words="--method --separate --step --unknown --lock --count --candidates --criterion --workspace --start --prior --further --spacing --longest --groups --noise --noise-angle --speed --target --seed --out --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check convert --help" ;;
     *:robot) words="--convention --base --tip --to --like --out --help" ;;

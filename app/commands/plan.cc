@@ -8,7 +8,9 @@
 #include "app/commands/subcommand.h"
 #include "app/commands/support/cell_plan.h"
 #include "app/commands/support/method_sets.h"
+#include "app/commands/support/prior_file.h"
 #include "app/commands/support/separating_rows.h"
+#include "app/report/next_words.h"
 #include "app/report/plan_words.h"
 #include "app/report/progress_line.h"
 #include "io/files/file.h"
@@ -19,14 +21,15 @@
 namespace selfcal {
 namespace {
 
+constexpr int kFurtherCandidates = 60;                // of each set, where further places are tried
 constexpr double kTurnSpeed = 1, kSlideSpeed = 0.25;  // rad/s, m/s, where none is given
 
 struct PlanArguments {
-  std::string file, separate, start, out, criterion = "sigma";
+  std::string file, separate, start, prior, further, out, criterion = "sigma";
   MethodOptions options;
   int count = 30, candidates = 1000, groups = 2, step = 1;
   std::vector<double> speed, workspace;
-  double target = 1e-3;
+  double target = 1e-3, spacing = 0, longest = 0;
   unsigned long long seed = 1;
   bool json = false;
 };
@@ -71,7 +74,14 @@ Result<PlanRequest> request_of(const Robot& robot, const PlanArguments& argument
   const Result<std::vector<int>> held = held_joints(robot, arguments.options);
   if (!held) return tl::unexpected(held.error());
   request.pool.held = *held;
+  if (!arguments.prior.empty()) {
+    const auto prior = read_prior(arguments.prior, robot);
+    if (!prior) return tl::unexpected(prior.error());
+    request.pool.prior = *prior;
+  }
   request.count = arguments.count;
+  request.pool.spacing = arguments.spacing;
+  request.longest = arguments.longest;
   request.pool.candidates = arguments.candidates;
   request.pool.groups = arguments.groups;
   request.pool.seed = arguments.seed;
@@ -93,6 +103,32 @@ Result<void> write_rows(const PlanArguments& arguments, const std::string& text)
   return arguments.out.empty() ? Result<void>() : write_file_atomically(arguments.out, text);
 }
 
+/// Where a further set of the method that is asked for would help most, beside `planned`.
+Result<NextRequest> next_request(const Robot& robot, const PlanArguments& arguments,
+                                 DataSet planned) {
+  NextRequest next;
+  Problems problems;
+  next.further =
+      make_set("further", Node::map().set("method", Node::of(arguments.further)), problems);
+  if (!problems.any() && has_body(robot, next.further.method->body()) == false)
+    problems.list.push_back("--further " + arguments.further + ": not of this robot");
+  if (problems.any()) return tl::unexpected(Failure{kWrongUsage, problems.list.front()});
+  next.further.noise = arguments.options.noise;
+  next.further.noise_angle = arguments.options.noise_angle;
+  next.pool.sets = planned.sets;
+  next.pool.taken = std::move(planned);
+  next.pool.candidates = kFurtherCandidates * static_cast<int>(next.pool.sets.size());
+  next.pool.groups = arguments.groups;
+  next.pool.seed = arguments.seed;
+  return next;
+}
+
+NextPlaces find_next_places(const Robot& robot, const NextRequest& request) {
+  ProgressLine line;
+  return next_places(robot, values(robot), request,
+                     [&](std::string_view stage, double share) { line.show(stage, share); });
+}
+
 int plan_for_robot(const PlanArguments& arguments) {
   if (const std::string what = mistake(arguments.options); !what.empty()) return wrong_usage(what);
   if (arguments.candidates < arguments.count)
@@ -111,16 +147,35 @@ int plan_for_robot(const PlanArguments& arguments) {
   if (!plan.problem.empty()) return tell({kAnswerIsNo, plan.problem});
   if (const auto written = write_rows(arguments, rows_text(plan)); !written)
     return tell(written.error());
+  nlohmann::ordered_json json;
   if (arguments.json)
-    std::printf("%s\n", plan_json(**robot, *request, plan, arguments.target).dump(1).c_str());
+    json = plan_json(**robot, *request, plan, arguments.target);
   else
     std::fputs(plan_words(**robot, *request, plan, arguments.target).c_str(), stdout);
+  if (!arguments.further.empty()) {
+    auto next = next_request(**robot, arguments, plan.data);
+    if (!next) return tell(next.error());
+    next->pool.prior = request->pool.prior;
+    next->pool.held = request->pool.held;
+    next->workspace = request->workspace;
+    const NextPlaces places = find_next_places(**robot, *next);
+    if (arguments.json)
+      json["further"] = next_json(places);
+    else
+      std::fputs(next_words(*next, places).c_str(), stdout);
+  }
+  if (arguments.json) std::printf("%s\n", json.dump(1).c_str());
   return kDone;
 }
 
 int plan_for_cell(const PlanArguments& arguments) {
-  const auto config = load_config(arguments.file);
+  auto config = load_config(arguments.file);
   if (!config) return tell(config.error());
+  if (!arguments.prior.empty()) {
+    auto prior = read_prior(arguments.prior, *config->robot);
+    if (!prior) return tell(prior.error());
+    config->plan.prior = *std::move(prior);
+  }
   CellPlan cell;
   {
     ProgressLine line;
@@ -129,11 +184,24 @@ int plan_for_cell(const PlanArguments& arguments) {
   }
   if (const auto written = write_rows(arguments, cell_plan_rows(*config, cell)); !written)
     return tell(written.error());
+  nlohmann::ordered_json json;
   if (arguments.json)
-    std::printf("%s\n", cell_plan_json(*config, cell).dump(1).c_str());
+    json = cell_plan_json(*config, cell);
   else
     std::printf("%s: robot %s\n%s", config->id.c_str(), config->robot->name().c_str(),
                 cell_plan_words(*config, cell).c_str());
+  if (!arguments.further.empty() && cell.plan.unreached.empty()) {
+    auto next = next_request(*config->robot, arguments, cell_plan_data(*config, cell));
+    if (!next) return tell(next.error());
+    next->pool.prior = config->plan.prior;
+    next->workspace = config->workspace;
+    const NextPlaces places = find_next_places(*config->robot, *next);
+    if (arguments.json)
+      json["further"] = next_json(places);
+    else
+      std::fputs(next_words(*next, places).c_str(), stdout);
+  }
+  if (arguments.json) std::printf("%s\n", json.dump(1).c_str());
   return cell.reaches(*config) ? kDone : kAnswerIsNo;
 }
 
@@ -183,6 +251,16 @@ void add_plan(CLI::App& app, int& status) {
       ->check(CLI::Range(1, 100))
       ->needs(separate)
       ->capture_default_str();
+  command
+      ->add_option("--prior", arguments->prior,
+                   "result.json whose covariance says what is known beforehand")
+      ->excludes(separate);
+  CLI::Option* further =
+      command
+          ->add_option("--further", arguments->further,
+                       "Method: where a further surface, socket or instrument would help most")
+          ->check(is_method())
+          ->excludes(separate);
   const std::vector<CLI::Option*> others = command->get_options();
   add_lock_and_unknown(*command, arguments->options);
   command->add_option("--count", arguments->count, "Configurations to choose")
@@ -198,8 +276,15 @@ void add_plan(CLI::App& app, int& status) {
       ->add_option("--workspace", arguments->workspace,
                    "Box where the end position counts: X Y Z X Y Z of two corners (m)")
       ->expected(6);
-  command->add_option("--start", arguments->start,
-                      "CSV of configurations that are measured already");
+  command
+      ->add_option("--start", arguments->start, "CSV of configurations that are measured already")
+      ->excludes(further);
+  command->add_option("--spacing", arguments->spacing, "Least between end positions of a set (m)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--longest", arguments->longest,
+                   "Most that the motion may take (s); fewer are chosen then")
+      ->check(CLI::PositiveNumber);
   command->add_option("--groups", arguments->groups, "Sockets or nests of a method that has such")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

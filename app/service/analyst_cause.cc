@@ -107,8 +107,8 @@ void Analyst::touch_more(const std::string& why, const CauseFindings& found) {
   }
   const TouchPlanOptions& plan = c_.config.plan;
   const Eigen::VectorXd xi = values(*c_.models.active());
-  const Surroundings cell{*c_.models.active(), xi,        c_.config.obstacles,
-                          plan.apart,          plan.home, plan.speed};
+  const Surroundings cell{*c_.models.active(), xi,         c_.config.obstacles, plan.apart,
+                          plan.home,           plan.speed, plan.fence};
   TouchPlan ordered{in_short_order(cell, c_.config.sets, touches), {}};
   // Those with the payload after the others: a person comes twice at most.
   for (PlannedTouch& each : in_short_order(cell, c_.config.sets, loaded)) {

@@ -95,8 +95,8 @@ class TouchPool {
     if (targets.empty()) return;
     for (TouchTarget& each : targets)
       each.touches = std::max<int>(4, kPool / static_cast<int>(targets.size()));
-    const auto usable = usable_touches(robot_, xi_, config_.sets, targets, config_.obstacles,
-                                       config_.plan, random_, progress);
+    const TouchCandidates candidates(robot_, xi_, config_.sets, config_.obstacles, config_.plan);
+    const auto usable = usable_touches(candidates, targets, random_, progress);
     int number = 0;
     for (const std::vector<PlannedTouch>& of_target : usable)
       for (const PlannedTouch& each : of_target) {

@@ -102,7 +102,8 @@ void Collector::announce_plan() {
       event.back_off = true;
       reached_ = last->start;
     } else if (!path_is_free(*c_.models.active(), values(*c_.models.active()), *here,
-                             c_.config.plan.home, c_.config.obstacles, 0)) {
+                             c_.config.plan.home, c_.config.obstacles, 0, -1,
+                             c_.config.plan.fence)) {
       event.ok = false;
       event.why = "no free way home from where the robot stands: move it there by hand";
     }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/service/config_transports.h"
+#include "constraints/planning/fence_file.h"
 #include "io/dds/participant.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
@@ -16,6 +17,8 @@ namespace {
 
 const std::vector<std::string_view> kOwnKeys = {"touches", "surface", "within", "places",
                                                 "way_out"};
+
+constexpr double kSlowBefore = 1.3;  // of `search`, where a touch begins
 
 constexpr std::array<std::pair<std::string_view, CommandRules::Over>, 4> kOvers = {
     {{"none", CommandRules::Over::none},
@@ -149,14 +152,28 @@ class Reader {
     c_.plan.search = f.number("search", c_.plan.search, 1e-4, 0.1);
     c_.plan.apart = f.number("apart", c_.plan.apart, 0, 0.5);
     c_.plan.tilt = f.number("tilt", c_.plan.tilt, 0.01, 3.2);
+    c_.plan.touch_speed = c_.speeds.touch;
+    c_.plan.spacing = f.number("spacing", c_.plan.spacing, 0, 1);
+    c_.plan.longest = f.number("longest", c_.plan.longest, 0, 1e6);
     c_.plan.limit_margin = f.number("limit_margin", c_.plan.limit_margin, 0, 1);
     c_.touch.rest = f.number("rest", c_.touch.rest, 1e-7, 0.1);
     if (c_.plan.apart >= c_.plan.clearance) f.fail("apart", "less than clearance");
     if (c_.plan.search >= c_.plan.clearance) f.fail("search", "less than clearance");
+    const double most = std::max(c_.plan.search, c_.plan.clearance);
+    c_.plan.slow =
+        f.number("slow", std::min(kSlowBefore * c_.plan.search, most), c_.plan.search, most);
+    c_.plan.fence = read_fence(f.node("keep_out"), f.node("capsules"), *c_.robot, problems_);
+    if (problems_.any() || !home) return;
+    Locations X;
+    if (!c_.robot->locate(block_of(*home), values(*c_.robot), Body::endpoint, X, nullptr).closes(0))
+      return;
+    if (const std::string what = in_the_way(*c_.robot, c_.plan.fence, {}, *home, X.p(0), 0, -1);
+        !what.empty())
+      f.fail("home", "free of keep_out and capsules: there " + what);
   }
 
   void read_touch(Fields& f) {
-    c_.touch.repeats = f.integer("repeats", c_.touch.repeats, 1, 20);
+    c_.touch.repeats = c_.plan.repeats = f.integer("repeats", c_.touch.repeats, 1, 20);
     c_.touch.tolerance = f.number("tolerance", c_.touch.tolerance, 1e-6, 0.01);
     c_.limits.attempts = f.integer("attempts", c_.limits.attempts, 1, 20);
     c_.limits.most_failures = f.integer("most_lost", c_.limits.most_failures, 1, 1000);

@@ -27,11 +27,19 @@
 //     home           required   rad, m          readings from which every touch can be begun
 //     speed          0.5        1e-3 to 100     largest joint speed on free ways (rad/s, m/s)
 //     touch_speed    0.01       1e-4 to 1 m/s   of the endpoint towards a surface
-//     clearance      0.03       1e-3 to 0.5 m   how far before the surface a touch begins
+//     clearance      0.03       1e-3 to 0.5 m   how far before the surface free ways end
+//     slow           1.3*search at most         how far before it the robot, coming straight in,
+//                               clearance       slows down to touch_speed; at least search
 //     search         0.01       1e-4 to 0.1 m   how far off the surface may be, either way
 //     apart          0.02       0 to 0.5 m      kept from every other surface; below clearance
 //     tilt           1.2        0.01 to 3.2 rad most between stylus and the way in
 //     limit_margin   0.02       0 to 1          kept from the joint limits (rad, m)
+//     spacing        0          0 to 1 m        least between touched points of a surface
+//     longest        0          0 to 1e6 s      most that a session's motion may take; 0: any time
+//     keep_out       []                         where no part of the robot may be: [{min: [x, y, z],
+//                                               max: [x, y, z]}, {point: [x, y, z], normal: ...}]
+//     capsules       []                         how thick it is: [{link: FRAME, from: [x, y, z],
+//                                               to: [x, y, z], radius: R}, ...]
 //     rest           1.0e-4     1e-7 to 0.1     joint speed below which the robot stands (rad/s)
 //   touch            {}                         when a touch counts:
 //     repeats        1          1 to 20         good touches of each configuration

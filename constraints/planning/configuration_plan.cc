@@ -12,6 +12,8 @@
 namespace selfcal {
 namespace {
 
+constexpr int kLongestTries = 6;    // of fewer, until the way is short enough
+constexpr double kLessTime = 0.97;  // of the share of them that the time is for
 constexpr int kRandomChoices = 25;  // of which the median is told
 
 std::vector<Unit> some(const std::vector<Unit>& units, const std::vector<int>& which) {
@@ -103,6 +105,29 @@ void order_visits(const Eigen::VectorXd& speed, Random& random, ConfigurationPla
   name_pairs(plan.units, plan.data);
 }
 
+/// Chooses `count` units of the pool, moves and orders them, and says what they are worth.
+void choose_units(const Robot& robot, const PlanRequest& request, const PlanSystem& system,
+                  const Pool& pool, int count, Random& random, const Progress& progress,
+                  ConfigurationPlan& plan) {
+  const Objective objective = system.objective(request.criterion);
+  Design design(system.rows(pool.data, pool.units, request.criterion), objective);
+  design.choose(random_choice(design.candidates(), count, random));
+  exchange(design, progress);
+  plan.units = some(pool.units, design.chosen());
+  plan.data = rows_alone(pool.data, plan.units);
+  refine(robot, system.equations(), objective,
+         {plan.data, plan.units, system.columns(request.criterion), system.most(),
+          request.pool.held, request.pool.spacing},
+         progress);
+
+  plan.sigma_before = system.figures(plan.data, {}).sigma;
+  plan.sigma_beyond = system.sigma_beyond(pool.data, pool.units);
+  plan.planned = system.figures(plan.data, plan.units);
+  plan.curve = curve_of(system, plan, progress);
+  if (progress) progress("ordering configurations", 0);
+  order_visits(request.speed, random, plan);
+}
+
 }  // namespace
 
 double ConfigurationPlan::rest(double sigma) const {
@@ -129,23 +154,14 @@ ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd&
   Random random(request.pool.seed);
   plan.random = random_figures(system, pool, request.count, random, progress);
 
-  const Objective objective = system.objective(request.criterion);
-  Design design(system.rows(pool.data, pool.units, request.criterion), objective);
-  design.choose(random_choice(design.candidates(), request.count, random));
-  exchange(design, progress);
-  plan.units = some(pool.units, design.chosen());
-  plan.data = rows_alone(pool.data, plan.units);
-  refine(
-      robot, system.equations(), objective,
-      {plan.data, plan.units, system.columns(request.criterion), system.most(), request.pool.held},
-      progress);
-
-  plan.sigma_before = system.figures(plan.data, {}).sigma;
-  plan.sigma_beyond = system.sigma_beyond(pool.data, pool.units);
-  plan.planned = system.figures(plan.data, plan.units);
-  plan.curve = curve_of(system, plan, progress);
-  if (progress) progress("ordering configurations", 0);
-  order_visits(request.speed, random, plan);
+  int count = request.count;
+  for (int attempt = 0; attempt < kLongestTries; ++attempt) {
+    choose_units(robot, request, system, pool, count, random, progress, plan);
+    if (request.longest <= 0 || plan.way <= request.longest) break;
+    count = std::max(1, static_cast<int>(kLessTime * request.longest / plan.way * count));
+  }
+  if (request.longest > 0 && plan.way > request.longest)
+    plan.problem = "the way between the configurations takes longer than it may";
   return plan;
 }
 

@@ -18,6 +18,7 @@ struct PlanRequest {
   int count = 30;    ///< units to be visited (plan_equations.h), at least 1
   Criterion criterion = Criterion::sigma;
   Workspace workspace = {};  ///< without a box: all that the joints can do
+  double longest = 0;        ///< s, most that the way may take; 0: any time. Fewer are chosen then
   Eigen::VectorXd speed;     ///< by joint (rad/s, m/s), above 0
 };
 

@@ -15,17 +15,7 @@ constexpr double kShares[] = {0.9, 0.75, 0.6, 0.45, 0.3, 0.15};
 
 bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
-                  int touched) {
-  const auto blocked = [&](const Eigen::Vector3d& p) {
-    for (std::size_t o = 0; o < obstacles.size(); ++o) {
-      const Obstacle& each = obstacles[o];
-      if (static_cast<int>(o) == touched) continue;
-      const bool near =
-          each.within.radius <= 0 || (p - each.within.centre).norm() <= each.within.radius + apart;
-      if (near && each.outward.dot(p - each.point) < apart) return true;
-    }
-    return false;
-  };
+                  int touched, const Fence& fence) {
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, from.size()), kLanes};
   Locations X;
   for (int part = 0; part < kPathBlocks; ++part) {
@@ -35,7 +25,10 @@ bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::Ve
     }
     if (!robot.locate(block, xi, Body::endpoint, X, nullptr).closes()) return false;
     for (int lane = 0; lane < kLanes; ++lane)
-      if (blocked(X.p(lane))) return false;
+      if (!in_the_way(robot, fence, obstacles, block.q.row(lane).matrix().transpose(), X.p(lane),
+                      apart, touched)
+               .empty())
+        return false;
   }
   return true;
 }
@@ -46,7 +39,7 @@ FreeWay free_way(const Surroundings& cell, const Eigen::VectorXd& from, const Ei
     return joint_time(a, b, speed);
   };
   const auto is_free = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return path_is_free(cell.robot, cell.xi, a, b, cell.obstacles, cell.apart);
+    return path_is_free(cell.robot, cell.xi, a, b, cell.obstacles, cell.apart, -1, cell.fence);
   };
   if (is_free(from, to)) return {false, {}, time(from, to)};
   const double through_home = time(from, cell.home) + time(cell.home, to);

@@ -8,22 +8,16 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "constraints/sampling/configurations.h"
+#include "constraints/planning/fence.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
 
-/// What lies behind a surface within its patch: the half ball that the endpoint must keep out of.
-struct Obstacle {
-  Eigen::Vector3d point, outward;  ///< m; unit
-  Patch within;
-};
-
-/// True when the endpoint keeps out of every obstacle but `touched` (-1 for none), and `apart` (m)
-/// from it, on the straight joint path from `from` to `to`.
+/// True when the robot is free by `apart` (m) of every obstacle but `touched` (-1 for none) and of
+/// the fence on the straight joint path from `from` to `to`.
 bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
-                  int touched = -1);
+                  int touched = -1, const Fence& fence = {});
 
 /// A way between two configurations, straight from each place to the next.
 struct FreeWay {
@@ -40,6 +34,7 @@ struct Surroundings {
   double apart;                 ///< m, kept from every obstacle
   const Eigen::VectorXd& home;  ///< readings
   double speed;                 ///< of every joint (rad/s, m/s), above 0
+  Fence fence = {};
 };
 
 /// From one configuration to another, of which each is straight from home.

@@ -1,5 +1,6 @@
 #include "constraints/planning/other_approach.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -73,20 +74,23 @@ std::vector<PlannedTouch> other_approaches(const Robot& robot, const Eigen::Vect
   const ApproachFinder finder(robot, xi, target, touch);
   std::normal_distribution<double> normal;
   const auto usable = [&](const PlannedTouch& each) {
-    return within_limits(robot, each.start, options.limit_margin) &&
+    return within_limits(robot, each.outside, options.limit_margin) &&
            within_limits(robot, each.end, options.limit_margin) &&
-           finder.aside(each.start) < kMostAside * options.clearance &&
-           path_is_free(robot, xi, each.start, each.end, obstacles, options.apart,
-                        target.obstacle) &&
-           path_is_free(robot, xi, options.home, each.start, obstacles, options.apart);
+           finder.aside(each.outside) < kMostAside * options.clearance &&
+           path_is_free(robot, xi, each.outside, each.end, obstacles, options.apart, target.obstacle,
+                        options.fence) &&
+           path_is_free(robot, xi, options.home, each.start, obstacles, options.apart,
+                        target.obstacle, options.fence);
   };
   for (int draw = 0; draw < count * kDraws && static_cast<int>(found.size()) < count; ++draw) {
     const Eigen::VectorXd direction =
         Eigen::VectorXd::NullaryExpr(touch.touch.size(), [&] { return normal(random); });
-    const auto start = finder.at_height(direction, options.clearance);
+    const auto outside = finder.at_height(direction, options.clearance);
+    const auto start = finder.at_height(direction, std::min(options.slow, options.clearance));
     const auto end = finder.at_height(direction, -options.search);
-    if (!start || !end) continue;
+    if (!outside || !start || !end) continue;
     PlannedTouch other = touch;
+    other.outside = *outside;
     other.start = *start;
     other.end = *end;
     if (usable(other)) found.push_back(std::move(other));

@@ -73,6 +73,21 @@ std::vector<Unit> into_units(DataSet& data) {
   return units;
 }
 
+/// Leaves out units whose end position is nearer than `spacing` to one before them of their set.
+void space(const Robot& robot, const Eigen::VectorXd& xi, double spacing, Pool& pool) {
+  std::vector<std::vector<Eigen::Vector3d>> kept(pool.data.sets.size());
+  std::erase_if(pool.units, [&](const Unit& unit) {
+    const Eigen::Vector3d p = locate(robot, xi, pool.data.rows.q.row(unit.front()).transpose()).p;
+    std::vector<Eigen::Vector3d>& others = kept[pool.data.rows.set[unit.front()]];
+    const bool near = std::ranges::any_of(
+        others, [&](const Eigen::Vector3d& other) { return (p - other).norm() < spacing; });
+    if (!near) others.push_back(p);
+    return near;
+  });
+  if (pool.unreached.empty())
+    pool.unreached = "too few of the configurations that were drawn are far enough from each other";
+}
+
 }  // namespace
 
 Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request,
@@ -87,6 +102,7 @@ Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest&
   for (Set& set : pool.data.sets)
     if (set.method->paired()) set.groups.clear();
   pool.units = into_units(pool.data);
+  if (request.spacing > 0) space(robot, xi, request.spacing, pool);
   return pool;
 }
 

@@ -19,6 +19,9 @@ struct PoolRequest {
   /// Configurations measured already, of the same sets (set, group and q are looked at); they lie
   /// on the surfaces that are planned for. Without rows: none.
   DataSet taken = {};
+  double spacing = 0;  ///< m, least between end positions of a set
+  /// Covariance of the robot's parameters before any row; without rows the makers' tolerances.
+  Eigen::MatrixXd prior = {};
   std::vector<int> held = {};   ///< joints locked, in each set at a reading of its own
   unsigned long long seed = 1;  ///< of all that is drawn
 };

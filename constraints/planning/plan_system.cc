@@ -8,6 +8,7 @@
 #include "constraints/identifiability/gauge.h"
 #include "constraints/identifiability/identifiability.h"
 #include "constraints/identifiability/observability.h"
+#include "constraints/planning/touch_choice.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "constraints/statistics.h"
@@ -41,6 +42,7 @@ PlanSystem::PlanSystem(const Robot& robot, const PoolRequest& request, const Wor
   given_ = given(pool.data);
   tolerance_ = equations_.tolerance();
   take_columns(pool, workspace, count);
+  take_prior();
 }
 
 Eigen::Index PlanSystem::robot_columns() const {
@@ -109,6 +111,18 @@ void PlanSystem::take_weight(const Workspace& workspace, const Eigen::MatrixXd& 
   weight_.topLeftCorner(robot_columns(), robot_columns()) = endpoint_weight(question);
 }
 
+void PlanSystem::take_prior() {
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  prior_ = Eigen::MatrixXd::Identity(count, count);
+  if (request_.prior.rows() == 0) return;
+  const Eigen::Index robot =
+      std::ranges::count_if(free_, [&](int c) { return c < static_cast<int>(robot_columns()); });
+  const std::vector<int> columns(free_.begin(), free_.begin() + robot);
+  const Eigen::VectorXd per = tolerance_(columns).cwiseInverse();
+  prior_.topLeftCorner(robot, robot) =
+      inverse_of_covariance(per.asDiagonal() * request_.prior(columns, columns) * per.asDiagonal());
+}
+
 std::string PlanSystem::lacking() const {
   if (parameters_ == 0) return "these methods tell nothing of this robot";
   return weight_.rows() == 0 ? "the robot reaches no pose of the workspace" : std::string();
@@ -124,11 +138,11 @@ Objective PlanSystem::objective(Criterion criterion) const {
   objective.criterion = criterion;
   objective.nuisance = equations_.columns() - robot_columns();
   objective.prior = given_.transpose() * given_;
-  if (criterion == Criterion::sigma) {
-    objective.weight = weight_(chosen, chosen);
-    for (const int c : chosen) objective.prior(c, c) += std::pow(tolerance_[c], -2);
-  }
+  if (criterion == Criterion::sigma) objective.weight = weight_(chosen, chosen);
   objective.prior = objective.prior(chosen, chosen).eval();
+  const Eigen::VectorXd per = tolerance_(free_).cwiseInverse();
+  if (criterion == Criterion::sigma)
+    objective.prior += per.asDiagonal() * prior_ * per.asDiagonal();
   return objective;
 }
 
@@ -169,8 +183,13 @@ Eigen::MatrixXd PlanSystem::priced_weight() const {
 }
 
 double PlanSystem::sigma_beyond(const DataSet& data, const std::vector<Unit>& units) const {
-  const Symmetric eigen = symmetric_eigen(priced_information(all_rows(data, units)));
-  const Eigen::MatrixXd weight = priced_weight();
+  // In units in which what is known beforehand is a one in every direction.
+  const Eigen::MatrixXd L = cholesky_root(prior_);
+  const auto in_units = [&](const Eigen::MatrixXd& A) -> Eigen::MatrixXd {
+    return solve_lower(L, solve_lower(L, A).transpose());
+  };
+  const Symmetric eigen = symmetric_eigen(in_units(priced_information(all_rows(data, units))));
+  const Eigen::MatrixXd weight = in_units(priced_weight());
   double variance = 0;
   for (Eigen::Index i = 0; i < eigen.values.size() && eigen.values[i] < 1; ++i)
     variance += eigen.vectors.col(i).dot(weight * eigen.vectors.col(i)) /
@@ -181,8 +200,7 @@ double PlanSystem::sigma_beyond(const DataSet& data, const std::vector<Unit>& un
 PlanFigures PlanSystem::figures(const DataSet& data, const std::vector<Unit>& units) const {
   const Eigen::MatrixXd W = all_rows(data, units);
   const Eigen::MatrixXd information = priced_information(W);
-  const Eigen::MatrixXd C = inverse_of_positive(
-      information + Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  const Eigen::MatrixXd C = inverse_of_positive(information + prior_);
   PlanFigures result;
   result.sigma = std::sqrt(priced_weight().cwiseProduct(C).sum());
   if (W.rows() < static_cast<Eigen::Index>(identified_.size())) return result;

@@ -44,13 +44,14 @@ class PlanSystem {
                                     Criterion criterion) const;
   PlanFigures figures(const DataSet& data, const std::vector<Unit>& units) const;
   /// The part of sigma (m) that stays however many more of such units there are: of the directions
-  /// that all of these together tell less of than the makers' tolerances do.
+  /// that all of these together tell less of than is known beforehand.
   double sigma_beyond(const DataSet& data, const std::vector<Unit>& units) const;
 
  private:
   Eigen::MatrixXd all_rows(const DataSet& data, const std::vector<Unit>& units) const;
   Eigen::MatrixXd priced_information(const Eigen::MatrixXd& W) const;
   Eigen::MatrixXd priced_weight() const;
+  void take_prior();
   Eigen::Index robot_columns() const;
   void drop_units(Pool& pool);
   Eigen::MatrixXd given(const DataSet& data) const;
@@ -64,6 +65,7 @@ class PlanSystem {
   Eigen::MatrixXd given_;   ///< whitened rows of what is known beside the units
   Eigen::MatrixXd weight_;  ///< of all columns; without rows: no pose was found
   Eigen::VectorXd tolerance_;
+  Eigen::MatrixXd prior_;  ///< information of the free columns beforehand, each over its tolerance
   std::vector<double> most_;
   std::vector<int> free_, identified_;
   int parameters_ = 0;

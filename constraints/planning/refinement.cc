@@ -4,46 +4,30 @@
 #include <cmath>
 #include <numeric>
 
+#include "constraints/planning/better_places.h"
 #include "constraints/sampling/configurations.h"
 #include "constraints/sampling/newton.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kFirstStep = 0.1;   // of a joint's range
-constexpr double kLastStep = 0.004;  // of the same
-constexpr int kPolls = 12;           // of one unit in a sweep
-constexpr int kSweeps = 4;
-constexpr double kWorth =
-    2e-3;  // a sweep that gains less, of the variance or of a log, is the last
-
-class Compass {
+/// The units of a plan, moved along what they satisfy.
+class PlanMoves {
  public:
-  Compass(const Robot& robot, const PlanEquations& equations, const Objective& objective,
-          Refined plan)
-      : robot_(robot),
-        equations_(equations),
-        plan_(plan),
-        design_(chosen_rows(), objective),
-        step_(plan.units.size(), kFirstStep) {
-    std::vector<int> all;
-    for (int u = 0; u < design_.candidates(); ++u) all.push_back(u);
-    design_.choose(all);
+  PlanMoves(const Robot& robot, const PlanEquations& equations, Refined plan)
+      : robot_(robot), equations_(equations), plan_(plan) {}
+
+  Moves moves() {
+    return {[this](int unit) { return range(unit); },
+            [this](int unit, const Eigen::MatrixXd& by) { return look(unit, by); },
+            [this](int unit, int column) { return take(unit, column); }};
   }
 
-  int run(const Progress& progress) {
-    int moves = 0;
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      const double before = design_.merit();
-      for (int u = 0; u < design_.candidates(); ++u) {
-        if (progress)
-          progress("moving configurations",
-                   (sweep + u / static_cast<double>(design_.candidates())) / kSweeps);
-        moves += improve(u);
-      }
-      if (design_.merit() - before < kWorth * std::min(1.0, std::abs(before))) break;
-    }
-    return moves;
+  std::vector<Eigen::MatrixXd> rows() const {
+    std::vector<Eigen::MatrixXd> list;
+    for (const Eigen::MatrixXd& W : equations_.of_units(plan_.data, plan_.units))
+      list.push_back(W(Eigen::all, plan_.columns));
+    return list;
   }
 
  private:
@@ -53,84 +37,71 @@ class Compass {
     std::vector<char> possible;
   };
 
-  std::vector<Eigen::MatrixXd> chosen_rows() const {
-    std::vector<Eigen::MatrixXd> list;
-    for (const Eigen::MatrixXd& W : equations_.of_units(plan_.data, plan_.units))
-      list.push_back(W(Eigen::all, plan_.columns));
-    return list;
-  }
+  const Unit& unit_of(int unit) const { return plan_.units[static_cast<std::size_t>(unit)]; }
 
-  int improve(int u) {
-    int moves = 0;
-    double merit = design_.merit();
-    design_.change(u, -1);
-    double& step = step_[static_cast<std::size_t>(u)];
-    for (int poll = 0; poll < kPolls && step >= kLastStep; ++poll) {
-      if (take_best(u, step, merit))
-        ++moves;
-      else
-        step /= 2;
+  Eigen::VectorXd range(int unit) const {
+    const Eigen::Index joints = plan_.data.rows.q.cols();
+    Eigen::VectorXd range(joints * static_cast<Eigen::Index>(unit_of(unit).size()));
+    for (Eigen::Index c = 0; c < range.size(); ++c) {
+      const auto j = static_cast<std::size_t>(c % joints);
+      range[c] =
+          std::ranges::count(plan_.held, static_cast<int>(j)) > 0 ? 0 : robot_.joints()[j].range();
     }
-    design_.change(u, +1);
-    design_.refresh();
-    return moves;
+    return range;
   }
 
-  /// Moves unit u, which is taken out of the design, where that raises `merit`.
-  bool take_best(int u, double step, double& merit) {
-    const Unit& unit = plan_.units[static_cast<std::size_t>(u)];
-    const Eigen::Index joints = plan_.data.rows.q.cols(),
-                       directions = 2 * joints * static_cast<Eigen::Index>(unit.size());
+  std::vector<Eigen::MatrixXd> look(int u, const Eigen::MatrixXd& by) {
+    const Unit& unit = unit_of(u);
     const double most = plan_.most[plan_.data.rows.set[unit.front()]];
-    bool better = false;
-    Eigen::MatrixXd best_q, best_w;
-    for (Eigen::Index first = 0; first < directions; first += kLanes) {
-      const Proposals proposals =
-          propose(unit, first, std::min<Eigen::Index>(kLanes, directions - first), step);
-      const DataSet trial = rows_of(unit, proposals);
-      const std::vector<Eigen::MatrixXd> W = equations_.of_units(trial, units_of(unit, proposals));
-      for (std::size_t lane = 0; lane < W.size(); ++lane) {
-        if (!proposals.possible[lane]) continue;
-        if (W[lane].rows() != design_.rows(u) || W[lane].norm() > most) continue;
-        const Eigen::MatrixXd w = W[lane](Eigen::all, plan_.columns);
-        const double with = design_.merit_with(w);
-        if (!(with > merit + 1e-9 * std::abs(merit))) continue;
-        merit = with;
-        better = true;
-        best_w = w;
-        best_q.resize(static_cast<Eigen::Index>(unit.size()), joints);
-        for (std::size_t r = 0; r < unit.size(); ++r)
-          best_q.row(static_cast<Eigen::Index>(r)) =
-              proposals.q[r].row(static_cast<Eigen::Index>(lane));
-      }
+    looked_ = propose(unit, by);
+    const DataSet trial = rows_of(unit, looked_);
+    std::vector<Eigen::MatrixXd> W = equations_.of_units(trial, units_of(unit, looked_));
+    for (std::size_t lane = 0; lane < W.size(); ++lane) {
+      const bool takes = looked_.possible[lane] && W[lane].norm() <= most && spaced(u, lane);
+      W[lane] = takes ? Eigen::MatrixXd(W[lane](Eigen::all, plan_.columns)) : Eigen::MatrixXd();
     }
-    if (!better) return false;
-    design_.replace(u, best_w);
-    put(unit, best_q);
+    return W;
+  }
+
+  /// Far enough from the other units of its set.
+  bool spaced(int u, std::size_t lane) const {
+    if (plan_.spacing <= 0) return true;
+    const auto place = [&](const Eigen::VectorXd& q) {
+      return locate(robot_, equations_.state().xi, q).p;
+    };
+    const Eigen::Vector3d p =
+        place(looked_.q.front().row(static_cast<Eigen::Index>(lane)).transpose());
+    const Observations& rows = plan_.data.rows;
+    for (std::size_t other = 0; other < plan_.units.size(); ++other) {
+      const int row = plan_.units[other].front();
+      if (static_cast<int>(other) != u && rows.set[row] == rows.set[unit_of(u).front()] &&
+          (place(rows.q.row(row).transpose()) - p).norm() < plan_.spacing)
+        return false;
+    }
     return true;
   }
 
-  /// Row r of direction k is row k / (2 joints) of the unit.
-  Proposals propose(const Unit& unit, Eigen::Index first, Eigen::Index count, double step) const {
+  bool take(int u, int column) {
+    const Unit& unit = unit_of(u);
+    for (std::size_t r = 0; r < unit.size(); ++r)
+      plan_.data.rows.q.row(unit[r]) = looked_.q[r].row(column);
+    measure_rows(robot_, equations_.state(), unit, plan_.data);
+    return true;
+  }
+
+  Proposals propose(const Unit& unit, const Eigen::MatrixXd& by) const {
     const Eigen::MatrixXd& now = plan_.data.rows.q;
+    const Eigen::Index joints = now.cols();
     Proposals all;
-    all.possible.assign(static_cast<std::size_t>(count), 1);
+    all.possible.assign(static_cast<std::size_t>(by.cols()), 1);
     Locations before;
     for (std::size_t r = 0; r < unit.size(); ++r) {
       ConfigurationBlock block{now.row(unit[r]).replicate(kLanes, 1).array(),
-                               static_cast<int>(count)};
-      for (Eigen::Index lane = 0; lane < count; ++lane) {
-        const Eigen::Index k = first + lane, j = k / 2 % now.cols();
-        if (k / (2 * now.cols()) != static_cast<Eigen::Index>(r)) continue;
-        if (std::ranges::count(plan_.held, static_cast<int>(j)) > 0) {
-          all.possible[static_cast<std::size_t>(lane)] = 0;
-          continue;
-        }
-        const double by = step * robot_.joints()[static_cast<std::size_t>(j)].range();
-        block.q(lane, j) += k % 2 == 0 ? by : -by;
-      }
+                               static_cast<int>(by.cols())};
+      block.q.topRows(by.cols()) +=
+          by.middleRows(static_cast<Eigen::Index>(r) * joints, joints).transpose().array();
       before = bring(unit[r], r == 0, before, block, all.possible);
-      all.q.push_back(block.q.topRows(count).matrix());
+      all.q.push_back(block.q.topRows(by.cols()).matrix());
     }
     return all;
   }
@@ -194,24 +165,22 @@ class Compass {
     return trial;
   }
 
-  void put(const Unit& unit, const Eigen::MatrixXd& q) {
-    for (std::size_t r = 0; r < unit.size(); ++r)
-      plan_.data.rows.q.row(unit[r]) = q.row(static_cast<Eigen::Index>(r));
-    measure_rows(robot_, equations_.state(), unit, plan_.data);
-  }
-
   const Robot& robot_;
   const PlanEquations& equations_;
   Refined plan_;
-  Design design_;
-  std::vector<double> step_;  ///< by unit, of the joints' ranges
+  Proposals looked_;
 };
 
 }  // namespace
 
 int refine(const Robot& robot, const PlanEquations& equations, const Objective& objective,
            Refined plan, const Progress& progress) {
-  return Compass(robot, equations, objective, plan).run(progress);
+  PlanMoves plan_moves(robot, equations, plan);
+  Design design(plan_moves.rows(), objective);
+  std::vector<int> all(plan.units.size());
+  std::iota(all.begin(), all.end(), 0);
+  design.choose(all);
+  return move_to_better_places(design, plan_moves.moves(), progress);
 }
 
 }  // namespace selfcal

@@ -1,9 +1,6 @@
-// Chosen configurations moved until nothing near them is better.
-//
-// Compass search (Kolda, Lewis and Torczon, SIAM Review 45, 2003): of each configuration in turn
-// every joint is moved a step either way, the method's residual brought back to zero by Newton's
-// steps of least length, and the best of what is within the limits taken if it raises the merit;
-// where none does, steps are halved.
+// Chosen configurations of any method moved until nothing near them is better (better_places.h):
+// joints by the steps of a search, then the method's residual back to zero by Newton's steps of
+// least length, within the limits.
 #pragma once
 
 #include <vector>
@@ -23,6 +20,7 @@ struct Refined {
   /// By set, the most that a unit's rows may be of: the norm of PlanEquations::of_units.
   const std::vector<double>& most;
   const std::vector<int>& held;  ///< joints that do not move
+  double spacing = 0;            ///< m, kept between end positions of a set
 };
 
 /// Moves the units; returns how often one was moved. The merit never falls.

@@ -9,16 +9,19 @@
 
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/methods/shared/unit_normal.h"
+#include "constraints/planning/better_places.h"
 #include "constraints/planning/detmax.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
+#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kNoise = 2e-5;       // m, where a set does not say its own
-constexpr double kAngleNoise = 2e-5;  // rad, as well
-constexpr int kJudgedPoses = 300;     // at which the end position is judged
+constexpr double kNoise = 2e-5;          // m, where a set does not say its own
+constexpr double kAngleNoise = 2e-5;     // rad, as well
+constexpr double kLeastVariance = 1e-9;  // of a column's own, in any direction
+constexpr int kJudgedPoses = 300;        // at which the end position is judged
 constexpr unsigned long long kJudgedSeed = 1;
 
 /// What is unknown of a surface or a socket.
@@ -113,14 +116,20 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
   return rows;
 }
 
-/// Variance of each column before any touch; 0 of what is known.
-Eigen::VectorXd prior_variance(const Robot& robot, int columns) {
-  Eigen::VectorXd variance = Eigen::VectorXd::Constant(columns, kPlaceVariance);
-  for (std::size_t i = 0; i < robot.parameters().size(); ++i) {
-    const Parameter& each = robot.parameters()[i];
-    variance[static_cast<Eigen::Index>(i)] = each.free ? each.tolerance * each.tolerance : 0;
+/// Of each column before any touch, `given` of the robot's parameters (without rows: the makers'
+/// tolerances); zero of what is known.
+Eigen::MatrixXd prior_covariance(const Robot& robot, const Eigen::MatrixXd& given, int columns) {
+  const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
+  Eigen::MatrixXd C = kPlaceVariance * Eigen::MatrixXd::Identity(columns, columns);
+  if (given.rows() > 0) {
+    C.topLeftCorner(parameters, parameters) = given;
+    return C;
   }
-  return variance;
+  for (Eigen::Index i = 0; i < parameters; ++i) {
+    const Parameter& each = robot.parameters()[static_cast<std::size_t>(i)];
+    C(i, i) = each.free ? each.tolerance * each.tolerance : 0;
+  }
+  return C;
 }
 
 /// Poses where the end position counts: in the workspace's box, else over all that the joints can
@@ -161,27 +170,47 @@ Kinds kinds_of(const std::vector<PossibleTouch>& candidates, const std::vector<i
   return kinds;
 }
 
-/// The touches as candidates of a design of the columns that are not known; `weight` is of the
+/// Designs of touches for the end position, in the columns that are not known; `weight` is of the
 /// robot's parameters.
-Design design_of(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
-                 const std::vector<PossibleTouch>& candidates, const Eigen::MatrixXd& weight,
-                 const std::vector<int>& kinds) {
-  Columns columns(static_cast<int>(robot.parameters().size()), sets);
-  std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, candidates, columns);
-  const Eigen::VectorXd variance = prior_variance(robot, columns.end());
-  std::vector<Eigen::Index> open;
-  for (Eigen::Index c = 0; c < variance.size(); ++c)
-    if (variance[c] > 0) open.push_back(c);
-  for (Eigen::MatrixXd& each : rows) each = each(Eigen::all, open).eval();
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(variance.size(), variance.size());
-  all.topLeftCorner(weight.rows(), weight.cols()) = weight;
-  Objective objective;
-  objective.criterion = Criterion::sigma;
-  objective.prior = variance(open).cwiseInverse().asDiagonal();
-  objective.weight = all(open, open);
-  objective.nuisance = columns.end() - weight.rows();
-  return {rows, std::move(objective), kinds};
-}
+class TouchDesigns {
+ public:
+  TouchDesigns(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
+               const std::vector<PossibleTouch>& candidates, const Eigen::MatrixXd& prior,
+               const Eigen::MatrixXd& weight)
+      : robot_(robot),
+        xi_(xi),
+        sets_(sets),
+        columns_(static_cast<int>(robot.parameters().size()), sets) {
+    for (const PossibleTouch& each : candidates) columns_.of(each);
+    const Eigen::MatrixXd covariance = prior_covariance(robot, prior, columns_.end());
+    for (Eigen::Index c = 0; c < covariance.rows(); ++c)
+      if (covariance(c, c) > 0) open_.push_back(c);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(covariance.rows(), covariance.rows());
+    all.topLeftCorner(weight.rows(), weight.cols()) = weight;
+    objective_.criterion = Criterion::sigma;
+    objective_.prior = inverse_of_covariance(covariance(open_, open_));
+    objective_.weight = all(open_, open_);
+    objective_.nuisance = columns_.end() - weight.rows();
+  }
+
+  /// Rows of touches of surfaces and sockets that the candidates have.
+  std::vector<Eigen::MatrixXd> rows(const std::vector<PossibleTouch>& touches) {
+    std::vector<Eigen::MatrixXd> rows = rows_of(robot_, xi_, sets_, touches, columns_);
+    for (Eigen::MatrixXd& each : rows) each = each(Eigen::all, open_).eval();
+    return rows;
+  }
+  Design of(const std::vector<PossibleTouch>& touches, std::vector<int> kinds) {
+    return {rows(touches), objective_, std::move(kinds)};
+  }
+
+ private:
+  const Robot& robot_;
+  const Eigen::VectorXd& xi_;
+  const std::vector<Set>& sets_;
+  Columns columns_;
+  std::vector<Eigen::Index> open_;
+  Objective objective_;
+};
 
 /// Of the end position over the poses where it counts.
 Eigen::MatrixXd weight_of(const Robot& robot, const Eigen::VectorXd& xi,
@@ -196,6 +225,40 @@ Eigen::MatrixXd weight_of(const Robot& robot, const Eigen::VectorXd& xi,
       candidates, [&](const PossibleTouch& each) { return sets[each.set].method->sees_point(); });
   question.poses = judged_poses(robot, xi, workspace);
   return endpoint_weight(question);
+}
+
+/// Moves those of the candidates that identify.
+void move_touches(const Robot& robot, const std::vector<PossibleTouch>& candidates,
+                  const std::vector<int>& fit, TouchDesigns& designs, const TouchMoves& moves,
+                  const Progress& progress) {
+  std::vector<PossibleTouch> touches;
+  for (const int i : fit) touches.push_back(candidates[i]);
+  Design design = designs.of(touches, {});
+  std::vector<int> all(fit.size());
+  std::iota(all.begin(), all.end(), 0);
+  design.choose(all);
+  Eigen::VectorXd range(static_cast<Eigen::Index>(robot.joints().size()));
+  for (Eigen::Index j = 0; j < range.size(); ++j)
+    range[j] = robot.joints()[static_cast<std::size_t>(j)].range();
+  Moves of_design;
+  of_design.range = [&](int) { return range; };
+  of_design.look = [&](int unit, const Eigen::MatrixXd& by) {
+    const auto looked = moves.look(fit[static_cast<std::size_t>(unit)], by);
+    std::vector<PossibleTouch> possible;
+    for (const auto& each : looked)
+      if (each) possible.push_back(*each);
+    std::vector<Eigen::MatrixXd> list(looked.size());
+    if (possible.empty()) return list;
+    std::vector<Eigen::MatrixXd> rows = designs.rows(possible);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < looked.size(); ++i)
+      if (looked[i]) list[i] = std::move(rows[next++]);
+    return list;
+  };
+  of_design.take = [&](int unit, int column) {
+    return moves.take(fit[static_cast<std::size_t>(unit)], column);
+  };
+  move_to_better_places(design, of_design, progress);
 }
 
 /// The best one after the other, `left` of each set and no more of a kind than `share`.
@@ -218,6 +281,14 @@ void choose_one_by_one(Design& design, const Kinds& kinds, std::vector<int>& lef
 
 }  // namespace
 
+Eigen::MatrixXd inverse_of_covariance(const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd by = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd one = by.asDiagonal() * C * by.asDiagonal();
+  return by.asDiagonal() *
+         inverse_of_positive(one + kLeastVariance * Eigen::MatrixXd::Identity(C.rows(), C.cols())) *
+         by.asDiagonal();
+}
+
 double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; }
 
 double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angle : kAngleNoise; }
@@ -225,18 +296,21 @@ double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angl
 TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
-                           const Workspace& workspace, Random& random, const Progress& progress) {
+                           const Workspace& workspace, Random& random, const Progress& progress,
+                           const TouchMoves& moves, const Eigen::MatrixXd& prior) {
   TouchChoice choice;
   if (candidates.empty()) return choice;
   const Kinds kinds = kinds_of(candidates, counts.fit);
-  Design design = design_of(robot, xi, sets, candidates,
-                            weight_of(robot, xi, sets, candidates, workspace), kinds.of);
+  TouchDesigns designs(robot, xi, sets, candidates, prior,
+                       weight_of(robot, xi, sets, candidates, workspace));
+  Design design = designs.of(candidates, kinds.of);
   std::vector<int> wanted = counts.fit;
   choose_one_by_one(design, kinds, wanted, kinds.share);
   // What a socket out of reach leaves goes to the others.
   choose_one_by_one(design, kinds, wanted, std::vector<int>(kinds.set.size(), INT_MAX));
-  add_and_drop(design, progress);
+  exchange(design, progress);
   choice.fit = design.chosen();
+  if (moves.look) move_touches(robot, candidates, choice.fit, designs, moves, progress);
   // A socket or nest that nothing identifies judges nothing.
   std::set<std::pair<int, int>> identified;
   for (const int i : choice.fit) identified.emplace(candidates[i].set, candidates[i].group);
@@ -253,8 +327,9 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
 std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi,
                                    const std::vector<Set>& sets,
                                    const std::vector<PossibleTouch>& touches,
-                                   const Eigen::MatrixXd& weight, const Progress& progress) {
-  Design design = design_of(robot, xi, sets, touches, weight, {});
+                                   const Eigen::MatrixXd& weight, const Progress& progress,
+                                   const Eigen::MatrixXd& prior) {
+  Design design = TouchDesigns(robot, xi, sets, touches, prior, weight).of(touches, {});
   std::vector<int> all(touches.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);
@@ -266,10 +341,11 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
 
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
-                                 const std::vector<PossibleTouch>& touches) {
+                                 const std::vector<PossibleTouch>& touches,
+                                 const Eigen::MatrixXd& prior) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, touches, columns);
-  Eigen::MatrixXd C = prior_variance(robot, columns.end()).asDiagonal();
+  Eigen::MatrixXd C = prior_covariance(robot, prior, columns.end());
   for (const Eigen::MatrixXd& W : rows)
     for (Eigen::Index a = 0; a < W.rows(); ++a) {
       const Eigen::VectorXd gain = C * W.row(a).transpose();

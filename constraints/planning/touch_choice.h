@@ -2,11 +2,14 @@
 // and which of the rest judge the result.
 //
 // The choice is a Design (design.h): from the best one after the other, the best touch of a set is
-// taken in and the worst of the same set left out, as long as the expected variance of the end
-// position falls. The touches that judge are drawn from the rest by chance, so that they are as any
-// touch of the cell is.
+// taken in and the worst of the same set left out, then the best pair exchanged, as long as the
+// expected variance of the end position falls (detmax.h); those chosen are moved along their
+// surfaces until nothing near is better (better_places.h). The touches that judge are drawn from
+// the rest by chance, so that they are as any touch of the cell is.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "constraints/methods/data_set.h"
@@ -27,6 +30,9 @@ struct PossibleTouch {
 /// 1 sigma² of where a surface or socket lies, or how it is turned, that is not known (m², rad²).
 inline constexpr double kPlaceVariance = 1;
 
+/// Inverse of the covariance `C`, whose directions without variance get a little.
+Eigen::MatrixXd inverse_of_covariance(const Eigen::MatrixXd& C);
+
 /// 1 sigma of a touch of the set as its data sheet says (m), 20 um where it says none.
 double touch_noise(const Set& set);
 /// The same of an angle (rad).
@@ -45,23 +51,37 @@ struct TouchChoice {
 /// As many of each set as are wanted or as there are, those to identify first. `xi` are the
 /// parameters that are believed; the end position counts in the box of `workspace`, without one
 /// over all that the joints can do.
+/// How a candidate can be elsewhere.
+struct TouchMoves {
+  /// The candidate moved by each column of `by` (joints x up to kLanes) and
+  /// brought back to its surface; nothing of what cannot be.
+  std::function<std::vector<std::optional<PossibleTouch>>(int candidate, const Eigen::MatrixXd& by)>
+      look;
+  /// Makes it the one that was looked at last by that column; false where it
+  /// cannot be after all.
+  std::function<bool(int candidate, int column)> take;
+};
+
 TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
                            const Workspace& workspace, Random& random,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const TouchMoves& moves = {},
+                           const Eigen::MatrixXd& prior = {});
 
 /// How sqrt(trace(weight C)) grows, C the covariance of the robot's parameters after the touches,
 /// when one of these after another is left out, always the one that tells least: by count, from 0.
 std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi,
                                    const std::vector<Set>& sets,
                                    const std::vector<PossibleTouch>& touches,
-                                   const Eigen::MatrixXd& weight, const Progress& progress = {});
+                                   const Eigen::MatrixXd& weight, const Progress& progress = {},
+                                   const Eigen::MatrixXd& prior = {});
 
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
 /// (20 um where a set says none); the surfaces and sockets are unknown.
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
-                                 const std::vector<PossibleTouch>& touches);
+                                 const std::vector<PossibleTouch>& touches,
+                                 const Eigen::MatrixXd& prior = {});
 
 }  // namespace selfcal

@@ -4,173 +4,88 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include "constraints/identifiability/endpoint_sigma.h"
-#include "constraints/methods/shared/shared_point.h"
-#include "constraints/methods/shared/unit_normal.h"
 #include "constraints/planning/touch_choice.h"
 #include "constraints/planning/tour.h"
-#include "constraints/sampling/contact.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
 
 namespace selfcal {
 namespace {
 
-constexpr int kCandidatesEach = 4;  // sampled for each touch that is asked for
-constexpr int kPostures = 4;        // of the robot at one point of a surface
-constexpr int kPointTries = 2;      // blocks of starts before a point of a surface is given up
-constexpr int kPoses = 500;         // at which the end position is judged
+constexpr int kPoses = 500;  // at which the end position is judged
 constexpr unsigned long long kSeed = 1;
-constexpr double kEdge = 0.02;     // of a patch, kept free at its edge
-constexpr int kRounds = 24;        // of sampling, until enough candidates are usable
-constexpr std::size_t kNear = 12;  // touches to which a free way is looked for
-constexpr double kOtherSet = 1e4;  // s, that no order gains by leaving a set unfinished
+constexpr int kLongestTries = 6;    // of fewer touches, until the motion is short enough
+constexpr double kLessTime = 0.97;  // of the share of touches that the time is for
+constexpr int kFewestTouches = 4;   // of a set
+constexpr std::size_t kNear = 12;   // touches to which a free way is looked for
+constexpr double kOtherSet = 1e4;   // s, that no order gains by leaving a set unfinished
 
-/// Candidates of one target with their way in, as far as they are usable.
-class Candidates {
- public:
-  Candidates(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
-             const std::vector<Obstacle>& obstacles, const TouchPlanOptions& options)
-      : robot_(robot), xi_(xi), sets_(sets), obstacles_(obstacles), options_(options) {}
-
-  /// `tell` hears of the share of the wanted ones that is found.
-  std::vector<PlannedTouch> of(const TouchTarget& target, int obstacle, Random& random,
-                               const std::function<void(double)>& tell) const {
-    std::vector<PlannedTouch> usable;
-    const int wanted = kCandidatesEach * target.touches;
-    for (int round = 0; round < kRounds && static_cast<int>(usable.size()) < wanted; ++round) {
-      tell(static_cast<double>(usable.size()) / wanted);
-      sample(target, obstacle, random, usable);
-    }
-    return usable;
-  }
-
- private:
-  void sample(const TouchTarget& target, int obstacle, Random& random,
-              std::vector<PlannedTouch>& usable) const {
-    const int rows = kCandidatesEach * target.touches;
-    SampleRequest request;
-    request.together = target.places.empty();
-    if (target.plane) {
-      request.rows = request.rows_per_group = kPostures;
-      request.tries = kPointTries;
-      for (int point = 0; point < rows; point += kPostures) {
-        request.places = {{Eigen::Matrix3d::Identity(), point_of(target, random)}};
-        take(target, obstacle, shared_point(), request, random, usable);
-      }
-      return;
-    }
-    const std::shared_ptr<const Method>& method = sets_[target.set].method;
-    request.rows = rows;
-    request.rows_per_group =
-        std::max<int>(1, rows / std::max<int>(1, static_cast<int>(target.places.size())));
-    if (locks(target.set)) {
-      Location engaged;
-      engaged.R << tangents(target.outward), target.outward;
-      request.nuisance = method->through(engaged, nullptr, random);
-    }
-    request.patch = target.within;
-    request.places = target.places;
-    take(target, obstacle, method, request, random, usable);
-  }
-
-  /// Anywhere on the nominal surface within its patch, but at its edge, which a touch may miss (m).
-  Eigen::Vector3d point_of(const TouchTarget& target, Random& random) const {
-    const Plane& plane = *target.plane;
-    const double off = plane.d.value() - plane.n.dot(target.within.centre);
-    const double all =
-        std::sqrt(std::max(0.0, target.within.radius * target.within.radius - off * off));
-    const double radius = (1 - kEdge) * all;
-    std::uniform_real_distribution<double> uniform;
-    const double away = radius * std::sqrt(uniform(random)), turn = 2 * M_PI * uniform(random);
-    return target.within.centre + off * plane.n +
-           away * (tangents(plane.n) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
-  }
-
-  /// Those of the sampled configurations that are usable.
-  void take(const TouchTarget& target, int obstacle, const std::shared_ptr<const Method>& method,
-            const SampleRequest& request, Random& random, std::vector<PlannedTouch>& usable) const {
-    DataSet data;
-    data.sets = {sets_[target.set]};
-    data.sets[0].method = method;
-    data.sets[0].reference = -1;
-    const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
-    for (int row = 0; row < data.rows.rows(); ++row) {
-      const int group = data.rows.group[row];
-      if (group >= static_cast<int>(request.places.size()) && !request.places.empty()) continue;
-      PlannedTouch touch;
-      touch.set = target.set;
-      touch.group = target.places.empty() ? -1 : group;
-      touch.touch = data.rows.q.row(row).transpose();
-      if (enter(target, obstacle, data, sampled.truth, row, touch)) usable.push_back(touch);
-    }
-  }
-
-  /// Fills in where the touch begins and where it is given up.
-  bool enter(const TouchTarget& target, int obstacle, const DataSet& data, const State& truth,
-             int row, PlannedTouch& touch) const {
-    if (locks(target.set)) {
-      touch.start = touch.end = touch.touch;
-      return within_limits(robot_, touch.touch, options_.limit_margin) &&
-             path_is_free(robot_, xi_, options_.home, touch.touch, obstacles_, options_.apart);
-    }
-    const Location X = locate(robot_, xi_, touch.touch);
-    if ((X.R * robot_.tool_axis()).dot(-target.outward) < std::cos(options_.tilt)) return false;
-    touch.start = touch.end = touch.touch;
-    if (!move_out(target, data, truth, row, options_.clearance, touch.start)) return false;
-    if (!target.places.empty())
-      touch.end = touch.touch;
-    else if (!move_out(target, data, truth, row, -options_.search, touch.end))
-      return false;
-    return within_limits(robot_, touch.start, options_.limit_margin) &&
-           within_limits(robot_, touch.end, options_.limit_margin) &&
-           path_is_free(robot_, xi_, touch.start, touch.end, obstacles_, options_.apart,
-                        obstacle) &&
-           path_is_free(robot_, xi_, options_.home, touch.start, obstacles_, options_.apart);
-  }
-
-  /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
-  bool move_out(const TouchTarget& target, const DataSet& data, const State& truth, int row,
-                double distance, Eigen::VectorXd& q) const {
-    const Method& method = *data.sets[0].method;
-    Eigen::VectorXd wanted =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
-    wanted.head<3>() = distance * target.outward;
-    return move_to_residual(robot_, data, truth, row, wanted, q);
-  }
-
-  bool locks(int set) const { return sets_[set].method->planned() == Planned::lock; }
-
-  const Robot& robot_;
-  const Eigen::VectorXd& xi_;
-  const std::vector<Set>& sets_;
-  const std::vector<Obstacle>& obstacles_;
-  const TouchPlanOptions& options_;
+/// All that a choice is made of.
+struct Choosing {
+  const Robot& robot;
+  const Eigen::VectorXd& xi;
+  const std::vector<Set>& sets;
+  const std::vector<TouchTarget>& targets;
+  const Workspace& workspace;
+  const TouchPlanOptions& options;
+  const TouchCandidates& candidates;
+  const std::vector<std::vector<PlannedTouch>>& usable;  ///< by target
 };
 
-/// Those of the usable touches that tell most together, as many of each set as are asked for; a
-/// share of them, drawn from the rest, is kept aside to judge.
-std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
-                                 const std::vector<Set>& sets,
-                                 const std::vector<TouchTarget>& targets,
-                                 const std::vector<std::vector<PlannedTouch>>& usable,
-                                 const Workspace& workspace, double share, Random& random,
+/// How touches of planes are moved; others stay. `touches` are those of `possible`, `of` their
+/// targets.
+TouchMoves moves_of(const Choosing& c, const std::vector<std::size_t>& of,
+                    std::vector<PlannedTouch>& touches,
+                    std::vector<std::optional<Eigen::VectorXd>>& looked) {
+  TouchMoves moves;
+  moves.look = [&](int i, const Eigen::MatrixXd& by) {
+    const auto at = static_cast<std::size_t>(i);
+    const TouchTarget& target = c.targets[of[at]];
+    std::vector<std::optional<PossibleTouch>> list(static_cast<std::size_t>(by.cols()));
+    if (!target.plane || c.options.spacing > 0) return list;
+    looked = c.candidates.moved(target, touches[at], by);
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (looked[k]) list[k] = PossibleTouch{*looked[k], target.set, -1, target.outward};
+    return list;
+  };
+  moves.take = [&](int i, int column) {
+    const auto at = static_cast<std::size_t>(i);
+    const auto there =
+        c.candidates.at(c.targets[of[at]], touches[at], *looked[static_cast<std::size_t>(column)]);
+    if (there) touches[at] = *there;
+    return there.has_value();
+  };
+  return moves;
+}
+
+/// Those of the usable touches that tell most together, a share of as many of each set as are asked
+/// for; of these again a share, drawn from the rest, is kept aside to judge.
+std::vector<PlannedTouch> choose(const Choosing& c, double share, Random& random,
                                  const Progress& progress) {
-  std::vector<PossibleTouch> candidates;
+  std::vector<PossibleTouch> possible;
   std::vector<PlannedTouch> touches;
-  TouchCounts counts{std::vector<int>(sets.size(), 0), std::vector<int>(sets.size(), 0)};
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    const int set = targets[t].set, kept = static_cast<int>(share * targets[t].touches);
+  std::vector<std::size_t> of;
+  TouchCounts counts{std::vector<int>(c.sets.size(), 0), std::vector<int>(c.sets.size(), 0)};
+  for (std::size_t t = 0; t < c.targets.size(); ++t) {
+    const int set = c.targets[t].set;
+    const int wanted = std::max(std::min(kFewestTouches, c.targets[t].touches),
+                                static_cast<int>(share * c.targets[t].touches));
+    const int kept = static_cast<int>(c.options.check * wanted);
     counts.check[set] = kept;
-    counts.fit[set] = targets[t].touches - kept;
-    for (const PlannedTouch& each : usable[t]) {
-      candidates.push_back({each.touch, each.set, each.group, targets[t].outward});
+    counts.fit[set] = wanted - kept;
+    for (const PlannedTouch& each : c.usable[t]) {
+      possible.push_back({each.touch, each.set, each.group, c.targets[t].outward});
       touches.push_back(each);
+      of.push_back(t);
     }
   }
+  std::vector<std::optional<Eigen::VectorXd>> looked;
   const TouchChoice choice =
-      choose_touches(robot, xi, sets, candidates, counts, workspace, random, progress);
+      choose_touches(c.robot, c.xi, c.sets, possible, counts, c.workspace, random, progress,
+                     moves_of(c, of, touches, looked), c.options.prior);
   std::vector<PlannedTouch> chosen;
   for (const int i : choice.fit) chosen.push_back(touches[i]);
   for (const int i : choice.check) {
@@ -184,7 +99,7 @@ std::vector<PlannedTouch> choose(const Robot& robot, const Eigen::VectorXd& xi,
 /// through home else.
 Eigen::MatrixXd times_between(const Surroundings& cell, const std::vector<PlannedTouch>& touches) {
   std::vector<const Eigen::VectorXd*> places{&cell.home};
-  for (const PlannedTouch& each : touches) places.push_back(&each.start);
+  for (const PlannedTouch& each : touches) places.push_back(&each.outside);
   const auto count = static_cast<Eigen::Index>(places.size());
   const Eigen::VectorXd speed = Eigen::VectorXd::Constant(cell.home.size(), cell.speed);
   Eigen::MatrixXd straight(count, count);
@@ -223,9 +138,16 @@ std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::ve
   for (const int place : short_tour_from_first(times_between(cell, touches))) {
     if (place == 0) continue;
     PlannedTouch next = touches[static_cast<std::size_t>(place) - 1];
-    const FreeWay way = free_way(cell, path.empty() ? cell.home : path.back().start, next.start);
+    const Eigen::VectorXd& from = path.empty() ? cell.home : path.back().outside;
+    const FreeWay way = free_way(cell, from, next.outside);
     next.via_home = way.via_home;
-    next.way = way.through;
+    next.way = way.via_home ? std::vector<Eigen::VectorXd>() : way.through;
+    if (!way.via_home) {
+      // Straight out of the last contact as far as free ways go, and straight into this one.
+      if (!path.empty() && path.back().outside != path.back().start)
+        next.way.insert(next.way.begin(), path.back().outside);
+      if (next.outside != next.start) next.way.push_back(next.outside);
+    }
     // A lock stays engaged from its first configuration to its last.
     const bool held = !path.empty() && path.back().set == next.set &&
                       sets[static_cast<std::size_t>(next.set)].method->planned() == Planned::lock;
@@ -235,17 +157,13 @@ std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::ve
   return path;
 }
 
-std::vector<std::vector<PlannedTouch>> usable_touches(const Robot& robot, const Eigen::VectorXd& xi,
-                                                      const std::vector<Set>& sets,
+std::vector<std::vector<PlannedTouch>> usable_touches(const TouchCandidates& candidates,
                                                       const std::vector<TouchTarget>& targets,
-                                                      const std::vector<Obstacle>& obstacles,
-                                                      const TouchPlanOptions& options,
                                                       Random& random, const Progress& progress) {
-  const Candidates candidates(robot, xi, sets, obstacles, options);
   std::vector<std::vector<PlannedTouch>> usable;
   for (const TouchTarget& target : targets) {
     const auto before = static_cast<double>(usable.size());
-    usable.push_back(candidates.of(target, target.obstacle, random, [&](double share) {
+    usable.push_back(candidates.of(target, random, [&](double share) {
       if (progress)
         progress("looking for touches", (before + share) / static_cast<double>(targets.size()));
     }));
@@ -261,9 +179,9 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
     if (progress) progress(stage, share);
   };
   TouchPlan plan;
+  const TouchCandidates candidates(robot, xi, sets, obstacles, options);
   Random random(options.seed);
-  const auto usable =
-      usable_touches(robot, xi, sets, targets, obstacles, options, random, progress);
+  const auto usable = usable_touches(candidates, targets, random, progress);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const TouchTarget& target = targets[t];
     const auto found = static_cast<int>(usable[t].size());
@@ -272,19 +190,28 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
                        std::to_string(target.touches) +
                        " touches are within the joint limits, the tilt and reach of home";
   }
-  tell("choosing touches", 0);
-  const std::vector<PlannedTouch> chosen =
-      choose(robot, xi, sets, targets, usable, workspace, options.check, random, progress);
-  tell("ordering touches", 0);
-  plan.touches = in_short_order({robot, xi, obstacles, options.apart, options.home, options.speed},
-                                sets, chosen);
+  const Choosing choosing{robot, xi, sets, targets, workspace, options, candidates, usable};
+  const Surroundings cell{robot,         xi,           obstacles, options.apart, options.home,
+                          options.speed, options.fence};
+  double share = 1;
+  for (int attempt = 0; attempt < kLongestTries; ++attempt) {
+    tell("choosing touches", 0);
+    const std::vector<PlannedTouch> chosen = choose(choosing, share, random, progress);
+    tell("ordering touches", 0);
+    plan.touches = in_short_order(cell, sets, chosen);
+    const MotionTime time = motion_time(robot, xi, plan, options);
+    if (options.longest <= 0 || time.travel + time.touching <= options.longest) return plan;
+    share *= kLessTime * options.longest / (time.travel + time.touching);
+  }
+  if (plan.unreached.empty())
+    plan.unreached = "the motion takes longer than it may (motion: longest)";
   return plan;
 }
 
 ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
                              const TouchPlan& plan, const Workspace& workspace,
-                             const Progress& progress) {
+                             const Progress& progress, const Eigen::MatrixXd& prior) {
   std::vector<PossibleTouch> touches;
   for (const TouchTarget& target : targets)
     for (const PlannedTouch& each : plan.touches)
@@ -293,7 +220,7 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   EndpointQuestion question;
   question.robot = &robot;
   question.xi = xi;
-  question.covariance = covariance_after(robot, xi, sets, touches);
+  question.covariance = covariance_after(robot, xi, sets, touches, prior);
   question.unseen = Eigen::MatrixXd::Identity(6, 6);
   question.point_unknown = std::ranges::none_of(
       targets, [&](const TouchTarget& each) { return sets[each.set].method->sees_point(); });
@@ -306,12 +233,13 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
   expected.workspace = endpoint_sigma(question);
   if (question.poses.rows() > 0 && !touches.empty())
-    expected.curve = sigma_by_count(robot, xi, sets, touches, endpoint_weight(question), progress);
+    expected.curve =
+        sigma_by_count(robot, xi, sets, touches, endpoint_weight(question), progress, prior);
   return expected;
 }
 
 MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const TouchPlan& plan,
-                       const TouchPlanOptions& options, double touch_speed, int repeats) {
+                       const TouchPlanOptions& options) {
   MotionTime time;
   Eigen::VectorXd here = options.home;
   const Eigen::VectorXd speed = Eigen::VectorXd::Constant(here.size(), options.speed);
@@ -323,10 +251,10 @@ MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const Touc
     if (each.via_home) travel(options.home);
     for (const Eigen::VectorXd& place : each.way) travel(place);
     travel(each.start);
-    const double speed_in = each.slow ? touch_speed / kSlower : touch_speed;
+    const double speed_in = each.slow ? options.touch_speed / kSlower : options.touch_speed;
     const double way =
         (locate(robot, xi, each.touch).p - locate(robot, xi, each.start).p).norm() / speed_in;
-    time.touching += repeats * (1 + 1 / kRetreatFaster) * way;
+    time.touching += options.repeats * (1 + 1 / kRetreatFaster) * way;
   }
   travel(options.home);
   return time;

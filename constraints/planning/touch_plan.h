@@ -1,8 +1,9 @@
 // Which configurations a session visits, and how it gets into each contact and out again.
 //
-// Many random configurations touch each surface or sit in each socket of the model; of these the
-// ones are taken that tell most together (touch_choice.h). Each is entered along a straight joint
-// path from a free configuration, and no way between them may cross another surface (free_way.h).
+// Many random configurations touch each surface or sit in each socket of the model
+// (touch_candidates.h); of these the ones are taken that tell most together, and moved along their
+// surfaces (touch_choice.h). No way between them may cross another surface or the fence
+// (free_way.h).
 #pragma once
 
 #include <string>
@@ -10,46 +11,13 @@
 
 #include "constraints/methods/data_set.h"
 #include "constraints/planning/free_way.h"
+#include "constraints/planning/planned_touch.h"
+#include "constraints/planning/touch_candidates.h"
 #include "constraints/progress.h"
 #include "constraints/sampling/configurations.h"
 #include "constraints/solution.h"
 
 namespace selfcal {
-
-/// What is asked of one set.
-struct TouchTarget {
-  int set = 0;
-  int touches = 0;
-  Eigen::Vector3d outward;       ///< direction of the way out (world, unit); of a lock, the
-                                 ///< leg's as seen from what carries it
-  std::optional<Plane> plane;    ///< nominal, with its distance; nothing for sockets
-  std::vector<Location> places;  ///< nominal sockets or nests, one a group; empty for planes
-  Patch within;
-  int obstacle = -1;  ///< what lies behind its surface, of the obstacles; -1 for sockets
-};
-
-struct TouchPlanOptions {
-  double clearance = 0.03;  ///< m, how far out of the contact a touch begins
-  double search = 0.01;     ///< m, how far behind the nominal place it is given up
-  double tilt = 1.2;        ///< rad, most between the stylus (z of the endpoint) and the way in
-  double apart = 0.02;      ///< m, kept between the endpoint and every surface that is not touched
-  double limit_margin = 0.02;  ///< rad or m, kept from the joint limits
-  double check = 0.33;         ///< share kept aside to judge
-  Eigen::VectorXd home;        ///< readings from which every touch can be begun
-  double speed = 0.5;          ///< rad/s or m/s, of the joints between touches
-  unsigned long long seed = 1;
-};
-
-struct PlannedTouch {
-  int set = 0, group = -1;
-  bool check = false;
-  bool slow = false;                  ///< into the contact at a share of the usual speed
-  bool loaded = false;                ///< with the payload on the tool
-  bool via_home = false;              ///< the way there leads through `home`
-  std::vector<Eigen::VectorXd> way;   ///< readings that it leads through else; none: straight
-  Eigen::VectorXd start, touch, end;  ///< readings: free, nominal contact, given up; all the
-                                      ///< same under a lock
-};
 
 struct TouchPlan {
   std::vector<PlannedTouch> touches;  ///< in the order in which they are visited
@@ -66,10 +34,9 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
 
 /// Usable touches of each target, four for each that it asks for where there are as many, in no
 /// order; without `way`.
-std::vector<std::vector<PlannedTouch>> usable_touches(
-    const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
-    const std::vector<TouchTarget>& targets, const std::vector<Obstacle>& obstacles,
-    const TouchPlanOptions& options, Random& random, const Progress& progress = {});
+std::vector<std::vector<PlannedTouch>> usable_touches(const TouchCandidates& candidates,
+                                                      const std::vector<TouchTarget>& targets,
+                                                      Random& random, const Progress& progress = {});
 
 /// Usable touches in an order of short ways, begun at home, one set after the other, with the ways
 /// between them.
@@ -89,11 +56,11 @@ struct ExpectedSigma {
 };
 
 /// After those of the planned touches that are not kept aside, with every surface and socket
-/// unknown.
+/// unknown; `prior` as in TouchPlanOptions.
 ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
                              const TouchPlan& plan, const Workspace& workspace,
-                             const Progress& progress = {});
+                             const Progress& progress = {}, const Eigen::MatrixXd& prior = {});
 
 /// How long the motion of a session takes (s): between the touches, from home and back to it, and
 /// into the contacts and out.
@@ -104,8 +71,7 @@ struct MotionTime {
 /// Out of a contact the robot moves so much faster than into it.
 inline constexpr double kRetreatFaster = 2;
 
-/// `touch_speed` is the endpoint's towards a surface (m/s), each touch made `repeats` times.
 MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const TouchPlan& plan,
-                       const TouchPlanOptions& options, double touch_speed, int repeats);
+                       const TouchPlanOptions& options);
 
 }  // namespace selfcal

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "constraints/identifiability/observability.h"
 #include "constraints/planning/detmax.h"
+#include "constraints/planning/refinement.h"
 #include "constraints/sampling/contact.h"
 #include "constraints/statistics.h"
 #include "io/files/robot_file.h"
@@ -145,6 +148,80 @@ TEST(ConfigurationPlan, PlansForPairsAndForJointsThatAreLocked) {
   const ConfigurationPlan locked = plan_configurations(*platform, values(*platform), locks);
   ASSERT_EQ(locked.problem, "");
   EXPECT_LT(locked.rest(locked.planned.sigma), 0.8 * locked.rest(locked.random.sigma));
+}
+
+TEST(ConfigurationPlan, KnowsMoreOnceItsConfigurationsAreMoved) {
+  // The same choice of the same candidates, before and after.
+  const auto robot = shipped_robot("rx90");
+  const PlanRequest request = planes_request(*robot, 3, 20, 120);
+  Pool pool = draw_pool(*robot, values(*robot), request.pool);
+  const PlanSystem system(*robot, request.pool, {}, request.count, pool);
+  const Objective objective = system.objective(Criterion::sigma);
+  Design design(system.rows(pool.data, pool.units, Criterion::sigma), objective);
+  std::mt19937_64 random(1);
+  design.choose(random_choice(design.candidates(), request.count, random));
+  exchange(design);
+  const double chosen = std::sqrt(-design.merit());
+  std::vector<Unit> units;
+  for (const int i : design.chosen()) units.push_back(pool.units[static_cast<std::size_t>(i)]);
+  const int moves = refine(*robot, system.equations(), objective,
+                           {pool.data, units, system.columns(Criterion::sigma), system.most(), {}});
+  const double moved = system.figures(pool.data, units).sigma;
+  std::printf("sigma %.4f mm chosen, %.4f mm after %d moves\n", 1e3 * chosen, 1e3 * moved, moves);
+  EXPECT_GT(moves, request.count);
+  const double beyond = system.sigma_beyond(pool.data, pool.units);
+  EXPECT_LT(moved * moved - beyond * beyond, 0.8 * (chosen * chosen - beyond * beyond));
+}
+
+TEST(ConfigurationPlan, GoesOnFromACovarianceAsFromTheRowsThatGaveIt) {
+  // What 30 positions by an instrument tell, as rows and as a matrix.
+  const auto robot = shipped_robot("rx90");
+  PlanRequest request = planes_request(*robot, 0, 15, 150);
+  request.pool.sets = {set_of_method("tracker", "position")};
+  const ConfigurationPlan first = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(first.problem, "");
+  Pool pool = draw_pool(*robot, values(*robot), request.pool);
+  const PlanSystem system(*robot, request.pool, {}, request.count, pool);
+  const auto parameters = static_cast<Eigen::Index>(robot->parameters().size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
+  for (const Eigen::MatrixXd& w : system.equations().of_units(first.data, first.units))
+    information += w.leftCols(parameters).transpose() * w.leftCols(parameters);
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(parameters); ++i)
+    if (robot->parameters()[static_cast<std::size_t>(i)].free) free.push_back(i);
+  Eigen::MatrixXd H = information(free, free);
+  for (std::size_t k = 0; k < free.size(); ++k)
+    H(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
+        std::pow(robot->parameters()[static_cast<std::size_t>(free[k])].tolerance, -2);
+  PlanRequest by_rows = request, by_matrix = request;
+  by_rows.pool.taken = first.data;
+  by_matrix.pool.prior = Eigen::MatrixXd::Zero(parameters, parameters);
+  by_matrix.pool.prior(free, free) = Eigen::MatrixXd(H.inverse());
+  const double rows = plan_configurations(*robot, values(*robot), by_rows).sigma_before;
+  const double matrix = plan_configurations(*robot, values(*robot), by_matrix).sigma_before;
+  EXPECT_NEAR(matrix, rows, 1e-3 * rows);
+  EXPECT_LT(matrix, 0.1 * first.sigma_before);
+}
+
+TEST(ConfigurationPlan, KeepsEndPositionsApartAndItsWayWithinItsTime) {
+  const auto robot = shipped_robot("rx90");
+  PlanRequest request = planes_request(*robot, 1, 15, 200);
+  request.pool.spacing = 0.1;
+  const ConfigurationPlan spaced = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(spaced.problem, "");
+  for (int a = 0; a < spaced.data.rows.rows(); ++a)
+    for (int b = 0; b < a; ++b)
+      EXPECT_GE((locate(*robot, values(*robot), spaced.data.rows.q.row(a).transpose()).p -
+                 locate(*robot, values(*robot), spaced.data.rows.q.row(b).transpose()).p)
+                    .norm(),
+                0.1);
+  request.longest = 0.5 * spaced.way;
+  const ConfigurationPlan shorter = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(shorter.problem, "");
+  EXPECT_LE(shorter.way, request.longest);
+  EXPECT_LT(shorter.units.size(), 15U);
+  request.longest = 1e-3;
+  EXPECT_NE(plan_configurations(*robot, values(*robot), request).problem, "");
 }
 
 TEST(ConfigurationPlan, SaysWhyThereIsNone) {

@@ -13,9 +13,9 @@ class OtherApproach : public testing::Test {
   OtherApproach() {
     cell_.plane({0.75, 0, 0.15}, Eigen::Vector3d::UnitZ(), 0.25, 20);
     Random random(1);
-    touches_ = usable_touches(rx90(), values(rx90()), cell_.sets, cell_.targets, cell_.obstacles,
-                              cell_.options, random)
-                   .front();
+    const Eigen::VectorXd xi = values(rx90());
+    const TouchCandidates candidates(rx90(), xi, cell_.sets, cell_.obstacles, cell_.options);
+    touches_ = usable_touches(candidates, cell_.targets, random).front();
   }
 
   std::vector<PlannedTouch> others(const PlannedTouch& touch) const {
@@ -35,8 +35,10 @@ TEST_F(OtherApproach, MeetsTheSameContactFromAsFarOutAndGoesAsFarBehind) {
       ++found;
       EXPECT_EQ(other.touch, touch.touch);
       const Eigen::Vector3d tip = located(touch.touch).p;
-      EXPECT_NEAR((located(other.start).p - tip).z(), cell_.options.clearance,
+      EXPECT_NEAR((located(other.outside).p - tip).z(), cell_.options.clearance,
                   0.02 * cell_.options.clearance);
+      EXPECT_NEAR((located(other.start).p - tip).z(), cell_.options.slow,
+                  0.02 * cell_.options.slow);
       EXPECT_NEAR((located(other.end).p - tip).z(), -cell_.options.search,
                   0.02 * cell_.options.search);
       // On the straight path between the two.

@@ -41,7 +41,8 @@ TEST(TouchPlan, BeginsItsClearanceBeforeTheSurfaceAndGivesUpItsSearchBehindIt) {
     const auto height = [&](const Eigen::VectorXd& q) {
       return plane.outward.dot(located(q).p - plane.point);
     };
-    EXPECT_NEAR(height(each.start), cell.options.clearance, kMet);
+    EXPECT_NEAR(height(each.outside), cell.options.clearance, kMet);
+    EXPECT_NEAR(height(each.start), cell.options.slow, kMet);
     EXPECT_NEAR(height(each.end), -cell.options.search, kMet);
     // The joint path in is straight: it passes the planned place by what it is bent, at most an
     // eighth of way^2 over the arm's length about 1 m, 2e-4 m, and joints of opposite turns.

@@ -1,6 +1,7 @@
 // The ways between planned touches are free, and short.
 #include <gtest/gtest.h>
 
+#include "constraints/planning/free_way.h"
 #include "constraints/planning/tour.h"
 #include "tests/constraints/touch_plan_cell.h"
 
@@ -15,19 +16,22 @@ TEST(TouchPlan, ChoosesWaysThatAreFree) {
                         touched);
   };
   Eigen::VectorXd here = home();
+  int last = -1;  // the surface that the robot comes from
   for (const PlannedTouch& each : plan.touches) {
     if (each.via_home) {
-      EXPECT_TRUE(free(here, home()));
+      EXPECT_TRUE(free(here, home(), last));
       here = home();
     }
     for (const Eigen::VectorXd& place : each.way) {
-      EXPECT_TRUE(free(here, place));
+      EXPECT_TRUE(free(here, place, last));
       here = place;
     }
-    EXPECT_TRUE(free(here, each.start));
-    EXPECT_TRUE(free(home(), each.start)) << "every touch can be begun at home";
+    EXPECT_TRUE(free(here, each.start, each.set));
+    EXPECT_TRUE(free(home(), each.start, each.set)) << "every touch can be begun at home";
+    EXPECT_TRUE(free(home(), each.outside));
     EXPECT_TRUE(free(each.start, each.end, each.set));
     here = each.start;
+    last = each.set;
   }
 }
 
@@ -46,7 +50,7 @@ TEST(TouchPlan, HardlyEverGoesHomeBetweenTouches) {
     all += joint_time(here, home(), speed) + joint_time(home(), each.start, speed);
     here = each.start;
   }
-  const MotionTime time = motion_time(rx90(), values(rx90()), plan, cell.options, 0.01, 1);
+  const MotionTime time = motion_time(rx90(), values(rx90()), plan, cell.options);
   EXPECT_LT(time.travel, all / 2);
 }
 
@@ -59,12 +63,13 @@ TEST(MotionTime, IsThatOfTheSlowestJointAndOfTheWayIntoTheContact) {
   TouchPlanOptions options;
   options.home = home();
   options.speed = 0.1;
+  options.repeats = 3;
   touch.way = {home()};
   touch.way[0][0] += 0.5;
   touch.way[0][3] -= 0.2;
   plan.touches.push_back(touch);
   const double into = (located(touch.start).p - located(touch.touch).p).norm() / 0.01;
-  const MotionTime time = motion_time(rx90(), values(rx90()), plan, options, 0.01, 3);
+  const MotionTime time = motion_time(rx90(), values(rx90()), plan, options);
   // 0.02 to the first, 0.5 to the place and back to the second, 0.02 home.
   EXPECT_NEAR(time.travel, (0.02 + 0.5 + 0.5 + 0.02) / 0.1, 1e-9);
   EXPECT_NEAR(time.touching, 2 * 3 * 1.5 * into, 1e-9);

@@ -86,7 +86,7 @@ TEST(ExactInverse, TakesAnOffsetAtEveryJointBeforeASphericalWrist) {
                "  - {name: j6, joint: revolute, alpha: 1.3, limits: [-3, 3]}\n"
                "  - {name: tool, joint: fixed, d: 0.03, r: 0.12, theta: 0.4}\n"),
       500);
-  EXPECT_GE(most, 6U);
+  EXPECT_GE(most, 4U);
   EXPECT_LE(most, 8U);
 }
 

@@ -45,9 +45,8 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
   if (!cell.plan.unreached.empty()) return cell;
   if (progress) progress("how well the end position is known then", 0);
   cell.expected = expected_sigma(*config.robot, xi, config.sets, config.targets, cell.plan,
-                                 config.workspace, progress);
-  cell.time = motion_time(*config.robot, xi, cell.plan, config.plan, config.speeds.touch,
-                          config.touch.repeats);
+                                 config.workspace, progress, config.plan.prior);
+  cell.time = motion_time(*config.robot, xi, cell.plan, config.plan);
   return cell;
 }
 
@@ -111,7 +110,7 @@ nlohmann::ordered_json cell_plan_json(const Config& config, const CellPlan& cell
   return json;
 }
 
-std::string cell_plan_rows(const Config& config, const CellPlan& cell) {
+DataSet cell_plan_data(const Config& config, const CellPlan& cell) {
   DataSet data;
   data.sets = config.sets;
   const auto count = static_cast<Eigen::Index>(cell.plan.touches.size());
@@ -126,7 +125,11 @@ std::string cell_plan_rows(const Config& config, const CellPlan& cell) {
     while (static_cast<int>(groups.size()) <= touch.group)
       groups.push_back("g" + std::to_string(groups.size()));
   }
-  return observations_text(data);
+  return data;
+}
+
+std::string cell_plan_rows(const Config& config, const CellPlan& cell) {
+  return observations_text(cell_plan_data(config, cell));
 }
 
 }  // namespace selfcal
