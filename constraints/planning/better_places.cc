@@ -9,9 +9,8 @@ namespace {
 constexpr double kFirstStep = 0.1;  // of a coordinate's range: the length of a direction
 constexpr double kLongest = 2;      // of its direction, the longest step; the shortest is 1/90
 constexpr int kRounds = 2;          // of all directions, of one unit in a sweep
-constexpr int kSweeps = 4;
-constexpr int kTaken = 3;         // of the steps that gain, tried until one can be taken
-constexpr double kShorter = 0.3;  // of the directions, after a sweep
+constexpr int kTaken = 3;           // of the steps that gain, tried until one can be taken
+constexpr double kShorter = 0.3;    // of the directions, after a sweep
 constexpr double kWorth =
     2e-3;  // a sweep that gains less, of the variance or of a log, is the last
 
@@ -23,12 +22,13 @@ class Powell {
     const std::vector<int> units = design_.chosen();
     std::vector<Eigen::MatrixXd> directions;
     for (const int unit : units) directions.push_back(first_directions(unit));
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < moves_.sweeps; ++sweep) {
       const double before = design_.merit();
       for (std::size_t i = 0; i < units.size(); ++i) {
         if (progress)
-          progress("moving configurations",
-                   (sweep + static_cast<double>(i) / static_cast<double>(units.size())) / kSweeps);
+          progress(
+              "moving configurations",
+              (sweep + static_cast<double>(i) / static_cast<double>(units.size())) / moves_.sweeps);
         improve(units[i], directions[i]);
         directions[i] *= kShorter;
       }

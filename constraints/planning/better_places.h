@@ -25,6 +25,7 @@ struct Moves {
   std::function<std::vector<Eigen::MatrixXd>(int unit, const Eigen::MatrixXd& by)> look;
   /// Moves the unit there, by that column of the last look; false where it cannot be after all.
   std::function<bool(int unit, int column)> take;
+  int sweeps = 4;  ///< at most, of all units
 };
 
 /// Moves the chosen units of `design`; returns how often one was moved.

@@ -21,6 +21,7 @@ namespace {
 constexpr double kNoise = 2e-5;          // m, where a set does not say its own
 constexpr double kAngleNoise = 2e-5;     // rad, as well
 constexpr double kLeastVariance = 1e-9;  // of a column's own, in any direction
+constexpr int kTouchSweeps = 1;          // a session waits for its plan
 constexpr int kJudgedPoses = 300;        // at which the end position is judged
 constexpr unsigned long long kJudgedSeed = 1;
 
@@ -241,6 +242,7 @@ void move_touches(const Robot& robot, const std::vector<PossibleTouch>& candidat
   for (Eigen::Index j = 0; j < range.size(); ++j)
     range[j] = robot.joints()[static_cast<std::size_t>(j)].range();
   Moves of_design;
+  of_design.sweeps = kTouchSweeps;
   of_design.range = [&](int) { return range; };
   of_design.look = [&](int unit, const Eigen::MatrixXd& by) {
     const auto looked = moves.look(fit[static_cast<std::size_t>(unit)], by);
