@@ -84,8 +84,8 @@ Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
   return result;
 }
 
-/// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs carry
-/// they turn, by a length over that of a leg.
+/// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs
+/// carry they turn, by a length over that of a leg.
 double expected_misfit(const Robot& robot, bool lengths) {
   double reach = 0, squares = 0;
   for (const Parameter& p : robot.parameters())

@@ -77,8 +77,8 @@ std::vector<PlannedTouch> other_approaches(const Robot& robot, const Eigen::Vect
     return within_limits(robot, each.outside, options.limit_margin) &&
            within_limits(robot, each.end, options.limit_margin) &&
            finder.aside(each.outside) < kMostAside * options.clearance &&
-           path_is_free(robot, xi, each.outside, each.end, obstacles, options.apart, target.obstacle,
-                        options.fence) &&
+           path_is_free(robot, xi, each.outside, each.end, obstacles, options.apart,
+                        target.obstacle, options.fence) &&
            path_is_free(robot, xi, options.home, each.start, obstacles, options.apart,
                         target.obstacle, options.fence);
   };

@@ -36,7 +36,8 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
 /// order; without `way`.
 std::vector<std::vector<PlannedTouch>> usable_touches(const TouchCandidates& candidates,
                                                       const std::vector<TouchTarget>& targets,
-                                                      Random& random, const Progress& progress = {});
+                                                      Random& random,
+                                                      const Progress& progress = {});
 
 /// Usable touches in an order of short ways, begun at home, one set after the other, with the ways
 /// between them.

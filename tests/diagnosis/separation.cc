@@ -10,7 +10,8 @@
 namespace selfcal {
 namespace {
 
-// Rounding over the ridge that holds what no row tells, 1e-16 / 1e-5^2, and some hundred operations.
+// Rounding over the ridge that holds what no row tells, 1e-16 / 1e-5^2, and some hundred
+// operations.
 constexpr double kRounding = 1e-4;
 
 class SeparationOfAnArm : public testing::Test {
