@@ -42,11 +42,7 @@ class Diagnostician {
   }
 
   Diagnosis run() {
-    weigh();
-    if (!result_.problem.empty()) return std::move(result_);
-    result_.noise = view_.noise() * shared_noise();
-    result_.candidates = cause_results(view_, *bench_, posterior_);
-    name();
+    if (!named()) return std::move(result_);
     result_.where = attribution(view_, *bench_, data_);
     result_.untestable = view_.candidates().untestable;
     list_detectable(view_, *bench_, options_, result_);
@@ -54,14 +50,37 @@ class Diagnostician {
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);
     tell("closing the gap", 0.85);
-    close_gap(view_, *bench_, posterior_, data_, options_, result_);
+    close_gap(view_, freedom_alone(), posterior_, data_, options_, result_);
     result_.why = verdict_in_words(result_);
     if (const std::string doubt = doubt_of(view_, data_, result_); !doubt.empty())
       withdraw(doubt, result_);
     return std::move(result_);
   }
 
+  /// The figures of the judging rows, and nothing else.
+  std::vector<JudgedRow> judged() {
+    if (!named()) return {};
+    return judged_rows(view_, freedom_alone(), posterior_, data_, options_, result_);
+  }
+
  private:
+  /// The causes, and what of them is named; false where the rows are too few.
+  bool named() {
+    weigh();
+    if (!result_.problem.empty()) return false;
+    result_.noise = view_.noise() * shared_noise();
+    result_.candidates = cause_results(view_, *bench_, posterior_);
+    name();
+    return true;
+  }
+
+  /// Of the noise alone, after which nothing looks at the rows that were weighed.
+  double freedom_alone() {
+    const double freedom = bench_->marginal_likelihood(0).freedom();
+    bench_.reset();
+    return freedom;
+  }
+
   /// What noise does not do as well, with probabilities as often true as they say.
   void name() {
     tell("asking noise the same question", 0.75);
@@ -99,9 +118,10 @@ class Diagnostician {
   /// The evidence of the rows that are kept.
   void prepare() {
     const DenseEquations rows = view_.kept();
+    bench_.reset();  // before there is a second one
     bench_ = std::make_unique<EvidenceEvaluator>(
         view_.whitened(),
-        structures(data_.rows, rows, view_.ends(), view_.by_joint(rows),
+        structures(data_.rows, rows, view_.ends(), view_.by_joint(),
                    comparable_readings(view_.geometry(), data_.rows.q),
                    noise_of_visits(data_.rows, rows, view_.left())),
         view_.candidates(), view_.parameters(), options_.search);
@@ -162,10 +182,10 @@ void judge_by_folds(const std::shared_ptr<const Robot>& robot, const DataSet& da
   for (int fold = 0; fold < kFolds; ++fold) {
     if (progress) progress("judging by folds", 0.9 + 0.1 * fold / kFolds);
     const DataSet part = with_fold(data, fold);
-    const Diagnosis of_fold = Diagnostician(robot, part, options, {}).run();
+    const std::vector<JudgedRow> of_fold = Diagnostician(robot, part, options, {}).judged();
     int first = 0;  // the number of the fold's first block
     for (const JudgedRow& row : diagnosis.judged) first = std::max(first, row.block + 1);
-    for (JudgedRow row : of_fold.judged) {
+    for (JudgedRow row : of_fold) {
       row.block += first;
       diagnosis.judged.push_back(row);
     }

@@ -4,14 +4,21 @@
 #include <cblas.h>
 
 #include <cmath>
+#include <vector>
+
+#include "kinematics/expects.h"
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
                         int* info);
+extern "C" void dsyevd_(const char* vectors, const char* triangle, const int* n, double* A,
+                        const int* stride, double* values, double* work, const int* work_size,
+                        int* integers, const int* integers_size, int* info);
 
 namespace selfcal {
 namespace {
 
 constexpr Eigen::Index kLarge = 64;  ///< rows from which a call of OpenBLAS is worth its start
+constexpr double kWorthACall = 1e5;  ///< multiplications from which it is
 
 int width(Eigen::Index n) { return static_cast<int>(n); }
 
@@ -21,8 +28,22 @@ void solve_in_place(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& L, Eigen::MatrixX
               width(B.cols()), 1, L.data(), width(L.rows()), B.data(), width(B.rows()));
 }
 
+/// By divide and conquer.
+Symmetric large_symmetric_eigen(const Eigen::MatrixXd& A) {
+  Symmetric eigen{Eigen::VectorXd(A.rows()), A};
+  const int n = width(A.rows());
+  const int work_size = 1 + 6 * n + 2 * n * n, integers_size = 3 + 5 * n;
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  std::vector<int> integers(static_cast<std::size_t>(integers_size));
+  int info = 0;
+  dsyevd_("V", "L", &n, eigen.vectors.data(), &n, eigen.values.data(), work.data(), &work_size,
+          integers.data(), &integers_size, &info);
+  expects(info == 0, "the eigenvalues of a finite symmetric matrix are found");
+  return eigen;
+}
+
 bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
-  return L.rows() >= kLarge && B.cols() > 1;
+  return B.cols() > 1 && static_cast<double>(L.size() * B.cols()) >= kWorthACall;
 }
 
 }  // namespace
@@ -94,7 +115,7 @@ Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::Ma
 }
 
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
-  if (A.rows() < kLarge) return A.transpose() * B;
+  if (static_cast<double>(A.size() * B.cols()) < kWorthACall) return A.transpose() * B;
   Eigen::MatrixXd AB(A.cols(), B.cols());
   if (AB.size() == 0) return AB;
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, width(A.cols()), width(B.cols()),
@@ -113,6 +134,7 @@ SingularValues singular_values(const Eigen::MatrixXd& A) {
 }
 
 Symmetric symmetric_eigen(const Eigen::MatrixXd& A) {
+  if (A.rows() >= kLarge) return large_symmetric_eigen(A);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }

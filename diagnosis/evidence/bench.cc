@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace selfcal {
 namespace {
@@ -11,41 +12,40 @@ constexpr double kLeastSeen = 1e-3;  ///< share that survives below which a cand
 constexpr int kAgreements = 3;
 constexpr double kWorthwhile = 5;  ///< log evidence that a cause must bring to be reckoned with
 
-double log_add(double a, double b) {
-  const double top = std::max(a, b);
-  return std::isinf(top) ? top : top + std::log(std::exp(a - top) + std::exp(b - top));
-}
-
 double middle(const EffectParameter& p) { return std::sqrt(p.usual_least * p.usual_most); }
 
 }  // namespace
 
-const std::vector<double>& EvidenceEvaluator::sizes() {
-  static const std::vector<double> list{0.25, 0.5, 1, 2, 4, 8, 16};
-  return list;
-}
-
-EvidenceEvaluator::EvidenceEvaluator(const Whitened& rows,
-                                     std::vector<DiscrepancyCovariance> structures,
+EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovariance> structures,
                                      const Candidates& all,
                                      const std::vector<EffectParameter>& parameters,
                                      const SearchRule& rule)
     : all_(all), rule_(rule) {
-  rows_ = std::make_shared<const Whitened>(rows);
-  auto groups = std::make_shared<Groups>();
+  Groups groups;
   for (const Candidate& candidate : all.list) {
-    groups->push_back(candidate.main);
-    groups->back().insert(groups->back().end(), candidate.slack.begin(), candidate.slack.end());
+    groups.push_back(candidate.main);
+    groups.back().insert(groups.back().end(), candidate.slack.begin(), candidate.slack.end());
   }
-  groups_ = std::move(groups);
+  rows_ = std::make_shared<const EvidenceRows>(std::make_shared<const Whitened>(std::move(rows)),
+                                               groups);
   number_causes();
   marginal_likelihoods_.reserve(structures.size());
+  StructuredRows seen{.rows = rows_};
+  ObservedRows own(*rows_, rows_->rows().y, true);
   for (DiscrepancyCovariance& structure : structures) {
-    Columns columns(*rows_, structure.root);
-    marginal_likelihoods_.emplace_back(rows_, std::move(structure), groups_, columns);
+    seen.take(structure);
+    const Eigen::MatrixXd AC = seen.AC();
+    const std::vector<double> products = seen.products();
+    marginal_likelihoods_.emplace_back(seen, structure, AC, products, own);
     if (blocks_.empty()) make_blocks(parameters);
-    if (!rule_.noise_is_known) agree(marginal_likelihoods_.back(), std::move(columns));
+    if (!rule_.noise_is_known) agree(marginal_likelihoods_.back(), seen, AC, products, own);
   }
+  spectra_.resize(marginal_likelihoods_.size());
+  log_odds_ = {
+      std::log(rule_.family_odds), std::log(rule_.same_family), std::log(rule_.another), {}};
+  for (int s = 0; s < this->structures(); ++s)
+    log_odds_.structure.push_back(std::log(structure(s).probability) +
+                                  (structure(s).kind > 0 ? std::log(rule_.unknown_odds) : 0));
 }
 
 void EvidenceEvaluator::number_causes() {
@@ -60,18 +60,18 @@ void EvidenceEvaluator::number_causes() {
 
 /// Each candidate's columns in units that are visible alike beyond the geometry and noise alone.
 void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& parameters) {
-  const Whitened& rows = *rows_;
+  const Whitened& rows = rows_->rows();
+  const MarginalLikelihood& plain = marginal_likelihoods_.front();
   const auto n = static_cast<double>(rows.C.rows());
   for (const Candidate& candidate : all_.list) {
     Block block;
     std::vector<double> unit;
     double visible = 0, whole = 0, largest = 0;
-    const Eigen::VectorXd seen =
-        marginal_likelihoods_.front().gram(candidate.main, candidate.main).diagonal();
-    for (Eigen::Index i = 0; i < seen.size(); ++i) {
-      const int k = candidate.main[static_cast<size_t>(i)];
+    for (size_t i = 0; i < candidate.main.size(); ++i) {
+      const int k = candidate.main[i];
+      const auto at = static_cast<Eigen::Index>(i);
       const double u = middle(parameters[static_cast<size_t>(k)]);
-      visible += u * u * seen[i];
+      visible += u * u * plain.product(static_cast<int>(blocks_.size()), at, at);
       whole += u * u * rows.C.col(k).squaredNorm();
       largest = std::max(largest, u / parameters[static_cast<size_t>(k)].usual_most);
     }
@@ -94,18 +94,26 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
     block.unit =
         Eigen::Map<const Eigen::VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));
     block.group = static_cast<int>(blocks_.size());
+    plausibility_.emplace_back();
+    for (std::size_t i = 0; i < kSizes.size(); ++i)
+      plausibility_.back()[i] =
+          plausibility(block.group, kSizes[i]) - std::log(static_cast<double>(kSizes.size()));
+    spectrum_at_.push_back(spectrum_at_.back() +
+                           MarginalLikelihood::spectrum_size(block, kSizes.size()));
     blocks_.push_back(std::move(block));
   }
 }
 
 /// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
 /// from what its best explanation leaves.
-void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, Columns columns) {
+void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, const StructuredRows& seen,
+                              const Eigen::MatrixXd& AC, const std::vector<double>& products,
+                              ObservedRows& own) {
   for (int i = 0; i < kAgreements; ++i) {
     double best = marginal_likelihood.log_evidence({});
     double variance = marginal_likelihood.estimate({}).variance;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
-      if (!seen_[c]) continue;
+      if (!seen_[c] || marginal_likelihood.at_most(blocks_[c]) - kWorthwhile < best) continue;
       const Single single = weigh(marginal_likelihood, c);
       if (single.log_sum - kWorthwhile < best) continue;
       best = single.log_sum - kWorthwhile;
@@ -114,29 +122,41 @@ void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, Columns c
     }
     if (std::abs(std::log(variance)) < 0.1) return;
     DiscrepancyCovariance agreed = marginal_likelihood.structure();
-    agreed.root *= std::sqrt(variance);
     agreed.noise *= variance;
-    columns.A /= std::sqrt(variance);
-    columns.C /= std::sqrt(variance);
-    marginal_likelihood = MarginalLikelihood(rows_, std::move(agreed), groups_, columns);
+    marginal_likelihood = MarginalLikelihood(seen, std::move(agreed), AC, products, own);
   }
 }
 
 EvidenceEvaluator::Views EvidenceEvaluator::views_of(const Eigen::MatrixXd& Y, Of which) const {
   Views views(marginal_likelihoods_.size());
+  ObservedRows observed(*rows_, Y, true);
   for (std::size_t s = 0; s < views.size(); ++s)
     if (which == Of::all || marginal_likelihoods_[s].structure().kind == 0)
-      views[s] = marginal_likelihoods_[s].views_of(Y);
+      views[s] = marginal_likelihoods_[s].views_of(observed);
   return views;
 }
 
 void EvidenceEvaluator::look_at(const Views& views, Eigen::Index which) {
-  for (std::size_t s = 0; s < views.size(); ++s)
-    if (views[s].g.cols() > 0) marginal_likelihoods_[s].look_at(views[s], which);
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    if (views[s].g.cols() == 0) continue;
+    marginal_likelihoods_[s].look_at(views[s], which);
+    if (!spectra_[s].empty()) continue;
+    spectra_[s].reserve(spectrum_at_.back());
+    for (const Block& block : blocks_)
+      marginal_likelihoods_[s].add_spectrum(block, kSizes, spectra_[s]);
+  }
 }
 
 void EvidenceEvaluator::look_at_rows() {
   for (MarginalLikelihood& each : marginal_likelihoods_) each.look_at_rows();
+}
+
+Eigen::MatrixXd EvidenceEvaluator::log_evidences_of(const Eigen::MatrixXd& Y) const {
+  Eigen::MatrixXd all(structures(), Y.cols());
+  ObservedRows observed(*rows_, Y, false);
+  for (int s = 0; s < structures(); ++s)
+    all.row(s) = marginal_likelihoods_[s].log_evidences_of(observed).transpose();
+  return all;
 }
 
 double EvidenceEvaluator::plausibility(int candidate, double size) const {
@@ -152,34 +172,54 @@ double EvidenceEvaluator::log_prior(std::span<const int> candidates, int structu
     const int c = candidates[i];
     sum += all_.list[static_cast<size_t>(c)].log_prior;
     const auto has = [&](const std::vector<int>& number) {
-      return std::ranges::any_of(candidates.first(i),
-                                 [&](int other) { return number[other] == number[c]; });
+      for (std::size_t j = 0; j < i; ++j)
+        if (number[candidates[j]] == number[c]) return true;
+      return false;
     };
-    if (has(cause_) || has(family_))
-      sum += std::log(rule_.same_family);
+    if (has(family_))
+      sum += log_odds_.same_family;
     else
-      sum += std::log(rule_.family_odds) + (++families > 1 ? std::log(rule_.another) : 0);
+      sum += log_odds_.family + (++families > 1 ? log_odds_.another : 0);
   }
-  sum += std::log(this->structure(structure).probability);
-  if (this->structure(structure).kind == 0) return sum;
-  return sum + std::log(rule_.unknown_odds) + (families == 0 ? 0 : std::log(rule_.another));
+  sum += log_odds_.structure[static_cast<size_t>(structure)];
+  return this->structure(structure).kind == 0 || families == 0 ? sum : sum + log_odds_.another;
+}
+
+/// The sum over sizes of the logs of a candidate's evidence, each with what it costs.
+EvidenceEvaluator::Single EvidenceEvaluator::over_sizes(
+    int candidate, std::array<double, kSizes.size()> logs) const {
+  Single single{0, -INFINITY, 1};
+  for (std::size_t i = 0; i < kSizes.size(); ++i) {
+    logs[i] += plausibility_[candidate][i];
+    if (logs[i] <= single.log_best) continue;
+    single.log_best = logs[i];
+    single.size = kSizes[i];
+  }
+  if (std::isinf(single.log_best)) return {-INFINITY, -INFINITY, 1};
+  for (const double log : logs) single.log_sum += std::exp(log - single.log_best);
+  single.log_sum = single.log_best + std::log(single.log_sum);
+  return single;
 }
 
 EvidenceEvaluator::Single EvidenceEvaluator::weigh(const MarginalLikelihood& marginal_likelihood,
                                                    int candidate) const {
-  Single single{-INFINITY, -INFINITY, 1};
-  for (const double size : sizes()) {
-    const MarginalLikelihood::Term term{&blocks_[candidate], size};
-    const double log = marginal_likelihood.log_evidence({&term, 1}) +
-                       plausibility(candidate, size) -
-                       std::log(static_cast<double>(sizes().size()));
-    single.log_sum = log_add(single.log_sum, log);
-    if (log > single.log_best) {
-      single.log_best = log;
-      single.size = size;
-    }
+  std::array<double, kSizes.size()> logs{};
+  for (std::size_t i = 0; i < kSizes.size(); ++i) {
+    const MarginalLikelihood::Term term{&blocks_[candidate], kSizes[i]};
+    logs[i] = marginal_likelihood.log_evidence({&term, 1});
   }
-  return single;
+  return over_sizes(candidate, logs);
+}
+
+EvidenceEvaluator::Single EvidenceEvaluator::weigh_alone(int structure, int candidate) const {
+  const MarginalLikelihood& own = marginal_likelihoods_[structure];
+  if (spectra_[structure].empty() || blocks_[candidate].columns.size() > kMostLooped)
+    return weigh(own, candidate);
+  std::array<double, kSizes.size()> logs{};
+  own.log_evidences(blocks_[candidate], kSizes,
+                    &spectra_[structure][spectrum_at_[static_cast<std::size_t>(candidate)]],
+                    logs.data());
+  return over_sizes(candidate, logs);
 }
 
 double EvidenceEvaluator::held(const Hypothesis& h) const {
@@ -187,7 +227,7 @@ double EvidenceEvaluator::held(const Hypothesis& h) const {
   double sum = 0;
   for (size_t i = 0; i < h.candidates.size(); ++i)
     sum += plausibility(h.candidates[i], h.sizes[i]) -
-           std::log(static_cast<double>(sizes().size()) / 2);
+           std::log(static_cast<double>(kSizes.size()) / 2);
   return sum;
 }
 
@@ -202,19 +242,95 @@ double EvidenceEvaluator::evidence(int candidate) const {
                           : 0;
 }
 
-EvidenceEvaluator::Found EvidenceEvaluator::best_found() const {
+int EvidenceEvaluator::best_noise() const {
   int home = 0;
   for (int s = 1; s < structures(); ++s)
     if (structure(s).kind == 0 &&
         marginal_likelihoods_[s].log_evidence({}) > marginal_likelihoods_[home].log_evidence({}))
       home = s;
-  const Hypothesis none{
-      {}, home, marginal_likelihoods_[home].log_evidence({}) + log_prior({}, home), {}};
-  const Hypothesis one = with_best(none, marginal_likelihoods_[home]);
-  if (one.candidates.empty()) return {none, -INFINITY};
-  const Hypothesis two = with_best(one, marginal_likelihoods_[home].given(terms(one)));
+  return home;
+}
+
+Hypothesis EvidenceEvaluator::none(int structure) const {
+  return {{},
+          structure,
+          marginal_likelihoods_[structure].log_evidence({}) + log_prior({}, structure),
+          {}};
+}
+
+EvidenceEvaluator::Found EvidenceEvaluator::best_found() const {
+  const int home = best_noise();
+  const Hypothesis one = best_alone(home);
+  if (one.candidates.empty()) return {one, -INFINITY};
+  return better(one, marginal_likelihoods_[home].given(terms(one)));
+}
+
+EvidenceEvaluator::Found EvidenceEvaluator::better(const Hypothesis& one,
+                                                   const MarginalLikelihood& rest) const {
+  const Hypothesis two = with_best(one, rest);
   const Hypothesis& best = two.log_weight > one.log_weight ? two : one;
-  return {best, best.log_weight - none.log_weight};
+  return {best, best.log_weight - none(one.structure).log_weight};
+}
+
+std::vector<EvidenceEvaluator::Found> EvidenceEvaluator::best_found_in(const Views& views) {
+  Eigen::Index count = 0;
+  for (const MarginalLikelihood::Views& each : views) count = std::max(count, each.yy.size());
+  std::vector<Hypothesis> ones;
+  std::vector<std::set<int>> columns(views.size());  // of those, by structure
+  for (Eigen::Index i = 0; i < count; ++i) {
+    look_at(views, i);
+    ones.push_back(best_alone(best_noise()));
+    for (const int column : MarginalLikelihood::unfold(terms(ones.back())).first)
+      columns[ones.back().structure].insert(column);
+  }
+  // Products with those columns, all at once: one after the other they cost ten times as much.
+  std::vector<std::vector<int>> list(views.size());
+  std::vector<Eigen::MatrixXd> products(views.size());
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    list[s].assign(columns[s].begin(), columns[s].end());
+    if (!list[s].empty()) products[s] = marginal_likelihoods_[s].products(list[s]);
+  }
+  std::vector<Found> found;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Hypothesis& one = ones[static_cast<std::size_t>(i)];
+    if (one.candidates.empty()) {
+      found.push_back({one, -INFINITY});
+      continue;
+    }
+    look_at(views, i);
+    std::vector<int> at;
+    for (const int column : MarginalLikelihood::unfold(terms(one)).first)
+      at.push_back(static_cast<int>(std::ranges::lower_bound(list[one.structure], column) -
+                                    list[one.structure].begin()));
+    found.push_back(better(one, marginal_likelihoods_[one.structure].given(
+                                    terms(one), products[one.structure](at, Eigen::all))));
+  }
+  look_at_rows();
+  return found;
+}
+
+/// The most probable candidate beside noise alone; none of them where none is seen.
+Hypothesis EvidenceEvaluator::best_alone(int structure) const {
+  Hypothesis best = none(structure);
+  int chosen = -1;
+  Single as;
+  for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
+    if (!seen_[c]) continue;
+    const double prior = log_prior({&c, 1}, structure);
+    if (marginal_likelihoods_[structure].at_most(blocks_[c]) + prior <= best.log_weight &&
+        chosen >= 0)
+      continue;
+    const Single single = weigh_alone(structure, c);
+    const double weight = single.log_sum + prior;
+    if (chosen >= 0 && weight <= best.log_weight) continue;
+    best.log_weight = weight;
+    chosen = c;
+    as = single;
+  }
+  if (chosen < 0) return best;
+  best.candidates = {chosen};
+  best.sizes = {as.size};
+  return best;
 }
 
 /// `h` and one candidate more, `rest` being what `h` leaves.
@@ -231,14 +347,28 @@ Hypothesis EvidenceEvaluator::with(Hypothesis h, int candidate,
 /// `h` and the candidate that makes it most probable, `rest` being what `h` leaves; `h` alone where
 /// there is none.
 Hypothesis EvidenceEvaluator::with_best(const Hypothesis& h, const MarginalLikelihood& rest) const {
-  Hypothesis best = h;
+  Hypothesis more = h;
+  more.candidates.push_back(-1);
+  const double before = held(h);
+  double best = -INFINITY, size = 1;
+  int chosen = -1;
   for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
     if (!seen_[c] || std::ranges::count(h.candidates, c) > 0) continue;
-    Hypothesis more = with(h, c, rest);
-    if (best.candidates.size() == h.candidates.size() || more.log_weight > best.log_weight)
-      best = std::move(more);
+    more.candidates.back() = c;
+    const double other = before + log_prior(more.candidates, h.structure);
+    if (chosen >= 0 && rest.at_most(blocks_[c]) + other <= best) continue;
+    const Single single = weigh(rest, c);
+    const double weight = single.log_sum + other;
+    if (chosen >= 0 && weight <= best) continue;
+    best = weight;
+    chosen = c;
+    size = single.size;
   }
-  return best;
+  if (chosen < 0) return h;
+  more.candidates.back() = chosen;
+  more.sizes.push_back(size);
+  more.log_weight = best;
+  return more;
 }
 
 std::vector<MarginalLikelihood::Term> EvidenceEvaluator::terms(const Hypothesis& hypothesis) const {

@@ -7,14 +7,15 @@
 // the difference of reading a: functions of one reading and of two, all of them smooth.
 #include "diagnosis/evidence/discrepancy.h"
 
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <memory>
 #include <numbers>
 #include <span>
 
 #include "diagnosis/evidence/visits.h"
-#include "kinematics/expects.h"
-#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
@@ -52,65 +53,87 @@ class Kernel {
     direction_ = rows.shift;
     for (auto each : direction_.rowwise())
       if (each.norm() > 0) each /= each.norm();
+    number();
   }
 
   bool possible(KernelDomain closeness) const {
     return closeness != KernelDomain::time || span_ > 0;
   }
 
-  /// Covariance of noise of one, of so much of the visits' own noise and of the readings' rounding.
-  Eigen::MatrixXd noise(double of_visits) const {
+  /// Noise of one, of so much of the visits' own, of the readings' rounding, and of variance `same`
+  /// that a configuration brings along.
+  std::shared_ptr<const NoiseBlocks> noise(double of_visits, double same) const {
     const Eigen::MatrixXd rounding = by_joint_ * (reading_steps(data_.q) / 2).asDiagonal();
-    const auto n = static_cast<Eigen::Index>(rows_.row.size());
-    Eigen::MatrixXd K = Eigen::MatrixXd::Identity(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        const int a = rows_.row[i], b = rows_.row[j];
-        if (a < 0 || b < 0 || !repeats(a, b)) continue;
-        double shared = 0;
-        for (Eigen::Index k = 0; k < rounding.cols(); ++k)
-          if (data_.q(a, k) == data_.q(b, k)) shared += rounding(i, k) * rounding(j, k);
-        K(i, j) += shared / 3;  // uniform within half a digit either way
-        if (visit_[a] == visit_[b])
-          K(i, j) += of_visits * of_visits * direction_.row(i).dot(direction_.row(j));
-        if (i != j) K(j, i) = K(i, j);
-      }
-    return K;
+    return std::make_shared<const NoiseBlocks>(blocks_, [&](int i, int j) {
+      const double alone = i == j ? 1 : 0;
+      const int a = rows_.row[i], b = rows_.row[j];
+      if (a < 0 || b < 0) return alone;
+      double shared = 0;
+      for (Eigen::Index k = 0; k < rounding.cols(); ++k)
+        if (data_.q(a, k) == data_.q(b, k)) shared += rounding(i, k) * rounding(j, k);
+      const double alike = direction_.row(i).dot(direction_.row(j));
+      // Uniform within half a digit either way.
+      return alone + shared / 3 + alike * same +
+             (visit_[a] == visit_[b] ? of_visits * of_visits * alike : 0);
+    });
   }
 
-  /// Of errors of one joint.
-  Eigen::MatrixXd of_joint(Eigen::Index joint) const {
-    const auto n = static_cast<Eigen::Index>(rows_.row.size());
+  /// Of errors of one joint, times `size`, by the root of likeness().
+  Eigen::MatrixXd root_of_joint(Eigen::Index joint, const Eigen::MatrixXd& alike,
+                                double size) const {
     Eigen::VectorXd J = by_joint_.col(joint);
-    if (J.norm() > 0) J *= std::sqrt(static_cast<double>(n)) / J.norm();
-    Eigen::MatrixXd K = J * J.transpose();
+    if (J.norm() > 0) J *= std::sqrt(size * static_cast<double>(J.size())) / J.norm();
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(J.size(), alike.cols());
+    for (Eigen::Index i = 0; i < J.size(); ++i)
+      if (place_[i] >= 0) F.row(i) = J[i] * alike.row(place_[i]);
+    return F;
+  }
+
+  /// Covariance of one function of one or two readings between the rows that have equations.
+  Eigen::MatrixXd likeness() const {
+    const auto n = static_cast<Eigen::Index>(used_.size());
+    Eigen::MatrixXd K(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        const int a = rows_.row[i], b = rows_.row[j];
-        K(i, j) = K(j, i) = a < 0 || b < 0 ? 0 : K(i, j) * alike(a, b);
-      }
+      for (Eigen::Index j = 0; j <= i; ++j) K(i, j) = K(j, i) = alike(used_[i], used_[j]);
     return K;
   }
 
   Eigen::MatrixXd of(KernelDomain closeness) const {
     const auto n = static_cast<Eigen::Index>(rows_.row.size());
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        const int a = rows_.row[i], b = rows_.row[j];
-        if (a < 0 || b < 0) continue;
-        const double alike = closeness == KernelDomain::time
-                                 ? seen_by_tool(i).dot(seen_by_tool(j))
-                                 : direction_.row(i).dot(direction_.row(j));
-        K(i, j) = K(j, i) = alike == 0 ? 0 : alike * close(closeness, a, b);
-      }
+    const auto used = static_cast<Eigen::Index>(used_.size());
+    Eigen::MatrixXd near(used, used);
+    for (Eigen::Index i = 0; i < used; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        near(i, j) = near(j, i) = close(closeness, used_[i], used_[j]);
+    Eigen::MatrixXd directions = direction_;
+    if (closeness == KernelDomain::time)
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (rows_.row[i] >= 0) directions.row(i) = seen_by_tool(i).transpose();
+    Eigen::MatrixXd K = directions * directions.transpose();
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index i = 0; i < n; ++i)
+        K(i, j) *= place_[i] < 0 || place_[j] < 0 ? 0 : near(place_[i], place_[j]);
     return K;
   }
 
  private:
-  bool repeats(int a, int b) const {
-    return a == b || (!data_.repeat.empty() && data_.repeat[a] >= 0 &&
-                      data_.repeat[a] == data_.repeat[b] && data_.set[a] == data_.set[b]);
+  /// The rows that have equations, and the equations of each configuration.
+  void number() {
+    std::map<int, int> place;                 // of a row, among those used
+    std::map<std::array<int, 3>, int> block;  // of a row, or of a set and its repeat
+    for (int i = 0; i < static_cast<int>(rows_.row.size()); ++i) {
+      const int row = rows_.row[i];
+      const auto [found, made] = place.try_emplace(row, static_cast<int>(used_.size()));
+      if (made && row >= 0) used_.push_back(row);
+      place_.push_back(row < 0 ? -1 : found->second);
+      const bool repeated = row >= 0 && !data_.repeat.empty() && data_.repeat[row] >= 0;
+      const std::array<int, 3> key = row < 0    ? std::array{-1, -1, i}
+                                     : repeated ? std::array{data_.set[row], data_.repeat[row], -1}
+                                                : std::array{-1, row, -1};
+      const auto [at, first] = block.try_emplace(key, static_cast<int>(blocks_.size()));
+      if (first) blocks_.emplace_back();
+      blocks_[at->second].push_back(i);
+    }
   }
 
   /// The direction that an equation measures in, in the tool's axes.
@@ -138,15 +161,14 @@ class Kernel {
     // Repeats that lie minutes apart are as far from each other as that: no closeness knows of
     // another one, or the covariance would be none.
     switch (closeness) {
-      case KernelDomain::same:
-        return repeats(a, b) ? 1 : 0;
       case KernelDomain::joints:
         return bell((alike_.row(a) - alike_.row(b)).squaredNorm() / (kJoints * kJoints));
       case KernelDomain::place:
         return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
                     (kPlace * kPlace));
+      case KernelDomain::same:
       case KernelDomain::turned:
-        return 0;  // of one joint: of_joint()
+        return 0;  // these are noise(), and root_of_joint()
       case KernelDomain::time:
         if (!std::isfinite(data_.time[a] + data_.time[b])) return 0;
         return bell(std::pow((data_.time[a] - data_.time[b]) / (kTime * span_), 2));
@@ -162,16 +184,9 @@ class Kernel {
   const std::vector<int> visit_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
+  std::vector<int> used_, place_;         ///< rows with equations; by equation, its row among them
+  std::vector<std::vector<int>> blocks_;  ///< equations of each configuration
 };
-
-/// Its lower Cholesky factor.
-Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
-  Eigen::MatrixXd root = cholesky_root(covariance);
-  const Eigen::VectorXd missing = root.rowwise().squaredNorm() - covariance.diagonal();
-  expects((missing.array().abs() <= 1e-6 * covariance.diagonal().array()).all(),
-          "what rows share is a covariance");
-  return root;
-}
 
 }  // namespace
 
@@ -216,7 +231,7 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
                                                const Eigen::MatrixXd& by_joint, double of_visits) {
   const Kernel kernel(data, rows, {}, by_joint, data.q);
-  return {{0, of_visits, root_of(kernel.noise(of_visits)), 1, 1}};
+  return {{.kappa = of_visits, .blocks = kernel.noise(of_visits, 0)}};
 }
 
 namespace {
@@ -224,42 +239,46 @@ namespace {
 /// Noise, and what a configuration's repeats share of it; where visits have a noise of their own,
 /// all of that, half of it and none: some of what lies between two visits may have a cause.
 void add_noise(const Kernel& kernel, double of_visits, std::vector<DiscrepancyCovariance>& list) {
-  const Eigen::MatrixXd same = kernel.of(KernelDomain::same);
   for (const double share : kOfVisits) {
     const double visits = share * of_visits;
-    const Eigen::MatrixXd noise = kernel.noise(visits);
     const double once = 1 + visits * visits;  // variance of one visit
     for (const auto& [kappa, probability] : kShared)
-      list.push_back({0, std::sqrt(visits * visits + kappa * kappa * once),
-                      root_of(noise + kappa * kappa * once * same), 1,
-                      of_visits > 0 ? probability / std::size(kOfVisits) : probability});
+      list.push_back(
+          {.kappa = std::sqrt(visits * visits + kappa * kappa * once),
+           .blocks = kernel.noise(visits, kappa * kappa * once),
+           .probability = of_visits > 0 ? probability / std::size(kOfVisits) : probability});
     if (of_visits == 0) return;
   }
+}
+
+void add_kernel(KernelDomain closeness, std::span<const double> sizes,
+                const std::shared_ptr<const NoiseBlocks>& noise, KernelBasis basis,
+                std::vector<DiscrepancyCovariance>& list) {
+  const auto kernel = std::make_shared<const KernelBasis>(std::move(basis));
+  for (const double kappa : sizes)
+    list.push_back(
+        {.kind = static_cast<int>(closeness), .kappa = kappa, .blocks = noise, .kernel = kernel});
 }
 
 /// What no known effect explains, beside the noise.
 void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
                   std::vector<DiscrepancyCovariance>& list) {
-  const Eigen::MatrixXd noise = kernel.noise(of_visits);
   const double once = 1 + of_visits * of_visits;
-  const Eigen::MatrixXd same = once * kernel.of(KernelDomain::same);
-  const Eigen::MatrixXd usual = noise + kUsual * kUsual * same;
+  for (const double kappa : kMore)
+    list.push_back({.kind = static_cast<int>(KernelDomain::same),
+                    .kappa = kappa,
+                    .blocks = kernel.noise(of_visits, kappa * kappa * once)});
+  const auto usual = kernel.noise(of_visits, kUsual * kUsual * once);
   for (const KernelDomain closeness :
-       {KernelDomain::same, KernelDomain::joints, KernelDomain::place, KernelDomain::time}) {
-    if (!kernel.possible(closeness)) continue;
-    const bool alone = closeness == KernelDomain::same;
-    const Eigen::MatrixXd K = once * kernel.of(closeness);
-    const auto sizes = alone ? std::span<const double>(kMore) : std::span<const double>(kSizes);
-    for (const double kappa : sizes)
-      list.push_back({static_cast<int>(closeness), kappa,
-                      root_of((alone ? noise : usual) + kappa * kappa * K), 1, 1});
-  }
-  for (Eigen::Index joint = 0; joint < joints; ++joint) {
-    const Eigen::MatrixXd K = once * kernel.of_joint(joint);
-    for (const double kappa : kOfJoint)
-      list.push_back({static_cast<int>(KernelDomain::turned), kappa,
-                      root_of(usual + kappa * kappa * K), 1, 1});
-  }
+       {KernelDomain::joints, KernelDomain::place, KernelDomain::time})
+    if (kernel.possible(closeness))
+      add_kernel(closeness, kSizes, usual, basis_of_kernel(*usual, once * kernel.of(closeness)),
+                 list);
+  const Eigen::MatrixXd likeness = kernel.likeness();
+  const Eigen::MatrixXd alike = *low_rank_root(likeness, likeness.rows());
+  for (Eigen::Index joint = 0; joint < joints; ++joint)
+    add_kernel(KernelDomain::turned, kOfJoint, usual,
+               basis_of_root(*usual, kernel.root_of_joint(joint, alike, once)), list);
 }
 
 }  // namespace

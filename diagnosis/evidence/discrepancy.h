@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "constraints/equations/equations.h"
-#include "diagnosis/evidence/marginal_likelihood.h"
+#include "diagnosis/evidence/evidence_rows.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "constraints/site.h"
 #include "constraints/statistics.h"
@@ -86,24 +87,38 @@ std::vector<char> LinearisedModel::taking_part() const {
   return take;
 }
 
-DenseEquations LinearisedModel::kept() const { return selfcal::kept(all_, taking_part()); }
+DenseEquations LinearisedModel::kept() const {
+  const std::vector<int> equations = equations_of(all_, taking_part());
+  DenseEquations some{{}, all_.y(equations), all_.shift(equations, Eigen::all), {}};
+  for (const int i : equations) some.row.push_back(all_.row[static_cast<size_t>(i)]);
+  return some;
+}
 
 Eigen::VectorXd LinearisedModel::left() const { return left_(equations_of(all_, taking_part())); }
 
-Whitened LinearisedModel::of(const DenseEquations& rows) const {
+Whitened LinearisedModel::of(const std::vector<int>& equations,
+                             const std::vector<int>& effects) const {
+  std::vector<int> columns = effects;
+  for (int& each : columns) each += static_cast<int>(geometry_->parameters().size());
   Whitened out;
-  out.A = rows.W(Eigen::all, nuisance_.columns) / scale_;
-  out.C = rows.W.middleCols(static_cast<Eigen::Index>(geometry_->parameters().size()),
-                            static_cast<Eigen::Index>(parameters_.size())) /
-          scale_;
-  out.y = rows.y / scale_;
+  out.A = all_.W(equations, nuisance_.columns) / scale_;
+  out.C = all_.W(equations, columns) / scale_;
+  out.y = all_.y(equations) / scale_;
   out.weight = nuisance_.weight;
   out.pull = nuisance_.pull;
   out.least = least_ / (scale_ * scale_);
   return out;
 }
 
-Whitened LinearisedModel::whitened() const { return of(kept()); }
+Whitened LinearisedModel::whitened() const {
+  std::vector<int> effects(parameters_.size());
+  std::iota(effects.begin(), effects.end(), 0);
+  return of(equations_of(all_, taking_part()), effects);
+}
+
+Whitened LinearisedModel::whitened_geometry() const {
+  return of(equations_of(all_, taking_part()), {});
+}
 
 std::vector<Eigen::Isometry3d> LinearisedModel::ends() const {
   return selfcal::ends(*geometry_, data_.rows);
@@ -118,8 +133,8 @@ std::vector<int> reading_columns(const Robot& robot) {
   return columns;
 }
 
-Eigen::MatrixXd LinearisedModel::by_joint(const DenseEquations& kept) const {
-  return kept.W(Eigen::all, reading_columns(*geometry_)) / scale_;
+Eigen::MatrixXd LinearisedModel::by_joint() const {
+  return all_.W(equations_of(all_, taking_part()), reading_columns(*geometry_)) / scale_;
 }
 
 std::vector<Scale> LinearisedModel::noise_of_sets() const {
@@ -143,7 +158,10 @@ double LinearisedModel::noise() const {
 
 Eigen::VectorXd LinearisedModel::residuals(const std::vector<int>& effects,
                                            const Eigen::VectorXd& prior) const {
-  return left_of(of(all_), whitened(), effects, prior);
+  std::vector<int> every(all_.row.size()), own(effects.size());
+  std::iota(every.begin(), every.end(), 0);
+  std::iota(own.begin(), own.end(), 0);
+  return left_of(of(every, effects), of(equations_of(all_, taking_part()), effects), own, prior);
 }
 
 Eigen::VectorXd LinearisedModel::geometry_residuals(const Whitened& rows) const {

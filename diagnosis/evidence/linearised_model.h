@@ -35,12 +35,15 @@ class LinearisedModel {
 
   /// The rows not put aside, with the noise `scale` times what the geometry's fit says.
   Whitened whitened() const;
+  /// The same without any cause's columns.
+  Whitened whitened_geometry() const;
+  /// Which they are, without their columns W.
   DenseEquations kept() const;
   std::vector<Eigen::Isometry3d> ends() const;
   Eigen::MatrixXd tips() const;
   /// What an error of each joint's reading moves each equation of kept() (equations x joints, 1/rad
   /// or 1/m); whitened.
-  Eigen::MatrixXd by_joint(const DenseEquations& kept) const;
+  Eigen::MatrixXd by_joint() const;
   /// What the geometry alone leaves of `rows` (as whitened()).
   Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
   /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
@@ -75,7 +78,8 @@ class LinearisedModel {
  private:
   /// By row: weighed and not put aside.
   std::vector<char> taking_part() const;
-  Whitened of(const DenseEquations& rows) const;
+  /// Those equations of all(), with these columns of the effects.
+  Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.
   void bound_noise();
 

@@ -1,66 +1,109 @@
 #include "diagnosis/evidence/marginal_likelihood.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
+namespace {
 
-Columns::Columns(const Whitened& rows, const Eigen::MatrixXd& root)
-    : A(solve_lower(root, rows.A)), C(solve_lower(root, rows.C)) {}
+constexpr double kRightSign = 0.95;     ///< prior, of the sign that physics allows
+constexpr double kAlikeColumns = 1e-8;  ///< of two columns' square: they are nearly one
+constexpr double kAbsorbed = 1e-10;     ///< of an equation's square, that is nothing of its own
+
+/// One block of at most kMostLooped columns: so small that plain loops on the stack beat any
+/// library.
+struct Small {
+  int n = 0;
+  double L[kMostLooped][kMostLooped];
+  double z[kMostLooped];
+  double scale[kMostLooped];
+};
+
+}  // namespace
 
 MarginalLikelihood::MarginalLikelihood(std::shared_ptr<const Whitened> rows,
-                                       DiscrepancyCovariance structure,
-                                       std::shared_ptr<const Groups> groups)
-    : MarginalLikelihood(rows, structure, std::move(groups), Columns(*rows, structure.root)) {}
+                                       DiscrepancyCovariance structure, const Groups& groups) {
+  StructuredRows seen{.rows = std::make_shared<const EvidenceRows>(std::move(rows), groups)};
+  seen.take(structure);
+  const Eigen::MatrixXd AC = seen.AC();
+  std::vector<double> products = seen.products();
+  ObservedRows own(*seen.rows, seen.rows->rows().y, true);
+  *this = MarginalLikelihood(std::move(seen), std::move(structure), AC, std::move(products), own);
+}
 
-MarginalLikelihood::MarginalLikelihood(std::shared_ptr<const Whitened> rows,
-                                       DiscrepancyCovariance structure,
-                                       std::shared_ptr<const Groups> groups,
-                                       const Columns& columns) {
-  Fixed fixed{std::move(rows), std::move(groups), std::move(structure), {}, {}, {}};
-  const Eigen::MatrixXd& root = fixed.structure.root;
-  const Eigen::Index equations = fixed.rows->A.rows();
-  const OrthogonalColumns qr = orthogonal_columns(over_priors(columns.A, fixed.rows->weight));
-  fixed.Q = qr.Q;
-  constant_ = -qr.log_volume;
-  for (Eigen::Index i = 0; i < root.rows(); ++i) constant_ -= std::log(root(i, i));
+MarginalLikelihood::MarginalLikelihood(StructuredRows seen, DiscrepancyCovariance structure,
+                                       const Eigen::MatrixXd& AC, std::vector<double> products,
+                                       ObservedRows& own)
+    : kept_(std::move(products)) {
+  const EvidenceRows& rows = *seen.rows;
+  const Eigen::MatrixXd BB = rows.B().transpose() * rows.B();
+  const double scale = 1 / structure.noise;
+  Fixed fixed{std::move(seen), std::move(structure), {}, {}};
+  fixed.root = cholesky_root(scale * fixed.seen.AA + BB);
+  constant_ =
+      -rows.log_volume() - fixed.root.diagonal().array().log().sum() - fixed.structure.log_volume();
   // Freedom of the rows alone: each prior determines the share of its parameter that they do not.
-  nu_ = static_cast<double>(equations) - fixed.Q.topRows(equations).squaredNorm();
-  const Eigen::MatrixXd& C = columns.C;
-  fixed.QC = transposed_product(fixed.Q.topRows(equations), C);
-  for (const std::vector<int>& group : *fixed.groups) {
-    fixed.at.push_back(kept_.size());
-    for (const int i : group)
-      for (const int j : group)
-        kept_.push_back(C.col(i).dot(C.col(j)) - fixed.QC.col(i).dot(fixed.QC.col(j)));
-  }
+  const Eigen::MatrixXd half_B = solve_lower(fixed.root, rows.B().transpose());
+  nu_ = static_cast<double>(rows.A().rows() - rows.A().cols()) + half_B.squaredNorm();
+  for (double& each : kept_) each *= scale;
+  rows.products().add(solve_lower(fixed.root, scale * AC), -1, kept_);
+  const double least = rows.rows().least / fixed.structure.noise;
+  if (least > 0) fixed.tail = NoiseTail(nu_);
   fixed_ = std::make_shared<const Fixed>(std::move(fixed));
+  of_rows_ = std::make_shared<const Views>(views_of(own, rows.rows().pull, true));
   look_at_rows();
 }
 
-Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X,
-                                                    const Eigen::VectorXd& pull) const {
-  const Eigen::MatrixXd& Q = fixed_->Q;
-  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(Q.rows(), X.cols());
-  Z.topRows(X.rows()) = solve_lower(fixed_->structure.root, X);
-  if (pull.size() > 0) Z.bottomRows(pull.size()).colwise() = pull;
-  Z.noalias() -= Q * transposed_product(Q, Z);
-  return Z;
+Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X) const {
+  const double scale = 1 / fixed_->structure.noise;
+  const Eigen::MatrixXd& root = fixed_->root;
+  const Eigen::MatrixXd AX = transposed_product(rows().A(), fixed_->seen.inverse_times(X));
+  const Eigen::MatrixXd taken =
+      solve_lower_transposed(root, solve_lower(root, Eigen::MatrixXd(scale * AX)));
+  return scale * fixed_->seen.inverse_times(X - rows().A() * taken);
 }
 
 MarginalLikelihood::Views MarginalLikelihood::views_of(const Eigen::MatrixXd& Y) const {
-  return views_beyond(beyond_geometry(Y));
+  ObservedRows observed(rows(), Y, true);
+  return views_of(observed);
 }
 
-/// Of what y leave beyond structure and geometry.
-MarginalLikelihood::Views MarginalLikelihood::views_beyond(const Eigen::MatrixXd& left) const {
-  const Eigen::MatrixXd back =
-      solve_lower_transposed(fixed_->structure.root, left.topRows(fixed_->rows->A.rows()));
-  // The strain on the priors too: a cause relieves both.
-  return {transposed_product(fixed_->rows->C, back), left.colwise().squaredNorm().transpose()};
+MarginalLikelihood::Views MarginalLikelihood::views_of(ObservedRows& observed) const {
+  return views_of(observed, {}, true);
+}
+
+/// With the strain on the priors (columns of A; none where it has no rows) under each y: a cause
+/// relieves both.
+MarginalLikelihood::Views MarginalLikelihood::views_of(ObservedRows& observed,
+                                                       const Eigen::VectorXd& pull,
+                                                       bool with_causes) const {
+  const StructuredRows& seen = fixed_->seen;
+  const double scale = 1 / fixed_->structure.noise;
+  observed.look_over(seen);
+  Eigen::MatrixXd AY = scale * observed.AY(seen);
+  Views views;
+  views.yy = scale * observed.squares(seen);
+  if (pull.size() > 0) {
+    AY.colwise() += rows().B().transpose() * pull;
+    views.yy.array() += pull.squaredNorm();
+  }
+  const Eigen::MatrixXd half = solve_lower(fixed_->root, AY);
+  views.yy -= half.colwise().squaredNorm().transpose();
+  if (!with_causes) return views;
+  // C'S^-1 (Y - A taken): the kernel sees what is left of Y at once.
+  const Eigen::MatrixXd taken = solve_lower_transposed(fixed_->root, half);
+  views.g = observed.CY() - transposed_product(seen.noise->AC, taken);
+  if (seen.kernel) {
+    const Eigen::MatrixXd left =
+        seen.hidden.asDiagonal() * (observed.UY() - seen.kernel->UA * taken);
+    views.g -= transposed_product(seen.kernel->UC, left);
+  }
+  views.g *= scale;
+  return views;
 }
 
 void MarginalLikelihood::look_at(const Views& views, Eigen::Index which) {
@@ -68,15 +111,10 @@ void MarginalLikelihood::look_at(const Views& views, Eigen::Index which) {
   yy_ = views.yy[which];
 }
 
-void MarginalLikelihood::look_at_rows() {
-  look_at(views_beyond(beyond_geometry(fixed_->rows->y, fixed_->rows->pull)), 0);
-}
+void MarginalLikelihood::look_at_rows() { look_at(*of_rows_, 0); }
 
 Eigen::MatrixXd MarginalLikelihood::products(const std::vector<int>& a) const {
-  const Eigen::MatrixXd back = solve_lower_transposed(
-      fixed_->structure.root, solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a)));
-  return transposed_product(back, fixed_->rows->C) -
-         fixed_->QC(Eigen::all, a).transpose() * fixed_->QC;
+  return transposed_product(beyond_geometry(rows().rows().C(Eigen::all, a)), rows().rows().C);
 }
 
 Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& a,
@@ -84,26 +122,9 @@ Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& a,
   if (a.empty() || b.empty())
     return Eigen::MatrixXd(static_cast<Eigen::Index>(a.size()),
                            static_cast<Eigen::Index>(b.size()));
-  const Eigen::MatrixXd left = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, a));
-  const Eigen::MatrixXd right = solve_lower(fixed_->structure.root, fixed_->rows->C(Eigen::all, b));
-  return transposed_product(left, right) -
-         fixed_->QC(Eigen::all, a).transpose() * fixed_->QC(Eigen::all, b);
+  return transposed_product(beyond_geometry(rows().rows().C(Eigen::all, a)),
+                            rows().rows().C(Eigen::all, b));
 }
-
-namespace {
-
-constexpr double kRightSign = 0.95;  ///< prior, of the sign that physics allows
-constexpr int kMost = 64;
-
-/// One block of at most kMost columns: so small that plain loops on the stack beat any library.
-struct Small {
-  int n = 0;
-  double L[kMost][kMost];
-  double z[kMost];
-  double scale[kMost];
-};
-
-}  // namespace
 
 std::pair<std::vector<int>, Eigen::VectorXd> MarginalLikelihood::unfold(
     std::span<const Term> terms) {
@@ -124,7 +145,9 @@ double MarginalLikelihood::of_noise(double left, double freedom) const {
   if (least() <= 0 || freedom <= 0) return log;
   const double value = left / least();
   const double surely = freedom + 10 * std::sqrt(2 * freedom) + 50;  // where the probability is 1
-  return value > surely ? log : log + log_chi_square_below(value, freedom);
+  if (value > surely) return log;
+  return log +
+         (freedom == nu_ ? fixed_->tail.log_below(value) : log_chi_square_below(value, freedom));
 }
 
 double MarginalLikelihood::variance(double left) const {
@@ -134,18 +157,17 @@ double MarginalLikelihood::variance(double left) const {
 double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
   if (terms.empty()) return constant_ + of_noise(yy_, nu_);
   const Block& only = *terms.front().block;
-  if (terms.size() > 1 || only.group < 0 || only.columns.size() > kMost) {
+  if (terms.size() > 1 || only.group < 0 || only.columns.size() > kMostLooped) {
     const std::vector<int> columns = unfold(terms).first;
     return log_evidence(terms, gram(columns, columns));
   }
   Small s;
   s.n = static_cast<int>(only.columns.size());
-  const double* G = block(only.group);
   double half_log_det = 0, explained = 0;
   for (int i = 0; i < s.n; ++i) {
     s.scale[i] = terms.front().size * only.unit[i];
     for (int j = 0; j <= i; ++j) {
-      double sum = s.scale[i] * s.scale[j] * G[i * s.n + j] + (i == j ? 1 : 0);
+      double sum = s.scale[i] * s.scale[j] * product(only.group, i, j) + (i == j ? 1 : 0);
       for (int k = 0; k < j; ++k) sum -= s.L[i][k] * s.L[j][k];
       s.L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / s.L[j][j];
     }
@@ -157,9 +179,81 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
   }
   const double log = constant_ - half_log_det + of_noise(yy_ - explained, nu_);
   if (only.positive.empty()) return log;
-  using Rows = Eigen::Matrix<double, kMost, kMost, Eigen::RowMajor>;
+  using Rows = Eigen::Matrix<double, kMostLooped, kMostLooped, Eigen::RowMajor>;
   return log + of_signs(terms, Eigen::Map<const Rows>(&s.L[0][0]).topLeftCorner(s.n, s.n),
                         Eigen::Map<const Eigen::VectorXd>(s.z, s.n));
+}
+
+void MarginalLikelihood::add_spectrum(const Block& block, std::span<const double> sizes,
+                                      std::vector<double>& to) const {
+  const auto n = static_cast<Eigen::Index>(block.columns.size());
+  Eigen::MatrixXd scaled(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      scaled(i, j) = scaled(j, i) = block.unit[i] * block.unit[j] * product(block.group, i, j);
+  const Symmetric eigen =
+      n == 1 ? Symmetric{scaled.col(0), Eigen::MatrixXd::Identity(1, 1)} : symmetric_eigen(scaled);
+  const Eigen::ArrayXd value = eigen.values.array().max(0);
+  for (const double size : sizes) to.push_back((size * size * value).log1p().sum() / 2);
+  to.insert(to.end(), value.begin(), value.end());
+  const auto vectors = eigen.vectors.reshaped();
+  to.insert(to.end(), vectors.begin(), vectors.end());
+}
+
+std::size_t MarginalLikelihood::spectrum_size(const Block& block, std::size_t sizes) {
+  const std::size_t n = block.columns.size();
+  return sizes + n + n * n;
+}
+
+void MarginalLikelihood::log_evidences(const Block& block, std::span<const double> sizes,
+                                       const double* spectrum, double* logs) const {
+  const std::size_t n = block.columns.size();
+  const double* const value = spectrum + sizes.size();
+  const double* const U = value + n;
+  std::array<double, kMostLooped> turned;  // U'D g
+  std::fill_n(turned.begin(), n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double each = block.unit[static_cast<Eigen::Index>(i)] * g_[block.columns[i]];
+    for (std::size_t k = 0; k < n; ++k) turned[k] += U[k * n + i] * each;
+  }
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    const double squared = sizes[s] * sizes[s];
+    double explained = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      explained += squared * turned[k] * turned[k] / (1 + squared * value[k]);
+    const double left = yy_ - explained;
+    logs[s] = constant_ - spectrum[s] + of_noise(left, nu_);
+    for (const int i : block.positive) {
+      double mean = 0, square = 0;  // of the parameter, and its variance over s^2
+      for (std::size_t k = 0; k < n; ++k) {
+        const double of = U[k * n + static_cast<std::size_t>(i)];
+        mean += sizes[s] * of * turned[k] / (1 + squared * value[k]);
+        square += of * of / (1 + squared * value[k]);
+      }
+      logs[s] += of_sign(mean / std::sqrt(square * variance(left)));
+    }
+  }
+}
+
+double MarginalLikelihood::at_most(const Block& block) const {
+  if (block.columns.size() > 2 || block.group < 0) return INFINITY;
+  const double a = g_[block.columns.front()], b = g_[block.columns.back()];
+  const double aa = product(block.group, 0, 0);
+  double explained = a * a / aa;
+  if (block.columns.size() == 2) {
+    const double ab = product(block.group, 1, 0), bb = product(block.group, 1, 1);
+    const double volume = aa * bb - ab * ab;
+    if (!(volume > kAlikeColumns * aa * bb)) return INFINITY;
+    explained = (a * a * bb - 2 * a * b * ab + b * b * aa) / volume;
+  }
+  if (!(explained >= 0)) return INFINITY;
+  return constant_ + of_noise(yy_ - explained, nu_) +
+         static_cast<double>(block.positive.size()) * std::log(2 * kRightSign);
+}
+
+double MarginalLikelihood::of_sign(double in_sigmas) const {
+  const double probability = student_below_nearly(in_sigmas, nu_);
+  return std::log(2 * (kRightSign * probability + (1 - kRightSign) * (1 - probability)));
 }
 
 double MarginalLikelihood::of_signs(std::span<const Term> terms, const Eigen::MatrixXd& L,
@@ -172,9 +266,7 @@ double MarginalLikelihood::of_signs(std::span<const Term> terms, const Eigen::Ma
       Eigen::VectorXd one = Eigen::VectorXd::Zero(z.size());
       one[first + i] = 1;
       const Eigen::VectorXd half = solve_lower(L, one);
-      const double in_sigmas = half.dot(z) / (half.norm() * sigma);
-      const double probability = student_below(in_sigmas, nu_);
-      sum += std::log(2 * (kRightSign * probability + (1 - kRightSign) * (1 - probability)));
+      sum += of_sign(half.dot(z) / (half.norm() * sigma));
     }
     first += static_cast<Eigen::Index>(term.block->columns.size());
   }
@@ -192,8 +284,8 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms,
          of_signs(terms, L, z);
 }
 
-Eigen::VectorXd MarginalLikelihood::log_evidences_of(const Eigen::MatrixXd& Y) const {
-  Eigen::VectorXd list = beyond_geometry(Y).colwise().squaredNorm().transpose();
+Eigen::VectorXd MarginalLikelihood::log_evidences_of(ObservedRows& observed) const {
+  Eigen::VectorXd list = views_of(observed, {}, false).yy;
   for (double& each : list) each = constant_ + of_noise(each, nu_);
   return list;
 }
@@ -203,42 +295,47 @@ double MarginalLikelihood::gained_without(std::span<const Term> terms, const Eig
   if (out.empty() || terms.empty()) return 0;
   const auto unfolded = unfold(terms);
   const auto& D = unfolded.second;
-  Eigen::MatrixXd seen(y.size(), D.size() + 1);  // the terms, then y
-  seen << fixed_->rows->C(Eigen::all, unfolded.first) * D.asDiagonal(), y;
-  const Eigen::MatrixXd X = beyond_geometry(seen);
+  const Eigen::Index n = D.size() + 1;  // the terms, then y, then what is left out
   // An equation left out is one with an unknown of its own.
-  Eigen::MatrixXd alone = Eigen::MatrixXd::Zero(y.size(), static_cast<Eigen::Index>(out.size()));
-  for (size_t i = 0; i < out.size(); ++i) alone(out[i], static_cast<Eigen::Index>(i)) = 1;
-  const Eigen::MatrixXd free = beyond_geometry(alone);
-  const auto gain = [&](const Eigen::MatrixXd& of, double freedom) {
-    const auto c = of.leftCols(D.size());
+  Eigen::MatrixXd X = Eigen::MatrixXd::Zero(y.size(), n + static_cast<Eigen::Index>(out.size()));
+  X.leftCols(n - 1) = rows().rows().C(Eigen::all, unfolded.first) * D.asDiagonal();
+  X.col(n - 1) = y;
+  for (size_t i = 0; i < out.size(); ++i) X(out[i], n + static_cast<Eigen::Index>(i)) = 1;
+  const Eigen::MatrixXd all = transposed_product(X, beyond_geometry(X));
+  const auto gain = [&](const Eigen::MatrixXd& G, double freedom) {
     const Eigen::MatrixXd L =
-        cholesky_root(Eigen::MatrixXd::Identity(D.size(), D.size()) + c.transpose() * c);
-    const double all = of.col(D.size()).squaredNorm();
-    const double explained = solve_lower(L, c.transpose() * of.col(D.size())).squaredNorm();
-    return of_noise(all - explained, freedom) - of_noise(all, freedom) -
+        cholesky_root(Eigen::MatrixXd::Identity(n - 1, n - 1) + G.topLeftCorner(n - 1, n - 1));
+    const double square = G(n - 1, n - 1);
+    const double explained =
+        solve_lower(L, Eigen::VectorXd(G.col(n - 1).head(n - 1))).squaredNorm();
+    return of_noise(square - explained, freedom) - of_noise(square, freedom) -
            L.diagonal().array().log().sum();
   };
-  const Eigen::MatrixXd Q = orthogonal_columns(free).Q;
-  const Eigen::MatrixXd less = X - Q * (Q.transpose() * X).eval();
-  return gain(less, nu_ - static_cast<double>(out.size())) - gain(X, nu_);
+  const Symmetric own = symmetric_eigen(all.bottomRightCorner(all.rows() - n, all.cols() - n));
+  const double least = kAbsorbed * own.values.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd inverse =
+      (own.values.array() > least).select(own.values.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd shared = own.vectors.transpose() * all.bottomLeftCorner(all.rows() - n, n);
+  const Eigen::MatrixXd less =
+      all.topLeftCorner(n, n) - shared.transpose() * inverse.asDiagonal() * shared;
+  return gain(less, nu_ - static_cast<double>(out.size())) - gain(all.topLeftCorner(n, n), nu_);
 }
 
 MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms) const {
+  return terms.empty() ? *this : given(terms, products(unfold(terms).first));
+}
+
+MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms,
+                                             const Eigen::MatrixXd& products) const {
   MarginalLikelihood rest = *this;
-  if (terms.empty()) return rest;
   const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd G = products(columns);
   const Eigen::MatrixXd H =
       Eigen::MatrixXd::Identity(D.size(), D.size()) +
-      Eigen::MatrixXd(D.asDiagonal() * G(Eigen::all, columns) * D.asDiagonal());
+      Eigen::MatrixXd(D.asDiagonal() * products(Eigen::all, columns) * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
-  const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * G);
+  const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * products);
   const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
-  std::size_t at = 0;
-  for (const std::vector<int>& group : *fixed_->groups)
-    for (const int i : group)
-      for (const int j : group) rest.kept_[at++] -= seen.col(i).dot(seen.col(j));
+  rows().products().add(seen, -1, rest.kept_);
   rest.g_ -= seen.transpose() * z;
   rest.yy_ -= z.squaredNorm();
   rest.constant_ += of_signs(terms, L, z) - L.diagonal().array().log().sum();
@@ -258,6 +355,17 @@ MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> 
   estimate.covariance = D.asDiagonal() * inverse * D.asDiagonal();
   estimate.variance = variance(yy_ - g.dot(inverse * g));
   return estimate;
+}
+
+Eigen::VectorXd MarginalLikelihood::mean(std::span<const Term> terms) const {
+  const auto [columns, D] = unfold(terms);
+  Eigen::MatrixXd H = gram(columns, columns);
+  H.array().colwise() *= D.array();
+  H.array().rowwise() *= D.transpose().array();
+  H.diagonal().array() += 1;
+  const Eigen::MatrixXd L = cholesky_root(H);
+  const Eigen::VectorXd half = solve_lower(L, D.cwiseProduct(g_(columns)));
+  return D.cwiseProduct(Eigen::VectorXd(solve_lower_transposed(L, half)));
 }
 
 }  // namespace selfcal

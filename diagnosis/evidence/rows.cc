@@ -99,10 +99,13 @@ std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& res
       ++count[all.row[i]];
     }
   std::vector<std::pair<double, int>> far;
+  std::map<int, double> limits;  // by equations of a row
   for (size_t row = 0; row < rows; ++row) {
     if (count[row] == 0) continue;
     const double sigmas = std::sqrt(squares[row] / variance);
-    const double limit = chi_quantile(count[row], kFarQuantile);
+    const auto [found, made] = limits.try_emplace(count[row], 0.0);
+    if (made) found->second = chi_quantile(count[row], kFarQuantile);
+    const double limit = found->second;
     if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
   }
   std::sort(far.begin(), far.end());

@@ -10,15 +10,18 @@
 namespace selfcal {
 namespace {
 
-constexpr size_t kMostFamilies = 5;  ///< that a set of causes grows to
+constexpr size_t kMostFamilies = 5;     ///< that a set of causes grows to
+constexpr double kHopeless = 25;        ///< log weight below the best, in a coarse search
+constexpr double kHardlyPossible = 40;  ///< log weight below all others together
 
 }  // namespace
 
 /// One search on a bench: what it has visited so far.
 class Search {
  public:
-  explicit Search(const EvidenceEvaluator& bench)
+  Search(const EvidenceEvaluator& bench, bool coarse)
       : bench_(bench),
+        coarse_(coarse),
         candidates_(static_cast<int>(bench.blocks_.size())),
         kept_(bench.marginal_likelihoods_.size(), 0) {}
 
@@ -63,29 +66,42 @@ class Search {
   double note(Visit visit, double log_evidence) {
     visit.log_weight = log_evidence + bench_.log_prior(visit.all(), visit.structure);
     visited_.push_back(visit);
+    top_ = std::max(top_, visit.log_weight);
     return visit.log_weight;
+  }
+
+  /// A candidate cannot come near the best, whatever its size.
+  bool hopeless(const MarginalLikelihood& marginal_likelihood, int candidate,
+                double log_prior) const {
+    return coarse_ &&
+           marginal_likelihood.at_most(bench_.blocks_[candidate]) + log_prior < top_ - kHopeless;
   }
 
   /// Of those with the same candidates and structure, reached by different ways, the best.
   void keep_best() {
-    std::ranges::sort(visited_, [](const Visit& a, const Visit& b) {
+    const auto first = visited_.begin() + static_cast<std::ptrdiff_t>(distinct_);
+    std::sort(first, visited_.end(), [](const Visit& a, const Visit& b) {
       return std::tuple(a.key(), -a.log_weight) < std::tuple(b.key(), -b.log_weight);
     });
     const auto same = [](const Visit& a, const Visit& b) { return a.key() == b.key(); };
-    visited_.erase(std::unique(visited_.begin(), visited_.end(), same), visited_.end());
+    visited_.erase(std::unique(first, visited_.end(), same), visited_.end());
+    distinct_ = visited_.size();
   }
 
   /// Every candidate alone in every structure; the structures that do best go on.
   void visit_singles() {
+    visited_.reserve(static_cast<std::size_t>(bench_.structures()) * (candidates_ + 1));
     std::vector<std::pair<double, int>> ranked;
+    for (int s = 0; s < bench_.structures(); ++s)
+      note({.structure = s}, bench_.marginal_likelihoods_[s].log_evidence({}));
     for (int s = 0; s < bench_.structures(); ++s) {
-      const MarginalLikelihood& marginal_likelihood = bench_.marginal_likelihoods_[s];
-      const Visit none{.structure = s};
-      double best = note(none, marginal_likelihood.log_evidence({}));
+      double best = visited_[static_cast<std::size_t>(s)].log_weight;
       for (int c = 0; c < candidates_; ++c) {
-        if (!bench_.seen_[c]) continue;
-        const EvidenceEvaluator::Single single = bench_.weigh(marginal_likelihood, c);
-        Visit one = none;
+        if (!bench_.seen_[c] ||
+            hopeless(bench_.marginal_likelihoods_[s], c, bench_.log_prior({&c, 1}, s)))
+          continue;
+        const EvidenceEvaluator::Single single = bench_.weigh_alone(s, c);
+        Visit one{.structure = s};
         one.add(c, single.size);
         best = std::max(best, note(one, single.log_sum));
       }
@@ -95,23 +111,28 @@ class Search {
     std::sort(ranked.begin(), ranked.end());
     for (size_t i = 0; i < ranked.size() && static_cast<int>(i) < bench_.rule_.most_structures; ++i)
       kept_[ranked[i].second] = 1;
+    distinct_ = visited_.size();
   }
 
   /// The best of `size` candidates. Not one cause in all its shapes: two of each cause and
   /// structure.
   std::vector<Visit> best_of(int size, int most) const {
-    std::vector<Visit> list;
+    std::vector<const Visit*> list;
     for (const Visit& each : visited_)
-      if (each.count == size && kept_[each.structure]) list.push_back(each);
-    std::ranges::stable_sort(list, std::ranges::greater{}, &Visit::log_weight);
+      if (each.count == size && kept_[each.structure]) list.push_back(&each);
+    const auto worse = [](const Visit* a, const Visit* b) {
+      return a->log_weight != b->log_weight ? a->log_weight < b->log_weight : a > b;
+    };
+    std::ranges::make_heap(list, worse);
     std::map<std::pair<std::vector<int>, int>, int> taken;
     std::vector<Visit> diverse;
-    for (const Visit& each : list) {
+    while (!list.empty() && static_cast<int>(diverse.size()) < most) {
+      std::ranges::pop_heap(list, worse);
+      const Visit& each = *list.back();
+      list.pop_back();
       std::vector<int> causes;
       for (const int c : each.all()) causes.push_back(bench_.cause_[c]);
-      if (++taken[{causes, each.structure}] > 2) continue;
-      if (static_cast<int>(diverse.size()) >= most) break;
-      diverse.push_back(each);
+      if (++taken[{causes, each.structure}] <= 2) diverse.push_back(each);
     }
     return diverse;
   }
@@ -124,8 +145,11 @@ class Search {
       const double held = bench_.held(h);
       for (int c = 0; c < candidates_; ++c) {
         if (!bench_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
-        const EvidenceEvaluator::Single single = bench_.weigh(rest, c);
         Visit more = each;
+        more.add(c, 1);
+        if (hopeless(rest, c, held + bench_.log_prior(more.all(), h.structure))) continue;
+        const EvidenceEvaluator::Single single = bench_.weigh(rest, c);
+        more = each;
         more.add(c, single.size);
         note(more, single.log_sum + held);
       }
@@ -133,20 +157,18 @@ class Search {
   }
 
   Posterior posterior() {
-    std::ranges::stable_sort(visited_, std::ranges::greater{}, &Visit::log_weight);
-    const double top = visited_.front().log_weight;
-    double sum = 0;
+    double top = -INFINITY, sum = 0;
+    for (const Visit& each : visited_) top = std::max(top, each.log_weight);
     for (const Visit& each : visited_) sum += std::exp(each.log_weight - top);
     const double total = top + std::log(sum);
     Posterior posterior;
     posterior.log_total = total - bench_.marginal_likelihoods_.front().log_evidence({});
-    posterior.hypotheses.reserve(visited_.size());
     std::vector<double> family(bench_.blocks_.size()), cause(bench_.blocks_.size());
     for (Visit& each : visited_) {
       each.log_weight -= total;
       share_out(each, family, cause, posterior);
-      posterior.hypotheses.push_back(each.hypothesis());
     }
+    for (const Visit* each : worth_telling()) posterior.hypotheses.push_back(each->hypothesis());
     for (int c = 0; c < candidates_; ++c) {
       const Candidate& candidate = bench_.all_.list[static_cast<std::size_t>(c)];
       const auto at = static_cast<std::size_t>(c);
@@ -154,6 +176,27 @@ class Search {
       if (cause[at] > 0) posterior.cause[{candidate.effect, candidate.at}] = cause[at];
     }
     return posterior;
+  }
+
+  /// The most probable first: all that are possible, the best one with each candidate, and of noise
+  /// alone and of structure.
+  std::vector<const Visit*> worth_telling() const {
+    std::vector<const Visit*> best(static_cast<std::size_t>(candidates_) + 2, nullptr), list;
+    const auto look = [&](std::size_t at, const Visit& each) {
+      if (!best[at] || each.log_weight > best[at]->log_weight) best[at] = &each;
+    };
+    for (const Visit& each : visited_) {
+      if (each.log_weight > -kHardlyPossible) list.push_back(&each);
+      look(bench_.structure(each.structure).kind > 0 ? 0 : 1, each);
+      for (const int c : each.all()) look(static_cast<std::size_t>(c) + 2, each);
+    }
+    for (const Visit* each : best)
+      if (each && each->log_weight <= -kHardlyPossible) list.push_back(each);
+    std::ranges::sort(list, [](const Visit* a, const Visit* b) {
+      return a->log_weight != b->log_weight ? a->log_weight > b->log_weight : a < b;
+    });
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
   }
 
   /// Its probability, to each family and cause (by number) that it has.
@@ -176,13 +219,20 @@ class Search {
   }
 
   const EvidenceEvaluator& bench_;
+  const bool coarse_;
+  double top_ = -INFINITY;  ///< log weight of the best so far
   int candidates_;
   std::vector<char> kept_;  ///< by structure: pairs and triples are tried in it
   std::vector<Visit> visited_;
+  std::size_t distinct_ = 0;  ///< the first of them that are known to be
 };
 
-Posterior EvidenceEvaluator::search(int singles, int pairs) const {
-  return Search(*this).run(singles, pairs);
+Posterior EvidenceEvaluator::search() const {
+  return Search(*this, false).run(rule_.extended_singles, rule_.extended_pairs);
+}
+
+Posterior EvidenceEvaluator::search_coarsely(int singles) const {
+  return Search(*this, true).run(singles, 0);
 }
 
 /// Without one candidate after the other, as long as that makes it more probable.

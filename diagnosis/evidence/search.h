@@ -5,7 +5,9 @@
 // is the normalised evidence of all sets visited times their priors.
 #pragma once
 
+#include <array>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,7 +48,9 @@ inline bool names_effect(std::string_view answer) { return answer != kNone && an
 using Cause = std::pair<std::string, std::string>;  ///< effect, at
 
 struct Posterior {
-  std::vector<Hypothesis> hypotheses;  ///< most probable first; log_weight normalised
+  /// Most probable first, log_weight normalised: those that are possible, the best one with each
+  /// candidate, the best of noise alone and of structure.
+  std::vector<Hypothesis> hypotheses;
   std::map<std::string, double> family;
   std::map<Cause, double> cause;
   double none = 0, unknown = 0;
@@ -56,7 +60,7 @@ struct Posterior {
 /// Everything that the search needs and that does not depend on y.
 class EvidenceEvaluator {
  public:
-  EvidenceEvaluator(const Whitened& rows, std::vector<DiscrepancyCovariance> structures,
+  EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovariance> structures,
                     const Candidates& all, const std::vector<EffectParameter>& parameters,
                     const SearchRule& rule);
 
@@ -69,9 +73,10 @@ class EvidenceEvaluator {
   void look_at(const Views& views, Eigen::Index which);
   /// Goes back to that of the rows.
   void look_at_rows();
-  Posterior search() const { return search(rule_.extended_singles, rule_.extended_pairs); }
-  /// So many singles extended to pairs, so many pairs to triples.
-  Posterior search(int singles, int pairs) const;
+  Posterior search() const;
+  /// A coarse one: so few singles extended to pairs, and nothing weighed that cannot come within
+  /// e^-25 of what explains the rows best.
+  Posterior search_coarsely(int singles) const;
   /// The most probable candidate, or that one and the best beside it, in the noise that explains
   /// the rows best without any: the statistic of the null distribution.
   struct Found {
@@ -79,6 +84,13 @@ class EvidenceEvaluator {
     double log_odds = 0;  ///< log evidence times prior over that of none
   };
   Found best_found() const;
+  /// The same in each of the views, which are of noise alone. The workbenches see the rows again
+  /// afterwards.
+  std::vector<Found> best_found_in(const Views& views);
+  /// What each column of `Y` as y (no strain on the priors) says without any cause, structures x
+  /// columns.
+  Eigen::MatrixXd log_evidences_of(const Eigen::MatrixXd& Y) const;
+  const EvidenceRows& rows() const { return *rows_; }
 
   const MarginalLikelihood& marginal_likelihood(int structure) const {
     return marginal_likelihoods_[structure];
@@ -107,7 +119,8 @@ class EvidenceEvaluator {
   /// at most five families.
   Hypothesis grow(Hypothesis h, size_t most) const;
 
-  static const std::vector<double>& sizes();
+  /// Of a cause, over the noise; each as probable as the others.
+  static constexpr std::array kSizes{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
 
  private:
   friend class Search;
@@ -117,7 +130,16 @@ class EvidenceEvaluator {
   double log_prior(std::span<const int> candidates, int structure) const;
   /// One candidate in the light of a workbench, its sizes summed over.
   Single weigh(const MarginalLikelihood& marginal_likelihood, int candidate) const;
+  /// The same of a structure by itself: fast where many y are looked at.
+  Single weigh_alone(int structure, int candidate) const;
+  Single over_sizes(int candidate, std::array<double, kSizes.size()> logs) const;
   double plausibility(int candidate, double size) const;
+  /// The noise that explains the rows best without any cause.
+  int best_noise() const;
+  Hypothesis none(int structure) const;
+  Hypothesis best_alone(int structure) const;
+  /// Of `one` and it with the best candidate beside it, `rest` being what `one` leaves.
+  Found better(const Hypothesis& one, const MarginalLikelihood& rest) const;
   double held(const Hypothesis& h) const;
   Hypothesis with(Hypothesis h, int candidate, const MarginalLikelihood& rest) const;
   Hypothesis with_best(const Hypothesis& h, const MarginalLikelihood& rest) const;
@@ -127,15 +149,25 @@ class EvidenceEvaluator {
   bool overlap(int a, int b) const;
   void number_causes();
   void make_blocks(const std::vector<EffectParameter>& parameters);
-  /// `columns` are those of the workbench's structure.
-  void agree(MarginalLikelihood& marginal_likelihood, Columns columns);
+  /// The structure's size as what its best explanation leaves says. `AC` and `products` are what
+  /// it sees (StructuredRows).
+  void agree(MarginalLikelihood& marginal_likelihood, const StructuredRows& seen,
+             const Eigen::MatrixXd& AC, const std::vector<double>& products, ObservedRows& own);
 
   const Candidates& all_;
   const SearchRule rule_;
-  std::shared_ptr<const Whitened> rows_;
-  std::shared_ptr<const Groups> groups_;  ///< by candidate
+  std::shared_ptr<const EvidenceRows> rows_;
   std::vector<MarginalLikelihood> marginal_likelihoods_;
+  /// By structure, one candidate's after the other; none before many y are seen.
+  std::vector<std::vector<double>> spectra_;
+  std::vector<std::size_t> spectrum_at_ = {0};  ///< by candidate
+  /// Logarithms of the rule's odds, and of each structure's probability.
+  struct LogOdds {
+    double family = 0, same_family = 0, another = 0;
+    std::vector<double> structure;
+  } log_odds_;
   std::vector<Block> blocks_;
+  std::vector<std::array<double, kSizes.size()>> plausibility_;  ///< by candidate, with the prior
   std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1
   std::vector<char> seen_;                    ///< not absorbed altogether
   /// By candidate: number of the first candidate of its family (effect), of its cause (effect and

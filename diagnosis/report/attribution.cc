@@ -24,7 +24,7 @@ std::vector<Share> by_joint(const LinearisedModel& view, const EvidenceEvaluator
   for (MarginalLikelihood::Term& term : terms)
     term.size = 2 / std::sqrt(static_cast<double>(terms.size()));
   const MarginalLikelihood& plain = bench.marginal_likelihood(0);
-  const Eigen::VectorXd v = plain.estimate(terms).mean;
+  const Eigen::VectorXd v = plain.mean(terms);
   std::vector<double> share(joints.size(), 0);
   Eigen::Index at = 0;
   for (size_t t = 0; t < terms.size(); ++t)
@@ -57,7 +57,7 @@ struct RowSquares {
 
 RowSquares row_squares(const LinearisedModel& view) {
   const DenseEquations kept = view.kept();
-  const Whitened whitened = view.whitened();
+  const Whitened whitened = view.whitened_geometry();
   const Eigen::VectorXd e = view.geometry_residuals(whitened);
   const Eigen::VectorXd noise = view.geometry_leaves(whitened);
   RowSquares rows;

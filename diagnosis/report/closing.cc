@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <map>
 
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/visits.h"
@@ -21,23 +21,17 @@ constexpr int kMostTried = 4;
 
 class Closer {
  public:
-  Closer(LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior,
-         const DataSet& data, const DiagnosisOptions& options, Diagnosis& result)
+  Closer(LinearisedModel& view, double freedom, const Posterior& posterior, const DataSet& data,
+         const DiagnosisOptions& options, Diagnosis& result)
       : view_(view),
         posterior_(posterior),
         data_(data),
         options_(options),
         result_(result),
-        freedom_(bench.marginal_likelihood(0).freedom()) {}
+        freedom_(freedom) {}
 
-  /// Geometry alone against geometry with what is named, and with everything found.
   void run() {
-    const Hypothesis best = believed();
-    const double noise = result_.noise;
-    if (!best.candidates.empty()) result_.found = grown(best);
-    // What nobody knows is no noise; nor is what more of the named effects explains.
-    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
-    Closing closing = validated(result_.found);
+    Closing closing = judged();
     result_.judged = std::move(closing.judged);
     result_.gap = gap_of(result_.judged, options_.seed, freedom_);
     result_.floor_freedom = freedom_;
@@ -52,6 +46,16 @@ class Closer {
     close_named();
     close_candidates();
     result_.warnings = warnings_of(view_, data_, closing);
+  }
+
+  /// Geometry alone against geometry with what is named, and with everything found.
+  Closing judged() {
+    const Hypothesis best = believed();
+    const double noise = result_.noise;
+    if (!best.candidates.empty()) result_.found = grown(best);
+    // What nobody knows is no noise; nor is what more of the named effects explains.
+    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
+    return validated(result_.found);
   }
 
  private:
@@ -77,8 +81,8 @@ class Closer {
       const DenseEquations rows = view_.kept();
       const double of_visits = noise_of_visits(data_.rows, rows, view_.left());
       const EvidenceEvaluator bench(view_.whitened(),
-                                    noise_alone(data_.rows, rows, view_.by_joint(rows), of_visits),
-                                    all, view_.parameters(), rule);
+                                    noise_alone(data_.rows, rows, view_.by_joint(), of_visits), all,
+                                    view_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
       best = with_named(bench.grow(best, kMostEffects), result_.named, all, posterior_);
@@ -118,16 +122,26 @@ class Closer {
   void close_named() {
     if (!result_.gap.closed.fraction) return;
     const double all = *result_.gap.closed.fraction;
+    std::map<std::vector<char>, std::optional<double>> closed;  // by which are in the model
+    const auto closed_by = [&](const std::vector<char>& in) {
+      const auto [known, made] = closed.try_emplace(in);
+      if (!made) return known->second;
+      Correction some;
+      for (size_t i = 0; i < in.size(); ++i)
+        if (in[i]) some.push_back(result_.found[i]);
+      return known->second = gap_with(std::move(some)).closed_all.fraction;
+    };
     for (CauseResult& each : result_.named) {
-      const auto own = [&](const FoundEffect& found) { return found.named && of(each, found); };
-      Correction alone, others;
-      std::ranges::copy_if(result_.found, std::back_inserter(alone), own);
-      std::ranges::copy_if(result_.found, std::back_inserter(others),
-                           [&](const FoundEffect& found) { return found.named && !own(found); });
-      if (alone.empty()) continue;
-      each.closes_alone = others.empty() ? all : gap_with(alone).closed_all.fraction;
-      const std::optional<double> without =
-          others.empty() ? std::optional(0.0) : gap_with(others).closed_all.fraction;
+      std::vector<char> alone, others;
+      for (const FoundEffect& found : result_.found) {
+        const bool own = of(each, found);
+        alone.push_back(found.named && own);
+        others.push_back(found.named && !own);
+      }
+      if (std::ranges::count(alone, 1) == 0) continue;
+      const bool only = std::ranges::count(others, 1) == 0;
+      each.closes_alone = only ? all : closed_by(alone);
+      const std::optional<double> without = only ? std::optional(0.0) : closed_by(others);
       if (without) each.closes_beside = all - *without;
     }
   }
@@ -155,9 +169,15 @@ class Closer {
 
 }  // namespace
 
-void close_gap(LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior,
+void close_gap(LinearisedModel& view, double freedom, const Posterior& posterior,
                const DataSet& data, const DiagnosisOptions& options, Diagnosis& into) {
-  Closer(view, bench, posterior, data, options, into).run();
+  Closer(view, freedom, posterior, data, options, into).run();
+}
+
+std::vector<JudgedRow> judged_rows(LinearisedModel& view, double freedom,
+                                   const Posterior& posterior, const DataSet& data,
+                                   const DiagnosisOptions& options, Diagnosis& of) {
+  return Closer(view, freedom, posterior, data, options, of).judged().judged;
 }
 
 }  // namespace selfcal

@@ -8,9 +8,14 @@
 namespace selfcal {
 
 /// Fills the gap, the shares of what `into` names, the model with everything found, and what is to
-/// be said of these. `view` ends up with more rows and their noise; `bench` looks at the rows that
-/// were weighed for the name.
-void close_gap(LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior,
+/// be said of these. `view` ends up with more rows and their noise; `freedom` is of the noise
+/// alone, in the rows that were weighed for the name.
+void close_gap(LinearisedModel& view, double freedom, const Posterior& posterior,
                const DataSet& data, const DiagnosisOptions& options, Diagnosis& into);
+
+/// The judging rows of the same, and nothing else; `of` has the name.
+std::vector<JudgedRow> judged_rows(LinearisedModel& view, double freedom,
+                                   const Posterior& posterior, const DataSet& data,
+                                   const DiagnosisOptions& options, Diagnosis& of);
 
 }  // namespace selfcal

@@ -45,10 +45,10 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
   const LinearisedModel view(robot, data, options, {});
   const DenseEquations rows = view.kept();
   const Candidates all = with_profiles(view.candidates());
-  const EvidenceEvaluator bench(view.whitened(),
-                                noise_alone(data.rows, rows, view.by_joint(rows),
-                                            noise_of_visits(data.rows, rows, view.left())),
-                                all, view.parameters(), options.search);
+  const EvidenceEvaluator bench(
+      view.whitened(),
+      noise_alone(data.rows, rows, view.by_joint(), noise_of_visits(data.rows, rows, view.left())),
+      all, view.parameters(), options.search);
   for (const std::string& each : asked) {
     std::map<std::string, std::pair<double, int>> best;  // by place
     for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {

@@ -34,34 +34,22 @@ Eigen::VectorXd flipped(const Eigen::VectorXd& residual, const DenseEquations& k
   return out;
 }
 
-/// The search's own outliers, which it finds farther from its best explanation than noise reaches.
-class OutliersOfSearch {
- public:
-  OutliersOfSearch(const DenseEquations& kept, const Whitened& rows, std::size_t count, double most)
-      : kept_(kept), rows_(rows), count_(count), most_(most) {}
-
-  /// How much the best of `bench`, which looks at `y`, gains by them.
-  double gain(const EvidenceEvaluator& bench, const EvidenceEvaluator::Found& best,
-              const Eigen::VectorXd& y) {
-    if (best.hypothesis.candidates.empty()) return 0;
-    rows_.y = y;
-    rows_.pull.setZero();
-    const auto terms = bench.terms(best.hypothesis);
-    const auto [columns, sigma] = MarginalLikelihood::unfold(terms);
-    const std::vector<char> far = far_rows(kept_, left_of(rows_, rows_, columns, sigma),
-                                           static_cast<double>(rows_.A.cols()), count_, most_);
-    std::vector<int> out;
-    for (size_t e = 0; e < kept_.row.size(); ++e)
-      if (kept_.row[e] >= 0 && far[kept_.row[e]]) out.push_back(static_cast<int>(e));
-    return bench.marginal_likelihood(best.hypothesis.structure).gained_without(terms, y, out);
-  }
-
- private:
-  const DenseEquations& kept_;
-  Whitened rows_;
-  std::size_t count_;
-  double most_;
-};
+/// How much the best of `bench` in `y` gains by the search's own outliers, which it finds farther
+/// from its best explanation than noise reaches: up to a share of `most` of `count` rows.
+double gain_of_outliers(const EvidenceEvaluator& bench, const Hypothesis& best,
+                        const Eigen::VectorXd& y, const DenseEquations& kept, std::size_t count,
+                        double most) {
+  if (best.candidates.empty()) return 0;
+  const auto terms = bench.terms(best);
+  const auto [columns, sigma] = MarginalLikelihood::unfold(terms);
+  const std::vector<char> far =
+      far_rows(kept, bench.rows().left_of(y, columns, sigma),
+               static_cast<double>(bench.rows().rows().A.cols()), count, most);
+  std::vector<int> out;
+  for (size_t e = 0; e < kept.row.size(); ++e)
+    if (kept.row[e] >= 0 && far[kept.row[e]]) out.push_back(static_cast<int>(e));
+  return bench.marginal_likelihood(best.structure).gained_without(terms, y, out);
+}
 
 /// Residuals dealt out anew to the rows of a set, each row's as a whole and with a sign of its own.
 class Dealer {
@@ -102,9 +90,10 @@ class Dealer {
 /// most probable noise.
 Eigen::ArrayXd found_structure(const EvidenceEvaluator& bench, const Eigen::MatrixXd& Y) {
   Eigen::ArrayXd noise = Eigen::ArrayXd::Constant(Y.cols(), -INFINITY), structure = noise;
+  const Eigen::MatrixXd all = bench.log_evidences_of(Y);
   for (int s = 0; s < bench.structures(); ++s) {
-    const Eigen::ArrayXd log = bench.marginal_likelihood(s).log_evidences_of(Y).array() +
-                               std::log(bench.structure(s).probability);
+    const Eigen::ArrayXd log =
+        all.row(s).transpose().array() + std::log(bench.structure(s).probability);
     Eigen::ArrayXd& best = bench.structure(s).kind == 0 ? noise : structure;
     best = best.max(log);
   }
@@ -121,30 +110,28 @@ double share_as_good(const std::vector<double>& found, double seen) {
 NullDistribution::NullDistribution(const LinearisedModel& view, EvidenceEvaluator& bench,
                                    const Observations& data, int resamples, unsigned long long seed,
                                    double most_rejected) {
-  const Whitened rows = view.whitened();
   const DenseEquations kept = view.kept();
-  const Eigen::VectorXd residual = view.geometry_residuals(rows);
+  const Eigen::VectorXd residual = view.geometry_residuals(bench.rows().rows());
   SignRandom random(seed);
-  OutliersOfSearch outliers(kept, rows, static_cast<size_t>(data.rows()), most_rejected);
   Eigen::MatrixXd Y(residual.size(), resamples);
   for (int i = 0; i < resamples; ++i) Y.col(i) = flipped(residual, kept, data, random);
-  const EvidenceEvaluator::Views views = bench.views_of(Y, EvidenceEvaluator::Of::noise_alone);
+  const auto found = bench.best_found_in(bench.views_of(Y, EvidenceEvaluator::Of::noise_alone));
   for (int i = 0; i < resamples; ++i) {
-    bench.look_at(views, i);
-    const EvidenceEvaluator::Found best = bench.best_found();
-    found_.push_back(best.log_odds + std::max(0.0, outliers.gain(bench, best, Y.col(i))));
+    const EvidenceEvaluator::Found& best = found[static_cast<std::size_t>(i)];
+    const double gain = gain_of_outliers(bench, best.hypothesis, Y.col(i), kept,
+                                         static_cast<std::size_t>(data.rows()), most_rejected);
+    found_.push_back(best.log_odds + std::max(0.0, gain));
   }
-  bench.look_at_rows();
 }
 
 double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
                     const Hypothesis& known, const Observations& data, int resamples,
                     unsigned long long seed) {
-  Whitened rows = view.whitened();
+  Whitened rows = view.whitened_geometry();
   const DenseEquations kept = view.kept();
   if (!known.candidates.empty()) {
     const auto terms = bench.terms(known);
-    rows.y -= rows.C(Eigen::all, MarginalLikelihood::unfold(terms).first) *
+    rows.y -= bench.rows().rows().C(Eigen::all, MarginalLikelihood::unfold(terms).first) *
               bench.marginal_likelihood(known.structure).estimate(terms).mean;
   }
   const Eigen::VectorXd residual = view.geometry_residuals(rows);

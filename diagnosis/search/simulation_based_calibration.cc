@@ -35,7 +35,7 @@ class Simulator {
         bench_(bench),
         null_(null),
         options_(options),
-        rows_(view.whitened()),
+        rows_(bench.rows().rows()),
         random_(options.seed) {}
 
   SimulationBasedCalibration run() {
@@ -50,7 +50,7 @@ class Simulator {
     for (std::size_t i = 0; i < truths.size(); ++i) {
       const std::string& truth = truths[i];
       bench_.look_at(views, static_cast<Eigen::Index>(i));
-      const CauseResult answer = answered(bench_.search(kExtendedSingles, 0));
+      const CauseResult answer = answered(bench_.search_coarsely(kExtendedSingles));
       stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
         ++none;
@@ -97,10 +97,10 @@ class Simulator {
       if (known_size.empty()) return normal(rows_.y.size());
       const DiscrepancyCovariance& structure =
           bench_.structure(known_size[random_() % known_size.size()]);
-      return structure.root * normal(structure.root.rows());
+      return structure.coloured(normal(rows_.y.size()));
     }
     const DiscrepancyCovariance& noise = bench_.structure(0);
-    Eigen::VectorXd y = noise.root * normal(noise.root.rows());
+    Eigen::VectorXd y = noise.coloured(normal(rows_.y.size()));
     truth = kNone;
     if (kind < kWithUnknown + kWithNone) return y;
     const int c = drawn_cause();
@@ -151,7 +151,7 @@ class Simulator {
   EvidenceEvaluator& bench_;
   const NullDistribution& null_;
   const DiagnosisOptions& options_;
-  const Whitened rows_;
+  const Whitened& rows_;
   std::mt19937_64 random_;
 };
 

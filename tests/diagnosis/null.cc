@@ -32,7 +32,7 @@ struct Seen {
         view(TwoSessions(2).robot, data, options, {}),
         rows(view.kept()),
         bench(view.whitened(),
-              structures(data.rows, rows, view.ends(), view.by_joint(rows),
+              structures(data.rows, rows, view.ends(), view.by_joint(),
                          comparable_readings(view.geometry(), data.rows.q)),
               view.candidates(), view.parameters(), options.search) {}
 
@@ -72,6 +72,42 @@ TEST(NullDistribution, LetsNoiseHaveTheOutliersThatTheSearchMayPutAside) {
   }
   EXPECT_GE(more, 3) << "noise looks more like a cause once it may leave rows out";
   EXPECT_EQ(less, 0);
+}
+
+TEST(EvidenceEvaluator, FindsTheSameInManyRowsAtOnceAsInOneAfterTheOther) {
+  Seen seen(noisy(60, 2));
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd Y(seen.bench.rows().rows().y.size(), 6);
+  for (double& each : Y.reshaped()) each = normal(random);
+  const auto views = seen.bench.views_of(Y, EvidenceEvaluator::Of::noise_alone);
+  const auto found = seen.bench.best_found_in(views);
+  ASSERT_EQ(found.size(), 6);
+  for (int i = 0; i < 6; ++i) {
+    seen.bench.look_at(views, i);
+    const EvidenceEvaluator::Found alone = seen.bench.best_found();
+    EXPECT_NEAR(found[i].log_odds, alone.log_odds, 1e-9);
+    EXPECT_EQ(found[i].hypothesis.candidates, alone.hypothesis.candidates);
+  }
+}
+
+TEST(EvidenceEvaluator, SearchesCoarselyForTheSameFamilies) {
+  DiagnosisOptions options = quick();
+  options.search.extended_singles = 4;
+  options.search.extended_pairs = 0;
+  const DataSet data = noisy(60, 3);
+  const LinearisedModel view(TwoSessions(2).robot, data, options, {});
+  const EvidenceEvaluator bench(view.whitened(),
+                                structures(data.rows, view.kept(), view.ends(), view.by_joint(),
+                                           comparable_readings(view.geometry(), data.rows.q)),
+                                view.candidates(), view.parameters(), options.search);
+  const Posterior whole = bench.search(), coarse = bench.search_coarsely(4);
+  EXPECT_NEAR(coarse.none, whole.none, 1e-6);
+  EXPECT_NEAR(coarse.unknown, whole.unknown, 1e-6);
+  for (const auto& [family, probability] : whole.family)
+    if (probability > 1e-6) {
+      EXPECT_NEAR(coarse.family.at(family), probability, 1e-6) << family;
+    }
 }
 
 TEST(UnknownByChance, IsRareForStructureAndNotForNoise) {

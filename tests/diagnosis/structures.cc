@@ -46,7 +46,7 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
   const Touches t;
   // Readings are whole multiples of 0.05 rad: half of it moves every equation by 0.6 sigma.
   const auto list = noise_alone(t.data, t.rows, Eigen::MatrixXd::Constant(3, 1, 24));
-  const Eigen::MatrixXd S = list.front().root * list.front().root.transpose();
+  const Eigen::MatrixXd S = list.front().matrix();
   EXPECT_NEAR(S(0, 0), 1.12, 1e-12);
   EXPECT_NEAR(S(1, 2), 0.12, 1e-12);
   EXPECT_NEAR(S(0, 1), 0, 1e-12);
@@ -59,7 +59,7 @@ TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   double noise = 0, unknown = 0;
   for (const DiscrepancyCovariance& each : list) {
     (each.kind == 0 ? noise : unknown) += each.probability;
-    const Eigen::MatrixXd S = each.root * each.root.transpose();
+    const Eigen::MatrixXd S = each.matrix();
     EXPECT_GE(S(1, 2), S(0, 1)) << "repeats are closest, whatever close means";
     EXPECT_NE(each.kind, static_cast<int>(KernelDomain::time)) << "the rows carry no time";
   }
@@ -78,7 +78,7 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
     const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1), t.data.q);
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
-    return Eigen::MatrixXd(found->root * found->root.transpose());
+    return found->matrix();
   };
   EXPECT_NEAR(of_time()(0, 1), 0, 1e-12) << "one world's direction, two of the tool";
   t.rows.shift.row(1) = Eigen::RowVector3d(1e5, 0, 0);
@@ -101,7 +101,7 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   const auto found =
       std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());
-  const Eigen::MatrixXd S = found->root * found->root.transpose();
+  const Eigen::MatrixXd S = found->matrix();
   // The first joint's column of mean square 1 is (3, 4) sqrt 2 / 5; its reading differs by a
   // radian, half of what errors are smooth over, the other's does not.
   const double both = 12 * 2.0 / 25, alike = (1 + std::exp(-0.5 / 4)) / 2;

@@ -112,8 +112,9 @@ TEST(Visits, MakeCovariancesOfAllThatRowsMayShare) {
     for (const DiscrepancyCovariance& each :
          structures(session.data.rows, rows, ends, Eigen::MatrixXd::Ones(n, 6), session.data.rows.q,
                     of_visits)) {
-      EXPECT_TRUE(each.root.allFinite()) << to_string(static_cast<KernelDomain>(each.kind));
-      EXPECT_GT(each.root.diagonal().minCoeff(), 0.99);
+      const Eigen::MatrixXd S = each.matrix();
+      EXPECT_TRUE(S.allFinite()) << to_string(static_cast<KernelDomain>(each.kind));
+      EXPECT_GT(S.llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0.99);
       of_time += each.kind == static_cast<int>(KernelDomain::time);
     }
   EXPECT_GT(of_time, 0);

@@ -7,9 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <numeric>
 #include <random>
 
-#include "kinematics/linear_algebra.h"
+#include "constraints/statistics.h"
 
 namespace selfcal {
 namespace {
@@ -21,6 +24,14 @@ Eigen::MatrixXd random_matrix(int rows, int columns, std::mt19937_64& random) {
   return M;
 }
 
+/// Any covariance, as noise of which all equations share a part.
+std::shared_ptr<const NoiseBlocks> one_block(const Eigen::MatrixXd& covariance) {
+  std::vector<int> all(static_cast<size_t>(covariance.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return std::make_shared<const NoiseBlocks>(std::vector{all},
+                                             [&](int i, int j) { return covariance(i, j); });
+}
+
 struct Case {
   Case() {
     std::mt19937_64 random(3);
@@ -28,11 +39,11 @@ struct Case {
     rows.weight = rows.pull = Eigen::VectorXd::Zero(3);
     rows.C = random_matrix(14, 4, random);
     rows.y = random_matrix(14, 1, random);
-    structure.root = cholesky_root(Eigen::MatrixXd::Identity(14, 14));
+    structure.blocks = one_block(Eigen::MatrixXd::Identity(14, 14));
   }
   MarginalLikelihood bench() const {
     return {std::make_shared<const Whitened>(rows), structure,
-            std::make_shared<const Groups>(Groups{first.columns, second.columns})};
+            Groups{first.columns, second.columns}};
   }
   Whitened rows;
   DiscrepancyCovariance structure;
@@ -144,10 +155,114 @@ TEST(MarginalLikelihood, WeighsStructureAsPartOfTheNoise) {
   std::mt19937_64 random(5);
   const Eigen::MatrixXd B = random_matrix(14, 14, random);
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(14, 14) + B * B.transpose() / 14;
-  one.structure = {1, 1, cholesky_root(noise), 1, 1};
+  one.structure = {.kind = 1, .kappa = 1, .blocks = one_block(noise)};
   const MarginalLikelihood bench = one.bench();
   const std::vector<MarginalLikelihood::Term> terms{{&one.first, 1}};
   EXPECT_NEAR(bench.log_evidence(terms), worked_out_whole(one.rows, noise, terms), kRounding);
+}
+
+/// Structure over noise that pairs of equations share, by the few directions that hold it; and the
+/// same covariance as a whole.
+struct Kernel {
+  Kernel() {
+    std::mt19937_64 random(9);
+    std::vector<std::vector<int>> pairs;
+    for (int i = 0; i < 14; i += 2) pairs.push_back({i, i + 1});
+    const auto noise =
+        std::make_shared<const NoiseBlocks>(pairs, [](int i, int j) { return i == j ? 1.3 : 0.2; });
+    const Eigen::MatrixXd F = random_matrix(14, rank, random);
+    fast = {.kind = 2,
+            .kappa = 1.7,
+            .blocks = noise,
+            .kernel = std::make_shared<const KernelBasis>(basis_of_root(*noise, F)),
+            .noise = 1.4};
+    const Eigen::MatrixXd whole =
+        DiscrepancyCovariance{.blocks = noise}.matrix() + 1.7 * 1.7 * F * F.transpose();
+    plain = {.kind = 2, .kappa = 1.7, .blocks = one_block(whole), .noise = 1.4};
+  }
+  static constexpr int rank = 5;
+  DiscrepancyCovariance fast, plain;
+};
+
+TEST(MarginalLikelihood, SaysOfAKernelByItsDirectionsWhatTheWholeCovarianceSays) {
+  const Kernel kernel;
+  EXPECT_EQ(kernel.fast.kernel->variance.size(), Kernel::rank);
+  EXPECT_TRUE(kernel.fast.matrix().isApprox(kernel.plain.matrix(), 1e-12));
+  Case one;
+  one.rows.weight = Eigen::Vector3d(0.3, 2, 0);
+  one.rows.pull = Eigen::Vector3d(1, -0.5, 0);
+  one.rows.least = 0.2;
+  one.first.positive = {1};
+  const auto bench = [&](const DiscrepancyCovariance& structure) {
+    Case of = one;
+    of.structure = structure;
+    return of.bench();
+  };
+  const MarginalLikelihood fast = bench(kernel.fast), plain = bench(kernel.plain);
+  const std::vector<MarginalLikelihood::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}},
+      both{{&one.first, 1.3}, {&one.second, 0.4}};
+  EXPECT_NEAR(fast.freedom(), plain.freedom(), kRounding);
+  EXPECT_NEAR(fast.total(), plain.total(), kRounding);
+  EXPECT_NEAR(fast.log_evidence({}), plain.log_evidence({}), kRounding);
+  EXPECT_NEAR(fast.log_evidence(first), plain.log_evidence(first), kRounding);
+  EXPECT_NEAR(fast.log_evidence(both), plain.log_evidence(both), kRounding);
+  EXPECT_NEAR(fast.given(first).log_evidence(second), plain.given(first).log_evidence(second),
+              kRounding);
+  EXPECT_TRUE(fast.products({0, 3}).isApprox(plain.products({0, 3}), kRounding));
+  EXPECT_TRUE(fast.estimate(both).mean.isApprox(plain.estimate(both).mean, kRounding));
+  EXPECT_TRUE(fast.mean(both).isApprox(plain.estimate(both).mean, kRounding));
+  EXPECT_TRUE(fast.estimate(both).covariance.isApprox(plain.estimate(both).covariance, kRounding));
+  EXPECT_NEAR(fast.gained_without(both, one.rows.y, {2, 9}),
+              plain.gained_without(both, one.rows.y, {2, 9}), kRounding);
+  std::mt19937_64 random(4);
+  const Eigen::MatrixXd Y = random_matrix(14, 3, random);
+  EXPECT_TRUE(fast.views_of(Y).g.isApprox(plain.views_of(Y).g, kRounding));
+  EXPECT_TRUE(fast.views_of(Y).yy.isApprox(plain.views_of(Y).yy, kRounding));
+  const Eigen::VectorXd draw = kernel.fast.coloured(Y.col(0));
+  EXPECT_NEAR(draw.dot(kernel.fast.matrix().inverse() * draw), Y.col(0).squaredNorm(), kRounding);
+}
+
+TEST(MarginalLikelihood, WeighsEverySizeOfABlockBySpectrumAsByItself) {
+  Case one;
+  one.first.positive = {0};
+  one.rows.least = 0.5;
+  const MarginalLikelihood bench = one.bench();
+  constexpr std::array kTried{0.25, 1.0, 16.0};
+  for (const Block* block : {&one.first, &one.second}) {
+    std::array<double, kTried.size()> logs{};
+    std::vector<double> spectrum;
+    bench.add_spectrum(*block, kTried, spectrum);
+    EXPECT_EQ(spectrum.size(), MarginalLikelihood::spectrum_size(*block, kTried.size()));
+    bench.log_evidences(*block, kTried, spectrum.data(), logs.data());
+    for (size_t i = 0; i < kTried.size(); ++i) {
+      const MarginalLikelihood::Term term{block, kTried[i]};
+      EXPECT_NEAR(logs[i], bench.log_evidence({&term, 1}), kRounding);
+      EXPECT_LE(logs[i], bench.at_most(*block));
+    }
+  }
+}
+
+TEST(LowRankRoot, TakesAsManyColumnsAsTheCovarianceHasDirections) {
+  std::mt19937_64 random(6);
+  const Eigen::MatrixXd F = random_matrix(12, 4, random), K = F * F.transpose();
+  const auto root = low_rank_root(K, 12);
+  ASSERT_TRUE(root);
+  EXPECT_EQ(root->cols(), 4);
+  EXPECT_TRUE((*root * root->transpose()).isApprox(K, kRounding));
+  EXPECT_FALSE(low_rank_root(K, 3));
+}
+
+TEST(Tails, AreThoseOfTheExactDistributions) {
+  for (const double freedom : {10.0, 57.5, 700.0}) {
+    const NoiseTail tail(freedom);
+    for (double sigmas = -5; sigmas < 12; sigmas += 0.37) {
+      const double value = freedom + sigmas * std::sqrt(2 * freedom);
+      if (value <= 0) continue;
+      EXPECT_NEAR(tail.log_below(value), log_chi_square_below(value, freedom), 1e-4);
+    }
+    for (double t = -8; t < 8; t += 0.31)
+      EXPECT_NEAR(student_below_nearly(t, freedom), student_below(t, freedom), 1e-5);
+  }
 }
 
 TEST(MarginalLikelihood, GivenSomeCausesWeighsOthersAsTogether) {
@@ -185,7 +300,8 @@ TEST(MarginalLikelihood, WeighsOtherRowsWithoutLookingAtThem) {
   Eigen::MatrixXd Y(one.rows.y.size(), 2);
   Y << one.rows.y, 3 * one.rows.y;
   one.rows.y *= 3;
-  EXPECT_NEAR(bench.log_evidences_of(Y)[1], one.bench().log_evidence({}), kRounding);
+  ObservedRows observed(bench.rows(), Y, false);
+  EXPECT_NEAR(bench.log_evidences_of(observed)[1], one.bench().log_evidence({}), kRounding);
 }
 
 TEST(MarginalLikelihood, NeverExplainsMoreThanThereIs) {
