@@ -72,7 +72,7 @@ class Builder {
   }
 
   void add(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
-    Candidate candidate{effect, at, {}, {}, {}, 0};
+    Candidate candidate{.effect = effect, .at = at, .doubt = 0};
     for (size_t k = 0; k < columns.size(); ++k) {
       const int c = columns[k];
       candidate.main.push_back(static_cast<int>(all_.columns.size()));

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -17,19 +17,6 @@ constexpr int kProfile = 30;      ///< waves a turn, of a profile over the whole
 constexpr double kWarms = 0.2;    ///< K
 constexpr double kAssumed = 0.6;  ///< doubt of masses that are usual ones, over their torques
 constexpr int kFewestRows = 8;    ///< of a surface that is to show its form or its shift
-
-Node entry(std::string_view effect, const std::string& at) {
-  Node node = Node::map();
-  node.set("effect", Node::of(std::string(effect)));
-  if (!at.empty()) node.set("at", Node::of(at));
-  return node;
-}
-
-template <class Value>
-Node with(Node node, const char* key, const Value& value) {
-  node.set(key, Node::of(value));
-  return node;
-}
 
 /// 1 to `count`.
 std::vector<double> up_to(int count) {
@@ -68,23 +55,25 @@ class Maker {
   }
 
  private:
-  /// One shape of a cause; the entries after the first one take up its errors.
-  void add(std::vector<Node> entries) {
-    Candidate candidate;
-    candidate.effect = entries.front().find("effect")->text;
-    const Node* at = entries.front().find("at");
-    candidate.at = at ? at->text : "";
-    candidate.joint = joint_;
-    Problems problems;
-    for (size_t i = 0; i < entries.size(); ++i) {
-      const auto effect = make_effect(entries[i], robot_, site_, problems);
-      if (i == 0 && effect) candidate.needs = effect->needs();
-      for (size_t k = 0; effect && k < effect->parameters().size(); ++k)
-        (i == 0 ? candidate.main : candidate.slack).push_back(parameters_++);
-      all_.entries.push_back(entries[i]);
-    }
-    candidate.entries = std::move(entries);
+  /// One shape of a cause; those `beside` it take up its errors.
+  void add(std::string_view effect, const std::string& at, EffectShape shape = {},
+           std::vector<EffectShape> beside = {}) {
+    Candidate candidate{.effect = std::string(effect), .at = at, .joint = joint_};
+    candidate.needs = take(candidate, shape, candidate.main);
+    for (const EffectShape& each : beside) take(candidate, each, candidate.slack);
+    candidate.shape = std::move(shape);
+    candidate.beside = std::move(beside);
     all_.list.push_back(std::move(candidate));
+  }
+
+  /// Numbers the parameters of one shape, and says what rows must have for it.
+  std::string take(const Candidate& of, const EffectShape& shape, std::vector<int>& parameters) {
+    all_.made.push_back({of.effect, of.at, shape});
+    Problems problems;
+    const auto effect = make_effect(entry_of(all_.made.back()), robot_, site_, problems);
+    expects(effect && !problems.any(), "a candidate is an effect that the robot can have");
+    for (size_t k = 0; k < effect->parameters().size(); ++k) parameters.push_back(parameters_++);
+    return effect->needs();
   }
 
   void cannot(std::string_view effect, const std::string& at, const std::string& why) {
@@ -100,47 +89,44 @@ class Maker {
       for (const char* effect : {"joint_compliance", "link_compliance"})
         cannot(effect, at, std::string(kNoStatics));
     if (loads && (masses || site_.loads)) {
-      const Node stiff = entry("joint_compliance", at);
-      add({stiff});
-      add({stiff, with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      add("joint_compliance", at);
+      add("joint_compliance", at, {}, {{.lumps = true}});
       if (statics->mechanics().masses_assumed) all_.list.back().doubt = kAssumed;
-      add({entry("link_compliance", at)});
+      add("link_compliance", at);
     } else if (loads) {
-      add({with(entry("joint_compliance", at), "lumps", std::string("true"))});
+      add("joint_compliance", at, {.lumps = true});
       cannot("link_compliance", at, "the robot file gives no masses and the rows no loads");
     }
     of_leg(at);
     of_waves(at);
     if (site_.velocities)
-      add({entry("backlash", at)});
+      add("backlash", at);
     else
       cannot("backlash", at, "the rows carry no dq: the side of approach is not known");
-    if (statics && (masses || site_.loads))
-      add({with(entry("backlash", at), "by", std::string("load"))});
+    if (statics && (masses || site_.loads)) add("backlash", at, {.by = "load"});
     for (const Joint& other : robot_.joints())
-      if (other.name != at) add({with(entry("joint_coupling", at), "from", other.name)});
-    for (const double moment : moments(-1)) add({with(entry("zero_shift", at), "moment", moment)});
+      if (other.name != at) add("joint_coupling", at, {.from = other.name});
+    for (const double moment : moments(-1)) add("zero_shift", at, {.moment = moment});
     if (moments(-1).empty()) cannot("zero_shift", at, "the rows carry no time");
   }
 
   void of_leg(const std::string& at) {
     if (robot_.leg_parameter(0) < 0) return;
     // What hangs on the tip is known as the rows' loads, or else by how it bends the legs alone.
-    add({with(entry("leg_compliance", at), "mass", site_.loads ? 0.0 : 1.0)});
+    add("leg_compliance", at, {.mass = site_.loads ? 0.0 : 1.0});
     if (warms())
-      add({entry("leg_thermal_growth", at)});
+      add("leg_thermal_growth", at);
     else
       cannot("leg_thermal_growth", at, "the rows carry no temperatures that change");
     if (site_.loads)
-      add({entry("joint_clearance", at)});
+      add("joint_clearance", at);
     else
       cannot("joint_clearance", at, "the rows carry no loads: which end of its play is not known");
   }
 
   void of_waves(const std::string& at) {
     const size_t first = all_.list.size();
-    for (int k = 1; k <= kMostWaves; ++k)
-      add({with(entry("transmission_error", at), "waves", std::vector<double>{1.0 * k})});
+    for (int k = 1; k <= kMostWaves; ++k) add("transmission_error", at, {.waves = {1.0 * k}});
     all_.list.push_back(together(first, 2));
     all_.profiles.push_back(together(first, kProfile));
   }
@@ -153,38 +139,36 @@ class Maker {
       const std::vector<int>& nuisance = all_.list[first + i].main;
       sum.main.insert(sum.main.end(), nuisance.begin(), nuisance.end());
     }
-    sum.entries = {with(entry(sum.effect, sum.at), "waves", up_to(count))};
+    sum.shape.waves = up_to(count);
     return sum;
   }
 
   void of_time() {
     if (site_.end > site_.begin) {
       const double span = site_.end - site_.begin;
-      add({entry("base_drift", "base")});
-      for (const double share : {0.15, 0.5})
-        add({with(entry("base_drift", "base"), "settle", share * span)});
-      for (const int most : {2, 4})
-        add({with(entry("base_drift", "base"), "half_waves", up_to(most))});
+      add("base_drift", "base");
+      for (const double share : {0.15, 0.5}) add("base_drift", "base", {.settle = share * span});
+      for (const int most : {2, 4}) add("base_drift", "base", {.half_waves = up_to(most)});
     } else {
       cannot("base_drift", "base", "the rows carry no time");
     }
     if (!robot_.statics()) return cannot("thermal_expansion", "", std::string(kNoStatics));
     if (!warms())
       return cannot("thermal_expansion", "", "the rows carry no temperatures that change");
-    add({entry("thermal_expansion", "")});
+    add("thermal_expansion", "");
     for (const double share : {0.125, 0.25, 0.5, 1.0})
       if (site_.end > site_.begin)
-        add({with(entry("thermal_expansion", ""), "lag", share * (site_.end - site_.begin))});
+        add("thermal_expansion", "", {.lag = share * (site_.end - site_.begin)});
   }
 
   void of_tool() {
     const std::vector<double> at = moments(-1);
-    for (const double moment : at) add({with(entry("tool_shift", "probe"), "moment", moment)});
+    for (const double moment : at) add("tool_shift", "probe", {.moment = moment});
     if (at.empty()) cannot("tool_shift", "probe", "the rows carry no time");
     const Statics* statics = robot_.statics();
     if (!statics) return cannot("tool_compliance", "probe", std::string(kNoStatics));
     if (statics->mechanics().gravity.norm() > 0 || site_.loads)
-      add({entry("tool_compliance", "probe")});
+      add("tool_compliance", "probe");
     else
       cannot("tool_compliance", "probe", "without gravity the rows carry no loads");
   }
@@ -194,8 +178,8 @@ class Maker {
     for (size_t s = 0; s < site_.sets.size(); ++s) {
       const SiteSet& set = site_.sets[s];
       if (!set.lengths || rows_of(static_cast<int>(s)) < kFewestRows) continue;
-      add({entry("scale_error", set.name)});
-      if (warms()) add({with(entry("scale_error", set.name), "by", std::string("temperature"))});
+      add("scale_error", set.name);
+      if (warms()) add("scale_error", set.name, {.by = "temperature"});
     }
   }
 
@@ -208,19 +192,19 @@ class Maker {
                                      [](const SiteSet& set) { return set.touch; });
     if (!touches) return;
     if (data_.rows.normal.rows() > 0)
-      add({entry("probe_pretravel", "probe")});
+      add("probe_pretravel", "probe");
     else
       cannot("probe_pretravel", "probe", "the rows carry no normals");
     if (site_.speeds && data_.rows.normal.rows() > 0)
-      add({entry("trigger_latency", "probe")});
+      add("trigger_latency", "probe");
     else
       cannot("trigger_latency", "probe", "the rows carry no approach velocities");
     for (size_t s = 0; s < site_.sets.size(); ++s) {
       if (!site_.sets[s].touch || rows_of(static_cast<int>(s)) < kFewestRows) continue;
-      add({entry("plane_form_error", site_.sets[s].name)});
+      add("plane_form_error", site_.sets[s].name);
       if (data_.rows.normal.rows() == 0) continue;
       for (const double moment : moments(static_cast<int>(s)))
-        add({with(entry("fixture_shift", site_.sets[s].name), "moment", moment)});
+        add("fixture_shift", site_.sets[s].name, {.moment = moment});
     }
   }
 

@@ -10,15 +10,16 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "diagnosis/evidence/effect_shape.h"
 #include "kinematics/effect.h"
 
 namespace selfcal {
 
 struct Candidate {
   std::string effect, at;  ///< at is empty for the whole robot
-  /// Of a robot file, that make it; the first one is the cause itself.
-  std::vector<Node> entries = {};
-  std::vector<int> main = {};   ///< its parameters, counted over all candidates' effects
+  EffectShape shape = {};
+  std::vector<EffectShape> beside = {};  ///< of the same effect, that take up what it has wrong
+  std::vector<int> main = {};            ///< its parameters, counted over all candidates' effects
   std::vector<int> slack = {};  ///< parameters that only take up what the main ones have wrong
   double doubt = 0.25;          ///< size of those, together, over the main ones
   int joint = -1;               ///< at which it acts; -1 elsewhere
@@ -37,8 +38,7 @@ struct Candidates {
   /// is, they close more of the gap. Their parameters are those of candidates in `list`.
   std::vector<Candidate> profiles;
   std::vector<Untestable> untestable;
-  std::vector<Node>
-      entries;  ///< of all candidates in order: what a robot that has them all is made of
+  std::vector<ShapedEffect> made;  ///< in order: what a robot that has them all is made of
 };
 
 /// The same with the profiles at the end of the list.

@@ -44,7 +44,9 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
       adjusted_(adjust(*equations_, geometry_options(options), progress)) {
   Problems problems;
-  everything_ = correct(geometry_, candidates_.entries, site_, problems);
+  std::vector<Node> entries;
+  for (const ShapedEffect& each : candidates_.made) entries.push_back(entry_of(each));
+  everything_ = correct(geometry_, entries, site_, problems);
   expects(everything_ != nullptr, "every candidate is an effect that the robot can have");
   for (const Effect* effect : effects_of(*everything_))
     parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());

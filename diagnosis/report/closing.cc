@@ -94,7 +94,8 @@ class Closer {
       if (again && pass + 1 < kGrowthPasses) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
         const Candidate& each = all.list[best.candidates[i]];
-        correction.push_back({each.entries.front(), {}, names_any(result_.named, each)});
+        correction.push_back(
+            {.what = {each.effect, each.at, each.shape}, .named = names_any(result_.named, each)});
         bench.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
       }
       break;
@@ -147,8 +148,7 @@ class Closer {
   }
 
   static bool of(const CauseResult& cause, const FoundEffect& found) {
-    const Node* at = found.entry.find("at");
-    return names(cause, {.effect = found.entry.find("effect")->text, .at = at ? at->text : ""});
+    return names(cause, {.effect = found.what.effect, .at = found.what.at});
   }
 
   /// What each of the probable causes would leave alone.

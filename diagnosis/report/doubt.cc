@@ -129,7 +129,7 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& view, cons
                                                const Correction& found) {
   Correction stays;
   std::ranges::copy_if(found, std::back_inserter(stays), [](const FoundEffect& each) {
-    return std::ranges::find(kMoves, each.entry.find("effect")->text) == kMoves.end();
+    return std::ranges::find(kMoves, each.what.effect) == kMoves.end();
   });
   Problems problems;
   const std::shared_ptr<const Robot> robot =

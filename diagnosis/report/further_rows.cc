@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "constraints/sampling/configurations.h"
+#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -188,6 +189,7 @@ class Further {
     node.set("method", Node::of(std::string("location-constraint")));
     DataSet found;
     found.sets.push_back(make_set("place", node, problems));
+    expects(!problems.any(), "a location constraint needs nothing else");
     SampleRequest request;
     request.rows = request.rows_per_group = kPostures;
     request.places = {place};

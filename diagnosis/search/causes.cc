@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <optional>
 
 #include "diagnosis/search/sign_flip_test.h"
 
@@ -21,18 +22,17 @@ constexpr size_t kMostExplaining = 20;  ///< candidates
 constexpr double kSurelyUnknown = 0.7;
 constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
-/// What the linear parameters do not say of an entry. Where the order of the rows is the time, row
-/// 1 is at 0 s.
-std::string shape_in_words(const Node& entry, bool order_is_time) {
-  constexpr struct {
-    const char *key, *seconds, *rows;
+/// What the linear parameters do not say of it. Where the order of the rows is the time, row 1 is
+/// at 0 s.
+std::string in_words(const EffectShape& shape, bool order_is_time) {
+  const struct {
+    std::optional<double> value;
+    const char *seconds, *rows;
     int first;  ///< row that stands for 0 s
-  } kTold[] = {{"moment", "from %.0f s on", "from row %.0f on", 1},
-               {"settle", "settling in %.0f s", "settling in %.0f rows", 0},
-               {"lag", "lagging by %.0f s", "lagging by %.0f rows", 0}};
-  for (const auto& [key, seconds, rows, first] : kTold) {
-    const Node* field = entry.find(key);
-    const auto value = field ? written_number(field->text) : std::nullopt;
+  } told[] = {{shape.moment, "from %.0f s on", "from row %.0f on", 1},
+              {shape.settle, "settling in %.0f s", "settling in %.0f rows", 0},
+              {shape.lag, "lagging by %.0f s", "lagging by %.0f rows", 0}};
+  for (const auto& [value, seconds, rows, first] : told) {
     if (!value) continue;
     char text[64];
     if (order_is_time)
@@ -41,7 +41,7 @@ std::string shape_in_words(const Node& entry, bool order_is_time) {
       std::snprintf(text, sizeof text, seconds, *value);
     return text;
   }
-  return entry.find("half_waves") ? "wandering" : "";
+  return shape.half_waves.empty() ? "" : "wandering";
 }
 
 class Teller {
@@ -119,8 +119,9 @@ class Teller {
 
   void add_parameters(int c, const MarginalLikelihood::Estimate& estimate, Eigen::Index first,
                       CauseResult& cause) const {
-    Node entry = candidate(c).entries.front();
-    if (cause.shape.empty()) cause.shape = shape_in_words(entry, view_.order_is_time());
+    const Candidate& found = candidate(c);
+    FoundEffect effect{.what = {found.effect, found.at, found.shape}};
+    if (cause.shape.empty()) cause.shape = in_words(found.shape, view_.order_is_time());
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);
@@ -128,9 +129,9 @@ class Teller {
           {label(candidate(c).at.empty() ? "robot" : candidate(c).at, "") + "." + p.name, p.unit,
            estimate.mean[i], std::sqrt(estimate.variance * estimate.covariance(i, i)),
            p.usual_least, p.usual_most});
-      entry.set(p.name, Node::of(estimate.mean[i]));
+      effect.values.emplace_back(p.name, estimate.mean[i]);
     }
-    cause.correction.push_back({std::move(entry)});
+    cause.correction.push_back(std::move(effect));
   }
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.

@@ -53,15 +53,17 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
     std::map<std::string, std::pair<double, int>> best;  // by place
     for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {
       const Candidate& candidate = all.list[c];
-      if (!is_asked(candidate, each) || candidate.entries.size() > 1) continue;
+      if (!is_asked(candidate, each) || !candidate.beside.empty()) continue;
       const double evidence = bench.evidence(c);
       const auto [slot, made] =
           best.try_emplace(candidate.at, -std::numeric_limits<double>::infinity(), -1);
       if (slot->second.second < 0 || evidence > slot->second.first) slot->second = {evidence, c};
     }
     if (best.empty()) chosen.problem = why_none(view, each);
-    for (const auto& [place, found] : best)
-      chosen.entries.push_back(all.list[found.second].entries.front());
+    for (const auto& [place, found] : best) {
+      const Candidate& candidate = all.list[found.second];
+      chosen.entries.push_back(entry_of({candidate.effect, candidate.at, candidate.shape}));
+    }
   }
   return chosen;
 }

@@ -14,7 +14,8 @@ Correction named_of(const Correction& correction) {
 std::vector<Node> entries_of(const Correction& correction) {
   std::vector<Node> list;
   for (const FoundEffect& each : correction) {
-    list.push_back(each.entry);
+    list.push_back(entry_of(each.what));
+    for (const auto& [name, value] : each.values) list.back().set(name, Node::of(value));
     list.back().set("named", Node::of(std::string(each.named ? "true" : "false")));
   }
   return list;

@@ -31,8 +31,7 @@ TEST(Candidates, HaveAMomentBetweenAnyTwoOfFewRowsAndSpreadOverMany) {
   const auto moments = [](int rows) {
     std::vector<double> list;
     for (const Candidate& each : Session(rows).candidates().list)
-      if (each.effect == "zero_shift")
-        list.push_back(*parse_number(each.entries.front().find("moment")->text));
+      if (each.effect == "zero_shift") list.push_back(each.shape.moment.value());
     return list;
   };
   EXPECT_EQ(moments(9), (std::vector<double>{0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5}));
@@ -55,10 +54,9 @@ TEST(Candidates, LetTheBaseDriftSettleAndWander) {
   int straight = 0, settling = 0, wandering = 0;
   for (const Candidate& each : Session(50).candidates().list) {
     if (each.effect != "base_drift") continue;
-    const Node& entry = each.entries.front();
-    const Node* waves = entry.find("half_waves");
-    (waves ? wandering : entry.find("settle") ? settling : straight) += 1;
-    EXPECT_EQ(each.main.size(), waves ? 6 * waves->items.size() : 6);
+    const std::size_t waves = each.shape.half_waves.size();
+    (waves > 0 ? wandering : each.shape.settle ? settling : straight) += 1;
+    EXPECT_EQ(each.main.size(), waves > 0 ? 6 * waves : 6);
   }
   EXPECT_EQ(straight, 1);
   EXPECT_EQ(settling, 2);
