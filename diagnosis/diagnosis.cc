@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/evidence/visits.h"
@@ -22,9 +23,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kDiagnosisPasses = 4;
 constexpr const char* kAllKept = "every row is `part: check`: there is none to find a cause with";
-constexpr double kFewestFreedoms = 10;  ///< equations beyond the geometry
 
 class Diagnostician {
  public:
@@ -130,14 +129,14 @@ class Diagnostician {
   /// Why there are too few rows; empty where there are enough.
   std::string lacking() const {
     const double freedom = bench_->marginal_likelihood(0).freedom();
-    if (freedom >= kFewestFreedoms) return {};
+    if (freedom >= kDiagnosis.rows.fewest_freedoms) return {};
     return "too few rows for a diagnosis: beyond what calibration takes they leave " +
            format_number(std::floor(freedom)) + " equations, at least 10 are needed";
   }
 
   /// Every cause on rows without the false ones, until neither these nor the noise change.
   void weigh() {
-    for (int pass = 0; pass < kDiagnosisPasses; ++pass) {
+    for (int pass = 0; pass < kDiagnosis.rows.passes; ++pass) {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       prepare();
       result_.problem = lacking();
@@ -150,7 +149,8 @@ class Diagnostician {
           bench_->marginal_likelihood(best.structure).estimate(bench_->terms(best)).variance *
           bench_->noise_variance(best.structure);
       // The bench and the view must end up with the same rows.
-      if (pass + 1 == kDiagnosisPasses || !view_.refine(view_.residuals(columns, sigma), variance))
+      if (pass + 1 == kDiagnosis.rows.passes ||
+          !view_.refine(view_.residuals(columns, sigma), variance))
         break;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/evidence/rows.h"
@@ -52,7 +53,9 @@ DenseEquations Pair::weighed(const std::vector<char>& outlier) const {
   const auto later = [&](int row) { return row >= first_rows_; };
   const auto more = static_cast<double>(std::ranges::count_if(every_.row, later));
   const double fewer = static_cast<double>(every_.row.size()) - more;
-  const auto part = [](double others) { return kMostWeighed - std::min(others, kMostWeighed / 2); };
+  const auto part = [](double others) {
+    return kDiagnosis.rows.most_weighed - std::min(others, kDiagnosis.rows.most_weighed / 2);
+  };
   std::vector<char> take = weighed_rows(taken(both_.rows, first), fewer, part(more));
   const std::vector<char> rest = weighed_rows(taken(both_.rows, second), more, part(fewer));
   take.insert(take.end(), rest.begin(), rest.end());

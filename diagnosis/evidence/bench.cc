@@ -1,4 +1,5 @@
 // Candidates as blocks of columns with a common scale, and what each of them is worth.
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/search.h"
 
 #include <algorithm>
@@ -7,10 +8,6 @@
 
 namespace selfcal {
 namespace {
-
-constexpr double kLeastSeen = 1e-3;  ///< share that survives below which a candidate says nothing
-constexpr int kAgreements = 3;
-constexpr double kWorthwhile = 5;  ///< log evidence that a cause must bring to be reckoned with
 
 double middle(const EffectParameter& p) { return std::sqrt(p.usual_least * p.usual_most); }
 
@@ -76,7 +73,7 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
       largest = std::max(largest, u / parameters[static_cast<size_t>(k)].usual_most);
     }
     survival_.push_back(whole > 0 ? std::sqrt(std::max(visible, 0.0) / whole) : 0);
-    seen_.push_back(survival_.back() > kLeastSeen);
+    seen_.push_back(survival_.back() > kDiagnosis.evidence.least_seen);
     const double scale = seen_.back() ? std::sqrt(n / visible) : 0;
     amplitude_.push_back(scale * largest);
     for (const int k : candidate.main) {
@@ -109,14 +106,16 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
 void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, const StructuredRows& seen,
                               const Eigen::MatrixXd& AC, const std::vector<double>& products,
                               ObservedRows& own) {
-  for (int i = 0; i < kAgreements; ++i) {
+  for (int i = 0; i < kDiagnosis.evidence.agreements; ++i) {
     double best = marginal_likelihood.log_evidence({});
     double variance = marginal_likelihood.estimate({}).variance;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
-      if (!seen_[c] || marginal_likelihood.at_most(blocks_[c]) - kWorthwhile < best) continue;
+      if (!seen_[c] ||
+          marginal_likelihood.at_most(blocks_[c]) - kDiagnosis.evidence.worthwhile < best)
+        continue;
       const Single single = weigh(marginal_likelihood, c);
-      if (single.log_sum - kWorthwhile < best) continue;
-      best = single.log_sum - kWorthwhile;
+      if (single.log_sum - kDiagnosis.evidence.worthwhile < best) continue;
+      best = single.log_sum - kDiagnosis.evidence.worthwhile;
       const MarginalLikelihood::Term term{&blocks_[c], single.size};
       variance = marginal_likelihood.estimate({&term, 1}).variance;
     }

@@ -5,18 +5,11 @@
 #include <numeric>
 #include <set>
 
+#include "diagnosis/constants.h"
 #include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
-
-constexpr int kMoments = 24;      ///< at which a step may have happened
-constexpr int kFewTimes = 40;     ///< up to which it may have happened between any two
-constexpr int kMostWaves = 64;    ///< a turn
-constexpr int kProfile = 30;      ///< waves a turn, of a profile over the whole turn
-constexpr double kWarms = 0.2;    ///< K
-constexpr double kAssumed = 0.6;  ///< doubt of masses that are usual ones, over their torques
-constexpr int kFewestRows = 8;    ///< of a surface that is to show its form or its shift
 
 /// 1 to `count`.
 std::vector<double> up_to(int count) {
@@ -91,7 +84,7 @@ class Maker {
     if (loads && (masses || site_.loads)) {
       add("joint_compliance", at);
       add("joint_compliance", at, {}, {{.lumps = true}});
-      if (statics->mechanics().masses_assumed) all_.list.back().doubt = kAssumed;
+      if (statics->mechanics().masses_assumed) all_.list.back().doubt = kDiagnosis.shapes.assumed;
       add("link_compliance", at);
     } else if (loads) {
       add("joint_compliance", at, {.lumps = true});
@@ -126,9 +119,10 @@ class Maker {
 
   void of_waves(const std::string& at) {
     const size_t first = all_.list.size();
-    for (int k = 1; k <= kMostWaves; ++k) add("transmission_error", at, {.waves = {1.0 * k}});
+    for (int k = 1; k <= kDiagnosis.shapes.most_waves; ++k)
+      add("transmission_error", at, {.waves = {1.0 * k}});
     all_.list.push_back(together(first, 2));
-    all_.profiles.push_back(together(first, kProfile));
+    all_.profiles.push_back(together(first, kDiagnosis.shapes.profile));
   }
 
   /// The waves 1 to `count` of one joint as one shape; `first` is the one of a single wave.
@@ -177,14 +171,15 @@ class Maker {
   void of_devices() {
     for (size_t s = 0; s < site_.sets.size(); ++s) {
       const SiteSet& set = site_.sets[s];
-      if (!set.lengths || rows_of(static_cast<int>(s)) < kFewestRows) continue;
+      if (!set.lengths || rows_of(static_cast<int>(s)) < kDiagnosis.shapes.fewest_rows) continue;
       add("scale_error", set.name);
       if (warms()) add("scale_error", set.name, {.by = "temperature"});
     }
   }
 
   bool warms() const {
-    return data_.rows.temperature.size() > 0 && spreads(data_.rows.temperature, kWarms);
+    return data_.rows.temperature.size() > 0 &&
+           spreads(data_.rows.temperature, kDiagnosis.shapes.warms);
   }
 
   void of_touch() {
@@ -200,7 +195,8 @@ class Maker {
     else
       cannot("trigger_latency", "probe", "the rows carry no approach velocities");
     for (size_t s = 0; s < site_.sets.size(); ++s) {
-      if (!site_.sets[s].touch || rows_of(static_cast<int>(s)) < kFewestRows) continue;
+      if (!site_.sets[s].touch || rows_of(static_cast<int>(s)) < kDiagnosis.shapes.fewest_rows)
+        continue;
       add("plane_form_error", site_.sets[s].name);
       if (data_.rows.normal.rows() == 0) continue;
       for (const double moment : moments(static_cast<int>(s)))
@@ -222,7 +218,8 @@ class Maker {
     const std::vector<double> t(times.begin(), times.end());
     std::vector<double> list;
     const auto n = static_cast<double>(t.size());
-    const int most = n <= kFewTimes ? static_cast<int>(t.size()) - 1 : kMoments;
+    const int most = n <= kDiagnosis.shapes.few_times ? static_cast<int>(t.size()) - 1
+                                                      : kDiagnosis.shapes.moments;
     for (int i = 1; i <= most && n >= 8; ++i) {
       const auto at = static_cast<size_t>(std::lround(n * i / (most + 1)));
       if (at == 0 || at >= t.size()) continue;

@@ -15,25 +15,11 @@
 #include <numbers>
 #include <span>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
 namespace {
-
-// What a configuration brings along, over the noise of its repeats: a surface's roughness and the
-// robot's own repeatability are noise to a calibration, and hardly ever more than the rest.
-constexpr struct {
-  double kappa, probability;
-} kShared[] = {{0, 0.4}, {0.4, 0.3}, {0.7, 0.2}, {0.9, 0.1}};
-constexpr double kUsual = 0.4;
-constexpr double kMore[] = {1.4, 2.8, 5.6};              ///< that is structure
-constexpr double kSizes[] = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< of smooth structure, over the noise
-constexpr double kOfJoint[] = {0.7, 1.4, 2.8, 5.6};      ///< of errors of one joint
-constexpr double kJoints = 1.0;                          ///< rad
-constexpr double kTurned = 2.0;                          ///< rad, of errors of one joint
-constexpr double kPlace = 0.4;                           ///< m
-constexpr double kTime = 0.1;                            ///< of the whole
-constexpr double kOfVisits[] = {1, 0.5, 0};              ///< shares of a visit's noise
 
 class Kernel {
  public:
@@ -149,7 +135,8 @@ class Kernel {
     double sum = 0, squares = 0;
     const Eigen::Index joints = alike_.cols();
     for (Eigen::Index j = 0; j < joints; ++j) {
-      const double each = (1 + bell(std::pow((alike_(a, j) - alike_(b, j)) / kTurned, 2))) / 2;
+      const double each =
+          (1 + bell(std::pow((alike_(a, j) - alike_(b, j)) / kDiagnosis.structure.turned, 2))) / 2;
       sum += each;
       squares += each * each;
     }
@@ -162,16 +149,18 @@ class Kernel {
     // another one, or the covariance would be none.
     switch (closeness) {
       case KernelDomain::joints:
-        return bell((alike_.row(a) - alike_.row(b)).squaredNorm() / (kJoints * kJoints));
+        return bell((alike_.row(a) - alike_.row(b)).squaredNorm() /
+                    (kDiagnosis.structure.joints * kDiagnosis.structure.joints));
       case KernelDomain::place:
         return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
-                    (kPlace * kPlace));
+                    (kDiagnosis.structure.place * kDiagnosis.structure.place));
       case KernelDomain::same:
       case KernelDomain::turned:
         return 0;  // these are noise(), and root_of_joint()
       case KernelDomain::time:
         if (!std::isfinite(data_.time[a] + data_.time[b])) return 0;
-        return bell(std::pow((data_.time[a] - data_.time[b]) / (kTime * span_), 2));
+        return bell(
+            std::pow((data_.time[a] - data_.time[b]) / (kDiagnosis.structure.time * span_), 2));
     }
     return 0;
   }
@@ -239,14 +228,15 @@ namespace {
 /// Noise, and what a configuration's repeats share of it; where visits have a noise of their own,
 /// all of that, half of it and none: some of what lies between two visits may have a cause.
 void add_noise(const Kernel& kernel, double of_visits, std::vector<DiscrepancyCovariance>& list) {
-  for (const double share : kOfVisits) {
+  for (const double share : kDiagnosis.structure.of_visits) {
     const double visits = share * of_visits;
     const double once = 1 + visits * visits;  // variance of one visit
-    for (const auto& [kappa, probability] : kShared)
-      list.push_back(
-          {.kappa = std::sqrt(visits * visits + kappa * kappa * once),
-           .blocks = kernel.noise(visits, kappa * kappa * once),
-           .probability = of_visits > 0 ? probability / std::size(kOfVisits) : probability});
+    for (const auto& [kappa, probability] : kDiagnosis.structure.shared)
+      list.push_back({.kappa = std::sqrt(visits * visits + kappa * kappa * once),
+                      .blocks = kernel.noise(visits, kappa * kappa * once),
+                      .probability = of_visits > 0
+                                         ? probability / std::size(kDiagnosis.structure.of_visits)
+                                         : probability});
     if (of_visits == 0) return;
   }
 }
@@ -264,20 +254,21 @@ void add_kernel(KernelDomain closeness, std::span<const double> sizes,
 void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
                   std::vector<DiscrepancyCovariance>& list) {
   const double once = 1 + of_visits * of_visits;
-  for (const double kappa : kMore)
+  for (const double kappa : kDiagnosis.structure.more)
     list.push_back({.kind = static_cast<int>(KernelDomain::same),
                     .kappa = kappa,
                     .blocks = kernel.noise(of_visits, kappa * kappa * once)});
-  const auto usual = kernel.noise(of_visits, kUsual * kUsual * once);
+  const auto usual =
+      kernel.noise(of_visits, kDiagnosis.structure.usual * kDiagnosis.structure.usual * once);
   for (const KernelDomain closeness :
        {KernelDomain::joints, KernelDomain::place, KernelDomain::time})
     if (kernel.possible(closeness))
-      add_kernel(closeness, kSizes, usual, basis_of_kernel(*usual, once * kernel.of(closeness)),
-                 list);
+      add_kernel(closeness, kDiagnosis.structure.smooth, usual,
+                 basis_of_kernel(*usual, once * kernel.of(closeness)), list);
   const Eigen::MatrixXd likeness = kernel.likeness();
   const Eigen::MatrixXd alike = *low_rank_root(likeness, likeness.rows());
   for (Eigen::Index joint = 0; joint < joints; ++joint)
-    add_kernel(KernelDomain::turned, kOfJoint, usual,
+    add_kernel(KernelDomain::turned, kDiagnosis.structure.of_joint, usual,
                basis_of_root(*usual, kernel.root_of_joint(joint, alike, once)), list);
 }
 

@@ -6,6 +6,7 @@
 
 #include "constraints/site.h"
 #include "constraints/statistics.h"
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/rows.h"
 #include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/findings.h"
@@ -59,7 +60,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
       std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
   put_aside_ = fitted.noise.outlier;
   left_ = all_.y;
-  weigh(kMostWeighed);
+  weigh(kDiagnosis.rows.most_weighed);
 
   nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
 }

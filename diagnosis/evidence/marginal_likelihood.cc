@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "constraints/statistics.h"
+#include "diagnosis/constants.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kRightSign = 0.95;     ///< prior, of the sign that physics allows
 constexpr double kAlikeColumns = 1e-8;  ///< of two columns' square: they are nearly one
 constexpr double kAbsorbed = 1e-10;     ///< of an equation's square, that is nothing of its own
 
@@ -248,12 +248,13 @@ double MarginalLikelihood::at_most(const Block& block) const {
   }
   if (!(explained >= 0)) return INFINITY;
   return constant_ + of_noise(yy_ - explained, nu_) +
-         static_cast<double>(block.positive.size()) * std::log(2 * kRightSign);
+         static_cast<double>(block.positive.size()) * std::log(2 * kDiagnosis.evidence.right_sign);
 }
 
 double MarginalLikelihood::of_sign(double in_sigmas) const {
   const double probability = student_below_nearly(in_sigmas, nu_);
-  return std::log(2 * (kRightSign * probability + (1 - kRightSign) * (1 - probability)));
+  return std::log(2 * (kDiagnosis.evidence.right_sign * probability +
+                       (1 - kDiagnosis.evidence.right_sign) * (1 - probability)));
 }
 
 double MarginalLikelihood::of_signs(std::span<const Term> terms, const Eigen::MatrixXd& L,

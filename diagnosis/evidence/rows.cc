@@ -6,12 +6,10 @@
 #include <string_view>
 
 #include "constraints/statistics.h"
+#include "diagnosis/constants.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kFarQuantile = 1 - 1e-5;
-constexpr double kMedianToSigma = 1.4826;  // of a normal variable
 
 /// From the middle of the residuals: no false row moves it, and where structure that nobody knows
 /// adds to the noise it holds both.
@@ -22,7 +20,7 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
     if (all.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
   const auto n = static_cast<double>(sizes.size());
   const double spent = std::min(unknowns, 0.7 * n);
-  return std::pow(kMedianToSigma * median(std::move(sizes)), 2) / (1 - spent / n);
+  return std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(sizes)), 2) / (1 - spent / n);
 }
 
 }  // namespace
@@ -104,7 +102,7 @@ std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& res
     if (count[row] == 0) continue;
     const double sigmas = std::sqrt(squares[row] / variance);
     const auto [found, made] = limits.try_emplace(count[row], 0.0);
-    if (made) found->second = chi_quantile(count[row], kFarQuantile);
+    if (made) found->second = chi_quantile(count[row], kDiagnosis.rows.far);
     const double limit = found->second;
     if (sigmas > limit) far.emplace_back(-sigmas / limit, static_cast<int>(row));
   }

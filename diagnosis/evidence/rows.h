@@ -8,9 +8,6 @@
 
 namespace selfcal {
 
-/// Equations that choose among causes, at most: the evidence of structure takes their third power.
-inline constexpr double kMostWeighed = 720;
-
 /// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
 /// since the set that holds the cause would otherwise be taken for a noisy one. By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);

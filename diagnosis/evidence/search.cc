@@ -7,15 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
-namespace {
-
-constexpr size_t kMostFamilies = 5;     ///< that a set of causes grows to
-constexpr double kHopeless = 25;        ///< log weight below the best, in a coarse search
-constexpr double kHardlyPossible = 40;  ///< log weight below all others together
-
-}  // namespace
-
 /// One search on a bench: what it has visited so far.
 class Search {
  public:
@@ -73,8 +67,8 @@ class Search {
   /// A candidate cannot come near the best, whatever its size.
   bool hopeless(const MarginalLikelihood& marginal_likelihood, int candidate,
                 double log_prior) const {
-    return coarse_ &&
-           marginal_likelihood.at_most(bench_.blocks_[candidate]) + log_prior < top_ - kHopeless;
+    return coarse_ && marginal_likelihood.at_most(bench_.blocks_[candidate]) + log_prior <
+                          top_ - kDiagnosis.evidence.hopeless;
   }
 
   /// Of those with the same candidates and structure, reached by different ways, the best.
@@ -186,12 +180,12 @@ class Search {
       if (!best[at] || each.log_weight > best[at]->log_weight) best[at] = &each;
     };
     for (const Visit& each : visited_) {
-      if (each.log_weight > -kHardlyPossible) list.push_back(&each);
+      if (each.log_weight > -kDiagnosis.evidence.hardly_possible) list.push_back(&each);
       look(bench_.structure(each.structure).kind > 0 ? 0 : 1, each);
       for (const int c : each.all()) look(static_cast<std::size_t>(c) + 2, each);
     }
     for (const Visit* each : best)
-      if (each && each->log_weight <= -kHardlyPossible) list.push_back(each);
+      if (each && each->log_weight <= -kDiagnosis.evidence.hardly_possible) list.push_back(each);
     std::ranges::sort(list, [](const Visit* a, const Visit* b) {
       return a->log_weight != b->log_weight ? a->log_weight > b->log_weight : a < b;
     });
@@ -295,7 +289,7 @@ Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
             return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
           }))
         continue;
-      if (families.size() >= kMostFamilies &&
+      if (families.size() >= kDiagnosis.evidence.most_families &&
           !families.contains(all_.list[static_cast<size_t>(c)].effect))
         continue;
       Hypothesis more = with(h, c, rest);

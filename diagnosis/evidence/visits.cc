@@ -11,11 +11,10 @@
 #include <numeric>
 #include <set>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
-
-constexpr double kFewestFreedoms = 6;  ///< of visits and of repeats, that tell their noise
-constexpr double kMostOfVisits = 10;   ///< over the noise of immediate repeats
 
 struct Sum {
   double n = 0, sum = 0, squares = 0;
@@ -39,7 +38,7 @@ std::vector<int> visits(const Observations& rows) {
   for (const int row : order) {
     const bool again = last >= 0 && !rows.repeat.empty() && rows.repeat[row] >= 0 &&
                        rows.repeat[row] == rows.repeat[last] && rows.set[row] == rows.set[last] &&
-                       !(timed && rows.time[row] - rows.time[last] > kAtOnce);
+                       !(timed && rows.time[row] - rows.time[last] > kDiagnosis.rows.at_once);
     count += !again;
     visit[row] = count;
     last = row;
@@ -78,9 +77,12 @@ double noise_of_visits(const Observations& data, const DenseEquations& rows,
     between += means.about_mean();
     again += n - 1;
   }
-  if (of_repeats < kFewestFreedoms || again < kFewestFreedoms || within <= 0) return 0;
+  if (of_repeats < kDiagnosis.rows.fewest_visits || again < kDiagnosis.rows.fewest_visits ||
+      within <= 0)
+    return 0;
   const double own = (between / (within / of_repeats) - of_means) / again;
-  return std::sqrt(std::clamp(own, 0.0, kMostOfVisits * kMostOfVisits));
+  return std::sqrt(
+      std::clamp(own, 0.0, kDiagnosis.rows.most_of_visits * kDiagnosis.rows.most_of_visits));
 }
 
 }  // namespace selfcal

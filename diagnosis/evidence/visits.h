@@ -10,11 +10,9 @@
 
 namespace selfcal {
 
-inline constexpr double kAtOnce = 60;  ///< s, that lie between immediate repeats at most
-
 /// By row, its visit: rows of one set and `repeat` are of one visit where, in time, none of another
-/// configuration comes between them and no more than kAtOnce passes. Without times the order of the
-/// rows is the time.
+/// configuration comes between them and no more than kDiagnosis.rows.at_once passes. Without times
+/// the order of the rows is the time.
 std::vector<int> visits(const Observations& rows);
 
 /// 1 sigma that a visit adds to its rows, over that of immediate repeats: from what an explanation

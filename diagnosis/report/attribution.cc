@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
-
-constexpr int kRegions = 6, kTimes = 6;
-constexpr double kTakesNoPart = 0.02;  ///< share that survives below which an effect takes no part
 
 /// What each joint's own effects take of the residual when all effects there are share it.
 std::vector<Share> by_joint(const LinearisedModel& view, const EvidenceEvaluator& bench) {
@@ -17,7 +16,7 @@ std::vector<Share> by_joint(const LinearisedModel& view, const EvidenceEvaluator
   const std::vector<Joint>& joints = view.geometry().joints();
   const std::vector<Candidate>& all = view.candidates().list;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (bench.survival(static_cast<int>(c)) <= kTakesNoPart) continue;
+    if (bench.survival(static_cast<int>(c)) <= kDiagnosis.report.least_survival) continue;
     terms.push_back({&bench.block(static_cast<int>(c)), 1});
     joint.push_back(all[c].joint);
   }
@@ -80,7 +79,7 @@ std::vector<Region> by_region(const RowSquares& rows, const Eigen::MatrixXd& tip
   std::vector<Region> regions;
   std::vector<double> distance(rows.row.size(), std::numeric_limits<double>::infinity());
   std::vector<int> nearest(rows.row.size(), 0);
-  for (int r = 0; r < kRegions && r < static_cast<int>(rows.row.size()); ++r) {
+  for (int r = 0; r < kDiagnosis.report.regions && r < static_cast<int>(rows.row.size()); ++r) {
     const auto farthest =
         r == 0 ? 0 : std::max_element(distance.begin(), distance.end()) - distance.begin();
     Region region;
@@ -108,10 +107,10 @@ std::vector<Region> by_region(const RowSquares& rows, const Eigen::MatrixXd& tip
 std::vector<Interval> by_time(const RowSquares& rows, const DataSet& data, const Site& site) {
   std::vector<Interval> list;
   if (site.end <= site.begin) return list;
-  const double step = (site.end - site.begin) / kTimes;
-  for (int i = 0; i < kTimes; ++i) {
+  const double step = (site.end - site.begin) / kDiagnosis.report.times;
+  for (int i = 0; i < kDiagnosis.report.times; ++i) {
     Interval each{site.begin + i * step, site.begin + (i + 1) * step, 0};
-    const bool last = i + 1 == kTimes;
+    const bool last = i + 1 == kDiagnosis.report.times;
     each.share = rows.share([&](int row) {
       const double t = data.rows.time[row];
       return t >= each.from && (t < each.to || (last && t <= each.to + 1e-9));

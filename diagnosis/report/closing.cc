@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/holdout_validation.h"
@@ -12,12 +13,6 @@
 
 namespace selfcal {
 namespace {
-
-constexpr int kGrowthPasses = 4;
-constexpr size_t kMostEffects = 60;
-constexpr double kMostGrown = 2100;  ///< equations
-constexpr double kTried = 0.05;      ///< least probable cause that is tried alone
-constexpr int kMostTried = 4;
 
 class Closer {
  public:
@@ -72,12 +67,12 @@ class Closer {
   /// All that the rows say of the named causes and their like: from more rows than were weighed for
   /// the name, and again with the noise that it leaves.
   Correction grown(Hypothesis best) {
-    view_.weigh(kMostGrown);
+    view_.weigh(kDiagnosis.closing.most_grown);
     const Candidates all = with_profiles(view_.candidates());
     SearchRule rule = options_.search;
     rule.noise_is_known = true;  // each pass takes it from what the one before leaves
     Correction correction;
-    for (int pass = 0; pass < kGrowthPasses; ++pass) {
+    for (int pass = 0; pass < kDiagnosis.closing.passes; ++pass) {
       const DenseEquations rows = view_.kept();
       const double of_visits = noise_of_visits(data_.rows, rows, view_.left());
       const EvidenceEvaluator bench(view_.whitened(),
@@ -85,13 +80,14 @@ class Closer {
                                     view_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
-      best = with_named(bench.grow(best, kMostEffects), result_.named, all, posterior_);
+      best = with_named(bench.grow(best, kDiagnosis.closing.most_effects), result_.named, all,
+                        posterior_);
       const auto [columns, sigma] = MarginalLikelihood::unfold(bench.terms(best));
       const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
                               bench.noise_variance(0);
       const bool again = view_.refine(view_.residuals(columns, sigma), variance);
       result_.noise = view_.noise() * std::hypot(1.0, of_visits);
-      if (again && pass + 1 < kGrowthPasses) continue;
+      if (again && pass + 1 < kDiagnosis.closing.passes) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
         const Candidate& each = all.list[best.candidates[i]];
         correction.push_back(
@@ -155,7 +151,8 @@ class Closer {
   void close_candidates() {
     int tried = 0;
     for (CauseResult& each : result_.candidates)
-      if (!each.correction.empty() && each.probability >= kTried && ++tried <= kMostTried)
+      if (!each.correction.empty() && each.probability >= kDiagnosis.closing.tried &&
+          ++tried <= kDiagnosis.closing.most_tried)
         each.rms_after = gap_with(each.correction).rms_all;
   }
 

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kLeastSurvival = 0.02;  ///< share that survives below which nothing can be said
 
 bool moves_nothing(const LinearisedModel& view, const Candidate& candidate) {
   const auto first = static_cast<Eigen::Index>(view.geometry().parameters().size());
@@ -28,7 +27,7 @@ void list_detectable(const LinearisedModel& view, const EvidenceEvaluator& bench
   std::map<Cause, Detectable> best;
   const std::vector<Candidate>& list = view.candidates().list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
-    if (bench.survival(c) < kLeastSurvival) continue;
+    if (bench.survival(c) < kDiagnosis.report.least_survival) continue;
     const double needed = -std::log(options.name_below_none) -
                           std::log(options.search.family_odds) - list[c].log_prior;
     const Detectable each{list[c].effect, list[c].at, view.parameters()[list[c].main.front()].unit,

@@ -9,6 +9,7 @@
 #include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"
+#include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
@@ -17,19 +18,10 @@
 namespace selfcal {
 namespace {
 
-/// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
-/// exchanged may be moved as far as one likes.
-constexpr double kImpossible = 20;
 constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
 /// What a moved instrument may be taken for.
 constexpr std::array<std::string_view, 4> kMoves = {"base_drift", "tool_shift", "zero_shift",
                                                     "fixture_shift"};
-constexpr double kTooFar = 3;          ///< of the usual largest drift: a step may be taken for one
-constexpr double kBeyondSheet = 10;    ///< of the data sheet's noise
-constexpr double kConfirmed = 0.3;     ///< of the noise: repeats that show so much confirm it
-constexpr double kHardlyCloses = 0.8;  ///< of what calibration leaves is still there: little gain
-constexpr double kForcesCost = 0.97;   ///< of what is left: less without the forces is a slip
-constexpr double kWithdrawn = 0.95;    ///< probability of `unknown` that is left then
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
@@ -37,7 +29,7 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
     if (std::ranges::find(kMovedAtWill, each.effect) != kMovedAtWill.end()) continue;
     for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - 2 * v.sigma > kImpossible * v.usual_most)
+      if (std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.impossible * v.usual_most)
         return "no machine has " + v.name + " of " + in_readable_unit(v.value, v.unit) +
                ", which is what the rows would need";
   }
@@ -54,10 +46,10 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
   const std::vector<Scale> noise = view.noise_of_sets();
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const double declared = data.sets[s].noise, found = noise[s].length;
-    if (declared <= 0 || found <= kBeyondSheet * declared) continue;
+    if (declared <= 0 || found <= kDiagnosis.report.beyond_sheet * declared) continue;
     const double repeats = repeat_sigma(data, static_cast<int>(s),
                                         view.adjusted().fitted.at.residuals, view.outlier());
-    if (repeats > kConfirmed * found) continue;
+    if (repeats > kDiagnosis.report.confirmed * found) continue;
     return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
            " once the robot is calibrated, and their files state a noise of " +
            millimetres(declared) +
@@ -69,14 +61,14 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
 /// What is named closes little: noise, or what is taken for it, is nearly all of what is left.
 bool hardly_closes(const Diagnosis& diagnosis) {
   return diagnosis.named.empty() ||
-         diagnosis.gap.rms_after > kHardlyCloses * diagnosis.gap.rms_before;
+         diagnosis.gap.rms_after > kDiagnosis.report.hardly_closes * diagnosis.gap.rms_before;
 }
 
 bool drifts_too_far(const std::vector<CauseResult>& named) {
   return std::ranges::any_of(named, [](const CauseResult& each) {
     return each.effect == "base_drift" &&
            std::ranges::any_of(each.parameters, [](const NamedValue& v) {
-             return std::abs(v.value) - 2 * v.sigma > kTooFar * v.usual_most;
+             return std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.too_far * v.usual_most;
            });
   });
 }
@@ -88,7 +80,7 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
   std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
                     " of the rows that no choice has seen, and calibration alone " +
                     millimetres(gap.rms_before);
-  if (gap.noise_floor > kBeyondSheet * gap.rms_before)
+  if (gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before)
     why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
            ": is it in metres, and 1 sigma?";
   return why;
@@ -118,7 +110,7 @@ std::string forces_that_never_were(const LinearisedModel& view, const DataSet& d
   unforced.rows.wrench.resize(0, 6);
   const double with = left_of(view, data, diagnosis.found);
   const double without = left_of(view, unforced, diagnosis.found);
-  if (!(without < kForcesCost * with)) return {};
+  if (!(without < kDiagnosis.report.forces_cost * with)) return {};
   return "the rows fit better without their forces and torques (fx to tz), " +
          millimetres(without) + " in place of " + millimetres(with) +
          ": are they those that acted on the tool, in its frame, without its own weight?";
@@ -169,12 +161,13 @@ void withdraw(const std::string& doubt, Diagnosis& diagnosis) {
   const bool named = !diagnosis.named.empty();
   diagnosis.named.clear();
   const auto unknown = std::ranges::find(diagnosis.candidates, kUnknown, &CauseResult::effect);
-  if (unknown != diagnosis.candidates.end() && unknown->probability < kWithdrawn) {
-    const double others = (1 - kWithdrawn) / std::max(1 - unknown->probability, 1e-12);
+  if (unknown != diagnosis.candidates.end() && unknown->probability < kDiagnosis.report.withdrawn) {
+    const double others =
+        (1 - kDiagnosis.report.withdrawn) / std::max(1 - unknown->probability, 1e-12);
     for (CauseResult& each : diagnosis.candidates) each.probability *= std::min(others, 1.0);
-    unknown->probability = kWithdrawn;
+    unknown->probability = kDiagnosis.report.withdrawn;
   }
-  diagnosis.verdict = {.effect = kUnknown, .probability = kWithdrawn};
+  diagnosis.verdict = {.effect = kUnknown, .probability = kDiagnosis.report.withdrawn};
   agree(diagnosis.candidates, diagnosis.verdict);
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
                   "; look at the rows and files first" +

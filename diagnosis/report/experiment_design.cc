@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/report/further_rows.h"
 #include "diagnosis/report/row_choice.h"
 #include "diagnosis/report/separation.h"
@@ -16,13 +17,6 @@
 
 namespace selfcal {
 namespace {
-
-constexpr double kWorth = 0.02;  ///< of probability that a step must bring to be worth its while
-constexpr size_t kMostSteps = 3, kMostForUnknown = 4;
-constexpr double kLeastAtIssue = 0.02;  ///< probability of a cause that rows are chosen for
-constexpr size_t kMostAtIssue = 5;
-constexpr double kSettled = 0.95;
-constexpr double kEdge = 0.05;  ///< least probable cause that may yet be there where none is named
 
 std::string first_label(const CauseResult& cause) {
   return label(cause.effect, cause.where.empty() ? "" : cause.where.front());
@@ -69,7 +63,7 @@ std::vector<Question> questions(const Diagnosis& diagnosis) {
     if (each.effect == kNone) none = each.probability;
   for (const CauseResult& each : diagnosis.candidates) {
     const bool named = std::ranges::count(diagnosis.named, each.effect, &CauseResult::effect) > 0;
-    if (each.correction.empty() || each.probability < kEdge || named) continue;
+    if (each.correction.empty() || each.probability < kDiagnosis.report.edge || named) continue;
     list.push_back({&each, nullptr, odds(each.probability, none)});
     break;
   }
@@ -94,7 +88,7 @@ double probability_of(const Diagnosis& diagnosis, std::string_view effect) {
 std::vector<const CauseResult*> at_issue(const Diagnosis& diagnosis) {
   const auto looks_alike = [&](const CauseResult& each) {
     return std::ranges::any_of(diagnosis.candidates, [&](const CauseResult& other) {
-      return other.probability >= kEdge &&
+      return other.probability >= kDiagnosis.report.edge &&
              std::ranges::any_of(other.confounded_with, [&](const std::string& name) {
                return name.substr(0, name.find('@')) == each.effect;
              });
@@ -102,13 +96,14 @@ std::vector<const CauseResult*> at_issue(const Diagnosis& diagnosis) {
   };
   std::vector<const CauseResult*> list;
   for (const CauseResult& each : diagnosis.candidates)
-    if (!each.correction.empty() && list.size() < kMostAtIssue &&
-        (each.probability >= kLeastAtIssue || looks_alike(each)))
+    if (!each.correction.empty() && list.size() < kDiagnosis.report.most_at_issue &&
+        (each.probability >= kDiagnosis.report.least_at_issue || looks_alike(each)))
       list.push_back(&each);
   const bool settled =
-      list.empty() || (list.size() == 1 && (list.front()->probability >= kSettled ||
-                                            probability_of(diagnosis, kNone) < kEdge));
-  if (settled || list.front()->probability < kEdge) return {};
+      list.empty() ||
+      (list.size() == 1 && (list.front()->probability >= kDiagnosis.report.settled ||
+                            probability_of(diagnosis, kNone) < kDiagnosis.report.edge));
+  if (settled || list.front()->probability < kDiagnosis.report.edge) return {};
   return list;
 }
 
@@ -128,7 +123,8 @@ class Planner {
     further_ = candidate_rows(view_, data_);
     for (const Question& each : asked_) try_all(each);
     std::ranges::stable_sort(next_.steps, std::ranges::greater{}, &NextStep::probability_after);
-    if (next_.steps.size() > kMostSteps) next_.steps.resize(kMostSteps);
+    if (next_.steps.size() > kDiagnosis.report.most_steps)
+      next_.steps.resize(kDiagnosis.report.most_steps);
     if (unknown_at_issue(diagnosis_)) look_closer();
     if (next_.steps.empty() && next_.why.empty())
       next_.why = "this robot and these rows leave nothing to change from one visit to another";
@@ -152,7 +148,7 @@ class Planner {
       for (const CauseResult* other : causes)
         if (one != other)
           pairs.push_back(pair_of(*one, entries_of(other->correction), other->probability));
-      if (none >= kEdge) pairs.push_back(pair_of(*one, {}, none));
+      if (none >= kDiagnosis.report.edge) pairs.push_back(pair_of(*one, {}, none));
     }
     if (pairs.empty()) return {{}, why_nothing()};
     const RowChoice choice = choose_rows(view_, both, first, pairs, options_.most_further);
@@ -167,7 +163,7 @@ class Planner {
     for (const auto& [what, count] : kinds)
       step.what += (step.what.empty() ? "take " : ", ") + std::to_string(count) + " " + what;
     for (const CauseResult* each : causes) step.separates.push_back(first_label(*each));
-    if (none >= kEdge) step.separates.emplace_back(kNone);
+    if (none >= kDiagnosis.report.edge) step.separates.emplace_back(kNone);
     double left = 0;
     for (size_t k = 0; k < pairs.size(); ++k)
       left +=
@@ -178,8 +174,8 @@ class Planner {
   }
 
   static CausePair pair_of(const CauseResult& one, std::vector<Node> other, double probability) {
-    const double p = std::max(one.probability, kLeastAtIssue),
-                 q = std::max(probability, kLeastAtIssue);
+    const double p = std::max(one.probability, kDiagnosis.report.least_at_issue),
+                 q = std::max(probability, kDiagnosis.report.least_at_issue);
     return {entries_of(one.correction), std::move(other), p * q / (p + q)};
   }
 
@@ -209,14 +205,14 @@ class Planner {
     }
     if (steps.empty()) return;
     std::ranges::stable_sort(steps, std::ranges::greater{}, &NextStep::probability_after);
-    if (steps.front().probability_after <= p + kWorth) {
+    if (steps.front().probability_after <= p + kDiagnosis.report.worth) {
       next_.why += (next_.why.empty() ? "" : "; ") + std::string("a dozen rows of no kind tell ") +
                    asked.names().front() + " from " + asked.names().back() +
                    ": take more of the first step's";
       steps.resize(1);
     }
     for (NextStep& each : steps)
-      if (steps.size() == 1 || each.probability_after > p + kWorth)
+      if (steps.size() == 1 || each.probability_after > p + kDiagnosis.report.worth)
         next_.steps.push_back(std::move(each));
   }
 
@@ -224,7 +220,7 @@ class Planner {
   void look_closer() {
     size_t told = 0;
     for (const CandidateRows& each : further_)
-      if (!each.tells.empty() && told++ < kMostForUnknown)
+      if (!each.tells.empty() && told++ < kDiagnosis.report.most_for_unknown)
         next_.steps.push_back({each.what,
                                {kUnknown, each.tells},
                                std::numeric_limits<double>::quiet_NaN(),

@@ -7,6 +7,7 @@
 
 #include "constraints/estimation/judgement.h"
 #include "constraints/statistics.h"
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/validation/folds.h"
 #include "kinematics/corrected_robot.h"
@@ -14,9 +15,6 @@
 
 namespace selfcal {
 namespace {
-
-constexpr double kFar = 1 - 1e-6;
-constexpr double kBeyond = 1.25;  ///< a judging row's prediction has an error of its own
 
 /// A model and its fit to the `fit` rows.
 struct Fitted {
@@ -67,9 +65,9 @@ void take_rows(const Left& left, const DataSet& data, double noise, Closing& clo
     const RowResidual& all = whole.check[i];
     if (all.lengths == 0) continue;
     const double near = std::min({before.length, after.length, all.length});
-    const double limit = chi_quantile(all.lengths, kFar);
-    const bool false_reading =
-        near > kBeyond * limit * std::max(noise, whole.check_scale[all.set].length);
+    const double limit = chi_quantile(all.lengths, kDiagnosis.closing.far);
+    const bool false_reading = near > kDiagnosis.closing.beyond * limit *
+                                          std::max(noise, whole.check_scale[all.set].length);
     if (false_reading)
       closing.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
                                   "neither the geometry nor any effect found comes near it"});

@@ -4,14 +4,11 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "diagnosis/constants.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
-
-/// Of the usual largest: what is larger by more than two sigma is no usual cause.
-constexpr double kFarBeyond = 3;
-constexpr double kBeside = 0.5;  ///< least probability that is told beside the unknown
 
 [[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
   char text[300];
@@ -70,7 +67,7 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   std::string words;
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - 2 * v.sigma > kFarBeyond * v.usual_most)
+      if (std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.far_beyond * v.usual_most)
         words += "; " + v.name + " = " + in_readable_unit(v.value, v.unit) +
                  " is far beyond the usual " + in_readable_unit(v.usual_least, v.unit) + " to " +
                  in_readable_unit(v.usual_most, v.unit) + ": something else may look like it";
@@ -101,7 +98,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            unusual_sizes(diagnosis.named);
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
-    if (names_effect(each.effect) && each.probability > kBeside)
+    if (names_effect(each.effect) && each.probability > kDiagnosis.report.beside)
       beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
   return "there is structure that no known effect explains" +
          phrase(" (probability %.2f, p %.2g)", verdict.probability, diagnosis.p_value) + beside +

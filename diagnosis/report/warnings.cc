@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kGearSigmas = 3;
 
 std::string of_fits(const Closing& closing) {
   if (closing.converged) return {};
@@ -24,7 +23,7 @@ std::string of_gears(const LinearisedModel& view) {
     const auto at = static_cast<Eigen::Index>(i);
     const double off = fitted.state.xi[at] - parameters[i].nominal;
     if (parameters[i].part == Part::gear &&
-        std::abs(off) > kGearSigmas * std::sqrt(fitted.covariance(at, at)))
+        std::abs(off) > kDiagnosis.report.gear_sigmas * std::sqrt(fitted.covariance(at, at)))
       gears += (gears.empty() ? "" : ", ") + parameters[i].name + " " +
                format_number(std::round(1e6 * off)) + " ppm";
   }

@@ -7,20 +7,11 @@
 #include <iterator>
 #include <optional>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/search/sign_flip_test.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kLeastTold = 0.005;  ///< least probability that is told
-constexpr double kConfounded = 0.05;  ///< of the cause's own: others as probable share its evidence
-constexpr double kSure = 0.9;  ///< a cause so probable stands beside structure of no known one
-constexpr double kWorthTelling = 0.1;  ///< probability from which look-alikes are of interest
-/// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of them.
-constexpr double kMostLeft = 0.2;
-constexpr size_t kMostExplaining = 20;  ///< candidates
-constexpr double kSurelyUnknown = 0.7;
-constexpr double kAlsoThere = 0.5;  ///< of the cause's own: further places
 
 /// What the linear parameters do not say of it. Where the order of the rows is the time, row 1 is
 /// at 0 s.
@@ -52,7 +43,7 @@ class Teller {
   std::vector<CauseResult> causes() const {
     std::vector<CauseResult> list;
     for (const auto& [family, probability] : posterior_.family) {
-      if (probability < kLeastTold) continue;
+      if (probability < kDiagnosis.naming.least_told) continue;
       CauseResult cause;
       cause.effect = family;
       cause.probability = std::min(probability, 1.0);
@@ -84,7 +75,7 @@ class Teller {
     std::sort(ranked.begin(), ranked.end());
     std::vector<std::string> list;
     for (const auto& [p, at] : ranked)
-      if (list.empty() || -p > kAlsoThere * probability) list.push_back(at);
+      if (list.empty() || -p > kDiagnosis.naming.also_there * probability) list.push_back(at);
     return list;
   }
 
@@ -136,7 +127,7 @@ class Teller {
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.
   void confound(CauseResult& cause) const {
-    if (cause.probability < kWorthTelling) return;
+    if (cause.probability < kDiagnosis.naming.worth_telling) return;
     std::map<Cause, double> instead;
     double with = 0;
     for (const Hypothesis& h : posterior_.hypotheses) {
@@ -150,7 +141,8 @@ class Teller {
         instead[{kUnknown, ""}] += p;
     }
     for (const auto& [other, p] : instead)
-      if (p > kConfounded * with) cause.confounded_with.push_back(label(other.first, other.second));
+      if (p > kDiagnosis.naming.confounded * with)
+        cause.confounded_with.push_back(label(other.first, other.second));
   }
 
   const LinearisedModel& view_;
@@ -187,7 +179,7 @@ Shares shares(const EvidenceEvaluator& bench, const Posterior& posterior) {
   const MarginalLikelihood& plain = bench.marginal_likelihood(0);
   Hypothesis whole = *best;
   whole.structure = 0;
-  whole = bench.grow(std::move(whole), kMostExplaining);
+  whole = bench.grow(std::move(whole), kDiagnosis.naming.most_explaining);
   const double after = plain.given(bench.terms(whole)).total() * bench.noise_variance(0);
   const double before = plain.total() * bench.noise_variance(0);
   const double noise =
@@ -228,9 +220,9 @@ CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& be
   known.together = with_look_alikes(view, posterior, known);
   if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
   // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
-  if (known.together < std::min(kSure, posterior.unknown)) return unknown;
+  if (known.together < std::min(kDiagnosis.naming.sure, posterior.unknown)) return unknown;
   const Shares part = shares(bench, posterior);
-  return part.left > kMostLeft * (part.left + part.explained) ? unknown : known;
+  return part.left > kDiagnosis.naming.most_left * (part.left + part.explained) ? unknown : known;
 }
 
 CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
@@ -238,7 +230,7 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
   const bool structure = p.unknown <= options.name_below_p;
   if (named.effect == kUnknown && structure) return named;
   if (names_effect(named.effect) && p.known <= options.name_below_p) return named;
-  if (named.effect != kUnknown && structure && posterior.unknown > kSurelyUnknown)
+  if (named.effect != kUnknown && structure && posterior.unknown > kDiagnosis.naming.surely_unknown)
     return {.effect = kUnknown, .probability = posterior.unknown};
   const double noise = named.effect == kUnknown ? p.unknown : p.known;
   return {.effect = kNone,
@@ -262,7 +254,7 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
   if (p.known <= options.name_below_p)
     std::ranges::copy_if(causes, std::back_inserter(list), [&](const CauseResult& each) {
       return names_effect(each.effect) && each.effect != verdict.effect &&
-             each.probability >= kSure;
+             each.probability >= kDiagnosis.naming.sure;
     });
   std::ranges::stable_sort(list, std::ranges::greater{}, &CauseResult::visible);
   if (names_effect(verdict.effect)) list.insert(list.begin(), verdict);

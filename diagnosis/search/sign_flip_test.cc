@@ -7,14 +7,13 @@
 #include <numeric>
 #include <random>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/rows.h"
 
 namespace selfcal {
 namespace {
 
 using SignRandom = std::mt19937_64;
-
-constexpr double kLeastOfRow = 0.05;  ///< of a row's noise beyond the geometry, that is scaled up
 
 double drawn_sign(SignRandom& random) { return (random() & 1) ? 1 : -1; }
 
@@ -137,8 +136,8 @@ double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
   const Eigen::VectorXd residual = view.geometry_residuals(rows);
   // What the geometry takes of a row's noise is given back, so that one row's is as good as
   // another's.
-  const Eigen::VectorXd noise =
-      residual.cwiseQuotient(view.geometry_leaves(rows).cwiseMax(kLeastOfRow).cwiseSqrt());
+  const Eigen::VectorXd noise = residual.cwiseQuotient(
+      view.geometry_leaves(rows).cwiseMax(kDiagnosis.naming.least_of_row).cwiseSqrt());
   const Dealer dealer(kept, data);
   SignRandom random(seed);
   Eigen::MatrixXd Y(residual.size(), resamples);

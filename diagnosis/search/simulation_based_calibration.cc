@@ -7,15 +7,11 @@
 #include <cmath>
 #include <random>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kWithNone = 0.25, kWithUnknown = 0.15;  ///< shares of the sessions
-constexpr int kExtendedSingles =
-    4;  ///< a simulated session has one cause: few pairs are as probable
-constexpr std::array kVisible{0.5, 1.0, 2.0};  ///< over the noise
 
 double clamped_logit(double p) {
   p = std::clamp(p, 1e-6, 1 - 1e-6);
@@ -50,7 +46,8 @@ class Simulator {
     for (std::size_t i = 0; i < truths.size(); ++i) {
       const std::string& truth = truths[i];
       bench_.look_at(views, static_cast<Eigen::Index>(i));
-      const CauseResult answer = answered(bench_.search_coarsely(kExtendedSingles));
+      const CauseResult answer =
+          answered(bench_.search_coarsely(kDiagnosis.practice.extended_singles));
       stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
         ++none;
@@ -89,7 +86,7 @@ class Simulator {
 
   Eigen::VectorXd session(std::string& truth) {
     const double kind = std::generate_canonical<double, 53>(random_);
-    if (kind < kWithUnknown) {
+    if (kind < kDiagnosis.practice.with_unknown) {
       truth = kUnknown;
       std::vector<int> known_size;
       for (int s = 0; s < bench_.structures(); ++s)
@@ -102,12 +99,13 @@ class Simulator {
     const DiscrepancyCovariance& noise = bench_.structure(0);
     Eigen::VectorXd y = noise.coloured(normal(rows_.y.size()));
     truth = kNone;
-    if (kind < kWithUnknown + kWithNone) return y;
+    if (kind < kDiagnosis.practice.with_unknown + kDiagnosis.practice.with_none) return y;
     const int c = drawn_cause();
     if (c < 0) return y;
     truth = view_.candidates().list[c].effect;
     const Block& block = bench_.block(c);
-    const double r = kVisible[random_() % kVisible.size()] * std::sqrt(noise.noise);
+    const double r = kDiagnosis.practice.visible[random_() % kDiagnosis.practice.visible.size()] *
+                     std::sqrt(noise.noise);
     Eigen::VectorXd size = normal(block.unit.size());
     for (const int i : block.positive) size[i] = std::abs(size[i]);
     return y + rows_.C(Eigen::all, block.columns) * (r * block.unit.cwiseProduct(size));
@@ -119,7 +117,8 @@ class Simulator {
     std::vector<std::string> families;
     std::vector<int> seen;
     for (int c = 0; c < static_cast<int>(view_.candidates().list.size()); ++c) {
-      if (bench_.survival(c) < 0.15) continue;  // absorbed by calibration: no cause of this session
+      if (bench_.survival(c) < kDiagnosis.practice.least_survival)
+        continue;  // absorbed by calibration: no cause of this session
       seen.push_back(c);
       const std::string& effect = view_.candidates().list[c].effect;
       if (families.empty() || families.back() != effect) families.push_back(effect);

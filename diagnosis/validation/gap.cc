@@ -9,11 +9,10 @@
 #include <map>
 #include <random>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
-
-constexpr int kResamples = 1000;
-constexpr double kWithinFloor = 1.05;  ///< before over floor below which nothing can be said
 
 using Square = double JudgedRow::*;
 
@@ -36,7 +35,8 @@ std::vector<Sums> sums_of(const std::vector<JudgedRow>& rows, Square square) {
 }
 
 std::optional<double> fraction(const Sums& of) {
-  if (!(of.before > kWithinFloor * kWithinFloor * of.floor)) return std::nullopt;
+  if (!(of.before > kDiagnosis.closing.within_floor * kDiagnosis.closing.within_floor * of.floor))
+    return std::nullopt;
   return 1 - (of.after - of.floor) / (of.before - of.floor);
 }
 
@@ -61,7 +61,7 @@ Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long l
   std::chi_squared_distribution<double> spread(std::isfinite(floor_freedom) ? floor_freedom : 1);
   std::vector<double> low, high;
   std::vector<Sums> drawn(blocks.size());
-  for (int i = 0; i < kResamples; ++i) {
+  for (int i = 0; i < kDiagnosis.closing.resamples; ++i) {
     for (Sums& each : drawn) each = blocks[pick(random)];
     Sums sum = total(drawn);
     if (std::isfinite(floor_freedom)) sum.floor *= floor_freedom / spread(random);
@@ -71,8 +71,8 @@ Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long l
   }
   std::sort(low.begin(), low.end());
   std::sort(high.begin(), high.end());
-  part.least = low[static_cast<size_t>(0.025 * kResamples)];
-  part.most = high[static_cast<size_t>(0.975 * kResamples)];
+  part.least = low[static_cast<size_t>(0.025 * kDiagnosis.closing.resamples)];
+  part.most = high[static_cast<size_t>(0.975 * kDiagnosis.closing.resamples)];
   return part;
 }
 

@@ -1,0 +1,152 @@
+// What a diagnosis takes for granted, in one place: each with its range and where it comes from.
+//
+// Sources: [exact] follows from a formula; [physics] from what machines are like; [habit] a usual
+// threshold; [cost] what a small computer can bear; [trials] a judgement, with which the rates hold
+// that tests/gap asks of the open trials. What a user may ask for otherwise is in DiagnosisOptions
+// and SearchRule.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace selfcal {
+
+struct DiagnosisConstants {
+  struct Rows {
+    int passes = 4;  ///< of search and noise; 2 to 10 [cost]
+    /// Equations beyond the geometry; 5 to 30 [habit]
+    double fewest_freedoms = 10;
+    /// Equations that choose among causes: the evidence of structure takes their third power; 300
+    /// to 3000 [cost]
+    double most_weighed = 720;
+    /// Probability that noise stays below; 1 - 1e-3 to 1 - 1e-7 [habit]
+    double far = 1 - 1e-5;
+    double median_to_sigma = 1.4826;  ///< of a normal variable [exact]
+    double at_once = 60;              ///< s, between immediate repeats at most; 10 to 600 [physics]
+    double fewest_visits = 6;         ///< freedoms that tell a visit's noise; 4 to 20 [habit]
+    double most_of_visits = 10;       ///< over the noise of immediate repeats; 3 to 100 [physics]
+  };
+  /// Structure of no known cause; sizes are over the noise.
+  struct Structure {
+    struct Shared {
+      double kappa, probability;
+    };
+    /// What a configuration brings along: a surface's roughness and the robot's own repeatability
+    /// are noise to a calibration, and hardly ever more than the rest; 0 to 1 [trials]
+    std::array<Shared, 4> shared = {{{0, 0.4}, {0.4, 0.3}, {0.7, 0.2}, {0.9, 0.1}}};
+    double usual = 0.4;                            ///< of that, beside structure; 0 to 0.9 [trials]
+    std::array<double, 3> more = {1.4, 2.8, 5.6};  ///< that is structure; above 1 [trials]
+    std::array<double, 5> smooth = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< 0.1 to 10 [trials]
+    /// Of errors of one joint; 0.1 to 10 [trials]
+    std::array<double, 4> of_joint = {0.7, 1.4, 2.8, 5.6};
+    double joints = 1.0;  ///< rad, over which configurations are alike; 0.3 to 2 [trials]
+    double turned = 2.0;  ///< rad, over which one joint's errors are smooth; 0.5 to 3 [physics]
+    double place = 0.4;   ///< m; 0.1 to 1 [physics]
+    double time = 0.1;    ///< of the whole; 0.02 to 0.5 [trials]
+    std::array<double, 3> of_visits = {1, 0.5, 0};  ///< shares of a visit's noise [trials]
+  };
+  struct Evidence {
+    double right_sign = 0.95;  ///< prior, of the sign that physics allows; 0.5 to 1 [trials]
+    /// Share that survives below which a candidate says nothing; 1e-6 to 0.02 [habit]
+    double least_seen = 1e-3;
+    int agreements = 3;             ///< rounds of noise and structure; 1 to 10 [cost]
+    double worthwhile = 5;          ///< log evidence that a cause must bring; 2 to 10 [habit]
+    std::size_t most_families = 5;  ///< that a set of causes grows to; 3 to 10 [trials]
+    /// Log weight below the best, that a coarse search leaves out; 15 to 40 [exact]
+    double hopeless = 25;
+    double hardly_possible = 40;  ///< the same, that nobody is told of; 20 to 100 [exact]
+  };
+  /// Of candidates.
+  struct Shapes {
+    int moments = 24;     ///< at which a step may have happened; 8 to 100 [cost]
+    int few_times = 40;   ///< up to which it may have between any two; 10 to 100 [cost]
+    int most_waves = 64;  ///< a turn; 10 to 200 [physics]
+    int profile = 30;     ///< waves a turn, of a profile; 10 to most_waves [cost]
+    double warms = 0.2;   ///< K; 0.05 to 2 [physics]
+    /// Doubt of masses that are usual ones, over their torques; 0.25 to 1 [physics]
+    double assumed = 0.6;
+    int fewest_rows = 8;  ///< of a surface that is to show its form or shift; 4 to 30 [habit]
+  };
+  struct Naming {
+    double least_told = 0.005;  ///< probability; 0 to 0.05 [habit]
+    /// Of the cause's own: others as probable share its evidence; 0.01 to 0.3 [habit]
+    double confounded = 0.05;
+    double sure = 0.9;  ///< it stands beside structure of no known one; 0.7 to 0.99 [habit]
+    double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
+    /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of
+    /// them; 0.05 to 0.5 [trials]
+    double most_left = 0.2;
+    std::size_t most_explaining = 20;  ///< candidates; 5 to 60 [cost]
+    double surely_unknown = 0.7;       ///< probability; 0.5 to 0.95 [trials]
+    double also_there = 0.5;           ///< of the cause's own: further places; 0.2 to 0.9 [trials]
+    /// Of a row's noise beyond the geometry, that is scaled up; 0.01 to 0.3 [habit]
+    double least_of_row = 0.05;
+  };
+  /// Sessions that are simulated over the rows.
+  struct Practice {
+    double with_none = 0.25, with_unknown = 0.15;  ///< shares of them; 0 to 0.5 [trials]
+    /// Such a session has one cause: few pairs are as probable; 0 to 14 [cost]
+    int extended_singles = 4;
+    std::array<double, 3> visible = {0.5, 1.0, 2.0};  ///< over the noise; 0.25 to 4 [trials]
+    /// Share that survives below which calibration absorbs a cause; 0.02 to 0.3 [trials]
+    double least_survival = 0.15;
+  };
+  /// How far the gap closes.
+  struct Closing {
+    int passes = 4;                 ///< of growth and noise; 1 to 10 [cost]
+    std::size_t most_effects = 60;  ///< 20 to 100 [cost]
+    double most_grown = 2100;       ///< equations; 720 to 10000 [cost]
+    double tried = 0.05;  ///< least probable cause that is tried alone; 0.01 to 0.5 [cost]
+    int most_tried = 4;   ///< 0 to 10 [cost]
+    /// Probability that noise stays below; 1 - 1e-4 to 1 - 1e-8 [habit]
+    double far = 1 - 1e-6;
+    /// A judging row's prediction has an error of its own; 1 to 2 [physics]
+    double beyond = 1.25;
+    int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
+    /// Before over floor below which nothing can be said; 1 to 1.2 [habit]
+    double within_floor = 1.05;
+  };
+  /// What a person is told.
+  struct Report {
+    int regions = 6, times = 6;  ///< 2 to 20 [habit]
+    /// Share that survives below which nothing can be said; 1e-3 to 0.1 [trials]
+    double least_survival = 0.02;
+    /// Of the usual largest, by two sigma: what is larger is no usual cause; 2 to 10 [physics]
+    double far_beyond = 3;
+    double beside = 0.5;     ///< least probability that is told beside the unknown [habit]
+    double gear_sigmas = 3;  ///< of a ratio that is told; 2 to 5 [habit]
+    /// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
+    /// exchanged may be moved as far as one likes; 10 to 100 [physics]
+    double impossible = 20;
+    /// Of the usual largest drift: a step may be taken for one; 2 to 10 [physics]
+    double too_far = 3;
+    double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
+    /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
+    double confirmed = 0.3;
+    /// Of what calibration leaves is still there: little gain; 0.5 to 0.95 [habit]
+    double hardly_closes = 0.8;
+    /// Of what is left with the forces: less without them is a slip; 0.8 to 1 [habit]
+    double forces_cost = 0.97;
+    double withdrawn = 0.95;  ///< probability of `unknown` that is left then; 0.5 to 1 [habit]
+    double worth = 0.02;      ///< of probability that a step must bring; 0 to 0.2 [habit]
+    std::size_t most_steps = 3, most_for_unknown = 4;  ///< 1 to 10 [habit]
+    /// Least probable cause that may yet be there where none is named; 0.01 to 0.3 [habit]
+    double edge = 0.05;
+    double least_at_issue =
+        0.02;  ///< probability of a cause that rows are chosen for; 0 to 0.1 [habit]
+    std::size_t most_at_issue = 5;  ///< 2 to 10 [cost]
+    double settled = 0.95;  ///< probability from which no row is asked for; 0.8 to 1 [habit]
+  };
+  Rows rows;
+  Structure structure;
+  Evidence evidence;
+  Shapes shapes;
+  Naming naming;
+  Practice practice;
+  Closing closing;
+  Report report;
+};
+
+inline constexpr DiagnosisConstants kDiagnosis{};
+
+}  // namespace selfcal
