@@ -11,12 +11,14 @@
 #include <cmath>
 #include <limits>
 
+#include "kinematics/block_memory.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kLooseness = 10;  ///< prior sigma over the largest usual size
+constexpr double kLooseness = 10;           ///< prior sigma over the largest usual size
+constexpr std::size_t kMostKept = 8 << 20;  ///< bytes of influences: thousands of rows
 
 bool same_text(const Node& a, const Node& b) {
   return a.kind == b.kind && a.text == b.text && a.keys == b.keys &&
@@ -101,7 +103,9 @@ class CorrectedRobot final : public Robot, public RobotText {
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
-    const std::vector<Deviation> deviations = deviations_of(block, body);
+    const auto kept =
+        memory_.of(block, body, bytes_of_a_block(), [&] { return deviations_of(block, body); });
+    const std::vector<Deviation>& deviations = *kept;
     const Eigen::VectorXd own = xi.head(geometry_parameters());
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
     ConfigurationBlock moved = block;
@@ -157,6 +161,12 @@ class CorrectedRobot final : public Robot, public RobotText {
     Regressor by;
     Eigen::Vector3d arm;
   };
+
+  std::size_t bytes_of_a_block() const {
+    const std::size_t effects =
+        parameters_.size() - static_cast<std::size_t>(geometry_parameters());
+    return kLanes * (effects * (joints().size() + 6) + 3) * sizeof(double);
+  }
 
   Eigen::Index geometry_parameters() const {
     return static_cast<Eigen::Index>(geometry_->parameters().size());
@@ -286,6 +296,8 @@ class CorrectedRobot final : public Robot, public RobotText {
   std::vector<std::unique_ptr<Effect>> effects_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
+  /// A, B and a do not follow xi.
+  mutable BlockMemory<std::vector<Deviation>> memory_{kMostKept};
 };
 
 }  // namespace
