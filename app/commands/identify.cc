@@ -14,6 +14,7 @@
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
 #include "app/report/summary.h"
+#include "constraints/estimation/controller_sigma.h"
 #include "constraints/estimation/engagements.h"
 #include "constraints/site.h"
 #include "diagnosis/evidence/usual_masses.h"
@@ -140,7 +141,10 @@ int identify_command(const IdentifyArguments& arguments) {
     compare_with_file(*circles, solution);
   else
     look_first(arguments.data_set, *loaded, as_filed, robot, solution);
-  const std::string json = to_json(solution, robot.name(), model_hash(robot)).dump(1);
+  nlohmann::ordered_json result = to_json(solution, robot.name(), model_hash(robot));
+  if (!solution.uncertainty.budget.empty())
+    result["uncertainty"]["controller"] = to_json(controller_sigma(robot, loaded->data, solution));
+  const std::string json = result.dump(1);
   if (arguments.json)
     std::printf("%s\n", json.c_str());
   else

@@ -1,13 +1,18 @@
 // With C0 the posterior of the free unknowns and Lambda the precision of their priors
 //   C0 = (C0 - C0 Lambda C0) + C0 Lambda C0,
-// the first of the rows' noise, the second of the priors; the others come on top.
+// the first of the rows' noise, the second of the priors; the others come on top. The rows' part is
+// that of each set, C0 R_s^T R_s C0, a share of it the encoders' rounding, another what repeats
+// differ by beside that.
 #include "constraints/estimation/covariance_sources.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "constraints/estimation/half_samples.h"
+#include "constraints/estimation/noise.h"
 #include "constraints/estimation/posterior.h"
+#include "constraints/estimation/resolution.h"
+#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
@@ -18,6 +23,37 @@ constexpr double kChance = 1.5;
 Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
   const Eigen::MatrixXd& C = adjusted.fitted.covariance;
   return C * prior_precision(equations, adjusted.prior).asDiagonal() * C;
+}
+
+/// The noise of the rows by where it comes from; `all` is what they add up to.
+std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adjusted& adjusted,
+                                          const Eigen::MatrixXd& all) {
+  const Fit& fitted = adjusted.fitted;
+  const std::vector<double> rounding =
+      resolution_shares(equations, fitted.state, fitted.noise.used, fitted.noise.outlier);
+  const Observations& rows = equations.data().rows;
+  Eigen::MatrixXd encoders = Eigen::MatrixXd::Zero(all.rows(), all.cols()), repeats = encoders;
+  for (int s = 0; s < static_cast<int>(rounding.size()); ++s) {
+    if (equations.plan(s).items.empty()) continue;
+    const double spread =
+        std::max(0.0, repeat_sigma(equations.data(), s, fitted.at.residuals, fitted.noise.outlier));
+    const double coarse = std::min(1.0, rounding[s]);
+    const double repeated =
+        std::clamp(std::pow(spread / fitted.noise.used[s].length, 2) - coarse, 0.0, 1 - coarse);
+    if (coarse + repeated == 0) continue;
+    Weighting alone{fitted.noise.used, fitted.noise.outlier};
+    for (int row = 0; row < rows.rows(); ++row)
+      if (rows.set[static_cast<size_t>(row)] != s) alone.outlier[static_cast<size_t>(row)] = 1;
+    const Eigen::MatrixXd R = equations.linearise(fitted.state, alone).R;
+    const Eigen::MatrixXd half =
+        R.leftCols(equations.columns()) * fitted.covariance.topLeftCorner(all.rows(), all.cols());
+    const Eigen::MatrixXd of_set = transposed_product(half, half);
+    encoders += coarse * of_set;
+    repeats += repeated * of_set;
+  }
+  return {{"noise of the rows", all - encoders - repeats},
+          {"resolution of the encoders", encoders},
+          {"repeatability, from repeats", repeats}};
 }
 
 /// What halves of the rows differ by more than they should.
@@ -42,11 +78,12 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   const Eigen::MatrixXd priors = prior_part(equations, adjusted), noise = fitted - priors;
   const Eigen::MatrixXd exact =
       adjusted.scale < 0 ? fitted : posterior(equations, adjusted, R, false);
-  return {{"noise of the rows", noise},
-          {"the maker's tolerances", priors},
-          {"held scale", exact - fitted},
-          {"what was given", posterior(equations, adjusted, R, true) - exact},
-          {"rows that share errors", shared_errors(equations, adjusted, question)}};
+  std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, noise);
+  sources.push_back({"the maker's tolerances", priors});
+  sources.push_back({"held scale", exact - fitted});
+  sources.push_back({"what was given", posterior(equations, adjusted, R, true) - exact});
+  sources.push_back({"rows that share errors", shared_errors(equations, adjusted, question)});
+  return sources;
 }
 
 Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources) {

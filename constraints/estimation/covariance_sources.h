@@ -16,9 +16,10 @@ struct CovarianceSource {
   Eigen::MatrixXd C;
 };
 
-/// Noise of the rows, the maker's tolerances, the scale where a length is held for it, what was
-/// given (see posterior.h), and what halves of the rows differ by beside all that, judged by the
-/// end position at the poses of `question`. `R` is whitened, with the columns beside the unknowns.
+/// Noise of the rows (beside the rounding of the encoders and what repeats differ by), the maker's
+/// tolerances, the scale where a length is held for it, what was given (see posterior.h), and what
+/// halves of the rows differ by beside all that, judged by the end position at the poses of
+/// `question`. `R` is whitened, with the columns beside the unknowns.
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
                                                  const EndpointQuestion& question);

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "diagnosis/constants.h"
+#include "constraints/estimation/resolution.h"
 #include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
@@ -193,19 +194,6 @@ std::string_view to_string(KernelDomain closeness) {
       return "joint errors";
   }
   return "";
-}
-
-Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q) {
-  Eigen::VectorXd steps = Eigen::VectorXd::Zero(q.cols());
-  for (Eigen::Index j = 0; j < q.cols(); ++j)
-    for (double power = 1e-2; power > 0.9e-9 && steps[j] == 0; power /= 10)
-      for (const double step : {5 * power, 2 * power, power}) {
-        const Eigen::ArrayXd multiple = q.col(j).array() / step;
-        if (((multiple - multiple.round()).abs() > 1e-3).any()) continue;
-        steps[j] = step;
-        break;
-      }
-  return steps;
 }
 
 Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {

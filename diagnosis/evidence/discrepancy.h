@@ -42,8 +42,4 @@ std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const D
                                                const Eigen::MatrixXd& by_joint,
                                                double of_visits = 0);
 
-/// Step to which each joint's readings are rounded (rad or m): the largest of 1, 2, 5 times a power
-/// of ten that they are all multiples of; 0 below 1e-9.
-Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q);
-
 }  // namespace selfcal

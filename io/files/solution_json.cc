@@ -190,6 +190,12 @@ Json of_observability(const Observability& observability) {
 
 }  // namespace
 
+nlohmann::ordered_json to_json(const ControllerSigma& controller) {
+  return Json::object({{"parameters", controller.parameters},
+                       {"left", finite(controller.left)},
+                       {"sigma", sigma(controller.sigma)}});
+}
+
 nlohmann::ordered_json to_json(const Solution& solution, const std::string& robot_name,
                                const std::string& model_hash) {
   const auto note_as = [](const char* key) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "constraints/estimation/controller_sigma.h"
 #include "constraints/solution.h"
 
 namespace selfcal {
@@ -12,5 +13,7 @@ namespace selfcal {
 /// is not finite) is null. Numbers read back bit by bit.
 nlohmann::ordered_json to_json(const Solution& solution, const std::string& robot_name,
                                const std::string& model_hash);
+/// {parameters, left, sigma}: a part of "uncertainty".
+nlohmann::ordered_json to_json(const ControllerSigma& controller);
 
 }  // namespace selfcal

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/estimation/half_samples.h"
+#include "constraints/estimation/controller_sigma.h"
+#include "constraints/identifiability/endpoint_sigma.h"
+#include "constraints/sampling/workspace_poses.h"
 #include "tests/recovery/rx90.h"
 
 namespace selfcal::recovery {
@@ -120,6 +122,160 @@ TEST(Uncertainty, HasTheDoubtOfAGivenPlaneInItUnlessItIsExact) {
   EXPECT_GT(budget(rough, "what was given"), 0.5e-3);
   EXPECT_GT(rough.workspace.rms, budget(rough, "what was given"));
   EXPECT_TRUE(rough.values.isApprox(exact.values, 1e-9)) << "given is kept";
+}
+
+/// The doubt of what was given where its tolerance is `text`.
+double given(const std::vector<SetPart>& parts, const char* text, const Options& options = {},
+             const std::string& robot_file = kRx90) {
+  const auto robot = robot_of(robot_file);
+  Random random(5);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  std::vector<SetPart> sets = parts;
+  for (SetPart& part : sets) {
+    if (!*text) continue;
+    Node tolerances = Node::map();
+    for (const char* of : {"place", "turn", "length"})
+      if (part.node.find(of == std::string("length") ? "radius"
+                         : of == std::string("turn") ? "normal"
+                                                     : "center"))
+        tolerances.set(of, Node::of(std::string(text)));
+    part.node.set("tolerance", tolerances);
+  }
+  const Session session = make_session(*robot, truth, sets, 20e-6, random);
+  EXPECT_EQ(session.unreached, "");
+  return budget(identify(*robot, session.data, options), "what was given");
+}
+
+TEST(Uncertainty, HasTheDoubtOfGivenNormalsInIt) {
+  std::vector<SetPart> parts;
+  for (const Eigen::Vector3d& n :
+       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+    Node node = entry({{"method", "plane-normal"}});
+    node.set("normal", Node::of(Eigen::VectorXd(n)));
+    parts.push_back({"n" + std::to_string(parts.size()), node, 90});
+  }
+  const double exact = given(parts, "0"), rough = given(parts, "1e-3");
+  EXPECT_LT(exact, 0.02e-3);
+  // A milliradian between normals bends the axes of a robot that reaches a metre.
+  EXPECT_GT(rough, 0.1e-3);
+  EXPECT_NEAR(given(parts, "2e-3") / rough, 2, 0.5);
+}
+
+TEST(Uncertainty, HasTheDoubtOfAGivenCentreAndRadiusInIt) {
+  Node node = entry({{"method", "sphere"}, {"radius", "0.3"}});
+  node.set("center", Node::of(Eigen::VectorXd(Eigen::Vector3d(0.6, 0.1, 0.6))));
+  const std::vector<SetPart> ball{{"ball", node, 240}};
+  const double exact = given(ball, "0"), rough = given(ball, "1e-3");
+  EXPECT_LT(exact, 0.02e-3);
+  EXPECT_GT(rough, 0.5e-3);
+}
+
+TEST(Uncertainty, HasTheDoubtOfGearsAndOfWhatIsFixedInIt) {
+  std::string exact = kRx90;
+  for (const char* joint : {"j1", "j2", "j3", "j4", "j5", "j6"}) {
+    const std::string entry = std::string("{name: ") + joint + ",";
+    exact.replace(exact.find(entry), entry.size(), entry + " tolerance: {gear: 0},");
+  }
+  const std::vector<SetPart> parts = tracked(150);
+  Options link;
+  link.fix = {"theta3"};
+  // Tooth counts are believed to 2e-5, which the rows of a metre's reach know about as well.
+  const double silent = given(parts, "");
+  EXPECT_GT(silent, 1e-6);
+  EXPECT_LT(given(parts, "", {}, exact), 0.1 * silent);
+  EXPECT_GT(given(parts, "", link), 2 * silent);
+}
+
+TEST(Uncertainty, IsRepeatedByAReaderOfTheExportedCovariance) {
+  const auto robot = robot_of(kRx90);
+  Random random(6);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  const Session session = make_session(*robot, truth, tracked(150), 20e-6, random);
+  const Solution solution = identify(*robot, session.data);
+  const auto n = static_cast<Eigen::Index>(robot->parameters().size());
+  std::vector<int> at;
+  for (const std::string& name : solution.covariance_order)
+    at.push_back(find_parameter(*robot, name));
+  EndpointQuestion question;
+  question.robot = robot.get();
+  question.xi = solution.values;
+  question.covariance = Eigen::MatrixXd::Zero(n, n);
+  question.covariance(at, at) = solution.covariance;
+  question.unseen = Eigen::MatrixXd(6, 0);
+  question.poses = workspace_poses(*robot, solution.values, {}, session.data.rows.q, 500, 1);
+  ASSERT_FALSE(solution.workspace.aligned);
+  EXPECT_NEAR(endpoint_sigma(question).rms / solution.workspace.rms, 1, 1e-6);
+  for (const Correlation& each : solution.uncertainty.correlations) {
+    const int a = find_parameter(*robot, each.a), b = find_parameter(*robot, each.b);
+    const Eigen::MatrixXd& C = question.covariance;
+    EXPECT_GT(std::abs(each.value), 0.9);
+    EXPECT_NEAR(each.value, C(a, b) / std::sqrt(C(a, a) * C(b, b)), 1e-9) << each.a << each.b;
+  }
+}
+
+TEST(Uncertainty, IsOfHowTheEndIsTurnedWhereTheRowsSeeIt) {
+  const auto robot = robot_of(kRx90);
+  for (const bool seen : {true, false}) {
+    Random random(7);
+    const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+    const Node node = entry({{"method", seen ? "location" : "position"}});
+    const Session session = make_session(*robot, truth, {{"arm", node, 120}}, 20e-6, random);
+    const Solution solution = identify(*robot, session.data);
+    EXPECT_EQ(solution.orientation_seen, seen);
+    EXPECT_EQ(solution.verdict.why.find(" mrad (over the whole") != std::string::npos, seen)
+        << solution.verdict.why;
+    if (!seen) continue;
+    const Eigen::MatrixXd q =
+        workspace_poses(*robot, solution.values, {}, session.data.rows.q, 300, 1);
+    double squares = 0;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const Eigen::Matrix3d turned = locate(*robot, truth, q.row(i).transpose()).R.transpose() *
+                                     locate(*robot, solution.values, q.row(i).transpose()).R;
+      squares += std::pow(Eigen::AngleAxisd(turned).angle(), 2);
+    }
+    const double error = std::sqrt(squares / static_cast<double>(q.rows()));
+    // Of one draw of some thirty directions: within a factor of two either way.
+    EXPECT_LT(error, 2 * solution.workspace.angle);
+    EXPECT_GT(error, 0.5 * solution.workspace.angle);
+  }
+}
+
+TEST(Uncertainty, HasTheResolutionOfTheEncodersAndWhatRepeatsShowInItsBudget) {
+  const auto robot = robot_of(kRx90);
+  Random random(4);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  Session session = repeated(*robot, truth, 150, random);
+  const Solution fine = identify(*robot, session.data);
+  EXPECT_EQ(budget(fine, "resolution of the encoders"), 0);
+  // Rows scatter by their repeats alone: all of the noise is theirs.
+  EXPECT_GT(budget(fine, "repeatability, from repeats"), 2 * budget(fine, "noise of the rows"));
+  constexpr double kStep = 2e-4;
+  session.data.rows.q = (session.data.rows.q / kStep).array().round().matrix() * kStep;
+  const Solution coarse = identify(*robot, session.data);
+  // Half a metre from the joints 0.2 mrad / sqrt(12) is 0.03 mm and more, over noise of 0.02 mm.
+  EXPECT_GT(budget(coarse, "resolution of the encoders"),
+            budget(coarse, "repeatability, from repeats"));
+  EXPECT_GT(budget(coarse, "resolution of the encoders"), budget(coarse, "noise of the rows"));
+}
+
+TEST(Uncertainty, IsGreaterWhereAControllerTakesItsUsualParametersAlone) {
+  const auto robot = robot_of(kRx90);
+  Random random(9);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  const Session session = make_session(*robot, truth, tracked(150), 20e-6, random);
+  const Solution solution = identify(*robot, session.data);
+  const ControllerSigma takes = controller_sigma(*robot, session.data, solution);
+  EXPECT_LT(takes.parameters.size(), robot->parameters().size() - 6);
+  EXPECT_NEAR(takes.sigma, std::hypot(takes.left, solution.workspace.rms), 1e-12);
+  // Axes askew by a milliradian, a metre from the tool, are what it cannot follow.
+  EXPECT_GT(takes.left, 0.1e-3);
+  EXPECT_LT(takes.left, 5e-3);
+  // A robot that is off in what it takes alone is followed to the end.
+  Solution simple = solution;
+  simple.values = nominal_values(*robot);
+  for (const std::string& name : takes.parameters)
+    simple.values[find_parameter(*robot, name)] += 1e-3;
+  EXPECT_LT(controller_sigma(*robot, session.data, simple).left, 1e-7);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// A reading rounded to a step errs by step / sqrt(12); an equation by that times what the joint's
+// own variable moves it, W of its zero, the joints apart from each other.
+#include "constraints/estimation/resolution.h"
+
+#include <cmath>
+
+namespace selfcal {
+namespace {
+
+constexpr int kMostRows = 300;  ///< that the mean is taken over
+
+}  // namespace
+
+Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q) {
+  Eigen::VectorXd steps = Eigen::VectorXd::Zero(q.cols());
+  for (Eigen::Index j = 0; j < q.cols(); ++j)
+    for (double power = 1e-2; power > 0.9e-9 && steps[j] == 0; power /= 10)
+      for (const double step : {5 * power, 2 * power, power}) {
+        const Eigen::ArrayXd multiple = q.col(j).array() / step;
+        if (((multiple - multiple.round()).abs() > 1e-3).any()) continue;
+        steps[j] = step;
+        break;
+      }
+  return steps;
+}
+
+std::vector<double> resolution_shares(const Equations& equations, const State& state,
+                                      const std::vector<Scale>& scale,
+                                      const std::vector<char>& outlier) {
+  const Observations& rows = equations.data().rows;
+  const Eigen::VectorXd steps = reading_steps(rows.q);
+  std::vector<double> squares(equations.data().sets.size(), 0), count(squares.size(), 0);
+  if (steps.norm() == 0) return squares;
+  std::vector<char> left_out = outlier;
+  const int each = 1 + rows.rows() / kMostRows;
+  for (int row = 0; row < rows.rows(); ++row)
+    if (row % each != 0) left_out[static_cast<size_t>(row)] = 1;
+  const DenseEquations dense = equations.dense(state, scale, left_out);
+  for (Eigen::Index i = 0; i < dense.W.rows(); ++i) {
+    if (dense.row[static_cast<size_t>(i)] < 0) continue;
+    const auto set = static_cast<size_t>(rows.set[dense.row[static_cast<size_t>(i)]]);
+    count[set] += 1;
+    for (Eigen::Index j = 0; j < steps.size(); ++j)
+      if (const int zero = equations.robot().variable_parameter(static_cast<int>(j)); zero >= 0)
+        squares[set] += std::pow(dense.W(i, zero) * steps[j], 2) / 12;
+  }
+  for (size_t s = 0; s < squares.size(); ++s)
+    if (count[s] > 0) squares[s] /= count[s];
+  return squares;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,18 @@
+// How finely readings come, and what that is of the rows' noise.
+#pragma once
+
+#include "constraints/equations/equations.h"
+
+namespace selfcal {
+
+/// Step to which each joint's readings `q` (rows x joints) are rounded (rad or m): the largest of
+/// 1, 2, 5 times a power of ten that they are all multiples of; 0 below 1e-9.
+Eigen::VectorXd reading_steps(const Eigen::MatrixXd& q);
+
+/// By set, the mean square of what rounding of half a step moves its equations, over the variance
+/// that `scale` gives them; 0 of a set without rows.
+std::vector<double> resolution_shares(const Equations& equations, const State& state,
+                                      const std::vector<Scale>& scale,
+                                      const std::vector<char>& outlier);
+
+}  // namespace selfcal
