@@ -268,6 +268,26 @@ TEST_F(Program, PlansACellAsTheServiceChecksIt) {
   EXPECT_EQ(text.substr(0, text.find('\n')), "set,part,q1,q2,q3");
 }
 
+TEST_F(Program, SaysNoToACellWhosePlanMissesItsTarget) {
+  const std::filesystem::path examples = SELFCAL_SOURCE_DIR "/app/examples";
+  for (const char* file : {"delta.robot.yaml", "delta_cell.scenario.yaml"})
+    std::filesystem::copy_file(examples / file, folder_ / file);
+  std::string text = text_of((examples / "delta_cell.config.yaml").string());
+  const std::string target = "target: 0.5e-3";
+  ASSERT_NE(text.find(target), std::string::npos);
+  text.replace(text.find(target), target.size(), "target: 1.0e-7");
+  const std::string config = (folder_ / "strict.config.yaml").string();
+  std::ofstream(config) << text;
+  const Ran check = run_selfcal("serve " + config + " --check", true);
+  EXPECT_EQ(check.status, 1) << check.out;
+  EXPECT_NE(check.out.find("target 0.0001 mm: no; plan more touches or surfaces"),
+            std::string::npos)
+      << check.out;
+  const Ran plan = run_selfcal("plan " + config + " --json", true);
+  EXPECT_EQ(plan.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(plan.out)["reached"], false);
+}
+
 TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const std::string file = (folder_ / "diagnosis.json").string();
   const std::string step =
