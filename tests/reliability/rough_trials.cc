@@ -162,6 +162,26 @@ TEST(RoughPairs, AreBothNamed) {
   EXPECT_GE(both, at_least(0.4, asked));
 }
 
+/// By the trials' own generator, which knows no candidate's formula either.
+TEST(ToolAndDevice, AreNamedWhereTheyArePlanted) {
+  for (const char* effect : {"tool_shift", "tool_compliance", "scale_error"}) {
+    TrialRequest request;
+    request.least_rows = request.most_rows = 150;
+    request.seed = 20262;
+    request.number = 1;
+    request.effect = effect;
+    request.touches = false;
+    request.r = 2.5;
+    const MadeTrial made = make_trial(request);
+    ASSERT_EQ(made.unreached, "") << effect;
+    const Diagnosis diagnosis = diagnose(made.robot, made.data);
+    EXPECT_TRUE(right_cause(truth_of(made.truth), answer_of(diagnosis)))
+        << effect << ": " << diagnosis.why;
+    // The last joint's zero moves the tool as well, but no such way: none is accused.
+    EXPECT_NE(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
+  }
+}
+
 TEST(Nones, AreHardlyEverCalledACause) {
   const int nones = count_of("SELFCAL_NONES", 3);
   int called = 0, asked = 0;
