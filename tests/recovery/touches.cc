@@ -80,7 +80,7 @@ TEST(Touches, HoldOneLengthAndSaySoWhenNothingGivesTheScale) {
   ASSERT_NE(at, solution.covariance_order.end());
   const auto k = at - solution.covariance_order.begin();
   const double sigma = std::sqrt(solution.covariance(k, k));
-  EXPECT_LT(sigma, 0.8 * robot->parameters()[r4].tolerance);
+  EXPECT_LT(sigma, 0.75 * robot->parameters()[r4].tolerance);
   EXPECT_LT(std::abs(solution.values[r4] - truth[r4]), 3 * sigma);
   const auto after = aligned_errors(*robot, solution.values, truth);
   EXPECT_LT(root_mean_square(after), 2 * solution.endpoint.rms);
