@@ -14,14 +14,14 @@ namespace {
 using testing::HasSubstr;
 
 /// First one sensor reads far too much, then all six read too little and too much by turns.
-std::string misreading(double first, double second, double time) {
-  const auto fault = [&](const std::string& leg, double by, double at) {
-    return "{what: misread, joint: " + leg + ", by: " + std::to_string(by) +
+std::string misreading(double first, double second, double time, double by) {
+  const auto fault = [&](const std::string& leg, double much, double at) {
+    return "{what: misread, joint: " + leg + ", by: " + std::to_string(much) +
            ", at: " + std::to_string(at) + ", for: " + std::to_string(time) + "}";
   };
   std::string faults = fault("leg3", 0.9, first);
   for (int leg = 1; leg <= 6; ++leg)
-    faults += ", " + fault("leg" + std::to_string(leg), leg % 2 == 0 ? 0.3 : -0.3, second);
+    faults += ", " + fault("leg" + std::to_string(leg), leg % 2 == 0 ? by : -by, second);
   return "lock_time: 0.3, faults: [" + faults + "]";
 }
 
@@ -47,11 +47,11 @@ void expect_named_and_survived(const std::string& robot, const std::string& mach
 }
 
 TEST(PlatformSession, NamesALegOutOfRangeAndALostAssemblyModeOnPlanesAndGoesOn) {
-  expect_named_and_survived("stewart", misreading(60, 90, 6));
+  expect_named_and_survived("stewart", misreading(60, 90, 6, 0.3));
 }
 
 TEST(PlatformSession, NamesALegOutOfRangeAndALostAssemblyModeUnderLocksAndGoesOn) {
-  expect_named_and_survived("stewart_lock", misreading(44, 60, 2));
+  expect_named_and_survived("stewart_lock", misreading(60, 80, 5, 0.28));
 }
 
 }  // namespace
