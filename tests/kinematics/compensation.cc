@@ -85,8 +85,8 @@ TEST(Compensation, TakesEffectsAlong) {
 TEST(Compensation, HoldsAtTheLoadAndTheTemperatureThatAreGiven) {
   const auto [nominal, calibrated] = off_by_a_millimetre(
       shipped("rx90"),
-      "[{effect: joint_compliance, at: j2, c: 2.0e-6}, {effect: joint_compliance, at: j3, c: "
-      "3.0e-6}, {effect: thermal_expansion, alpha: 1.2e-5, reference: 20}]");
+      "[{effect: tool_compliance, at: probe, mass: 1, bend_x: 1.0e-4, bend_y: 1.0e-4}, {effect: "
+      "thermal_expansion, alpha: 1.2e-5, reference: 20}]");
   OperatingPoint at;
   at.mass = 8;
   at.centre = {0.02, 0, 0.1};
