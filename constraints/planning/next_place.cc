@@ -14,6 +14,20 @@ struct Tried {
   Pool pool;
 };
 
+/// As many units, those of the last set first: one touch of an unknown surface tells nothing, so
+/// that none would be begun one by one.
+std::vector<int> beginning(const Tried& tried, int count) {
+  const auto last = static_cast<int>(tried.pool.data.sets.size()) - 1;
+  std::vector<int> of_last, others;
+  for (int i = 0; i < static_cast<int>(tried.pool.units.size()); ++i) {
+    const int row = tried.pool.units[static_cast<std::size_t>(i)].front();
+    (tried.pool.data.rows.set[row] == last ? of_last : others).push_back(i);
+  }
+  of_last.insert(of_last.end(), others.begin(), others.end());
+  of_last.resize(static_cast<std::size_t>(count));
+  return of_last;
+}
+
 /// The end position's sigma after the best of the pool besides what is taken; which these are.
 double sigma_after(const Robot& robot, const NextRequest& request, Tried& tried,
                    std::vector<int>& chosen) {
@@ -21,8 +35,7 @@ double sigma_after(const Robot& robot, const NextRequest& request, Tried& tried,
   if (!system.lacking().empty() || tried.pool.units.empty()) return HUGE_VAL;
   Design design(system.rows(tried.pool.data, tried.pool.units, Criterion::sigma),
                 system.objective(Criterion::sigma));
-  const int count = std::min(request.count, design.candidates());
-  for (int i = 0; i < count; ++i) design.change(design.best(+1).first, +1);
+  design.choose(beginning(tried, std::min(request.count, design.candidates())));
   add_and_drop(design);
   chosen = design.chosen();
   return std::sqrt(-design.merit());

@@ -221,7 +221,7 @@ TEST(ConfigurationPlan, KeepsEndPositionsApartAndItsWayWithinItsTime) {
   EXPECT_LE(shorter.way, request.longest);
   EXPECT_LT(shorter.units.size(), 15U);
   request.longest = 1e-3;
-  EXPECT_NE(plan_configurations(*robot, values(*robot), request).problem, "");
+  EXPECT_EQ(plan_configurations(*robot, values(*robot), request).units.size(), 1U);
 }
 
 TEST(ConfigurationPlan, SaysWhyThereIsNone) {

@@ -91,27 +91,35 @@ TEST(Fence, IsReadFromAFileAndRefusedWithAReason) {
   const auto numbers = [](double a, double b, double c) {
     return Node::of(Eigen::VectorXd(Vector3d(a, b, c)));
   };
+  const auto list_of = [](std::vector<Node> items) {
+    Node list = Node::list();
+    list.items = std::move(items);
+    return list;
+  };
+  const auto box = [&](double a, double b, double c) {
+    return Node::map().set("min", numbers(0, 0, 0)).set("max", numbers(a, b, c));
+  };
+  const auto capsule = [&](const std::string& link, double radius) {
+    return Node::map()
+        .set("link", Node::of(link))
+        .set("from", numbers(0, 0, 0))
+        .set("to", numbers(0.1, 0, 0))
+        .set("radius", Node::of(radius));
+  };
   Problems none;
-  Node keep_out = Node::list(), capsules = Node::list();
-  keep_out.items = {Node::map().set("min", numbers(0, 0, 0)).set("max", numbers(1, 2, 3)),
-                    Node::map().set("point", numbers(0, 0, -1)).set("normal", numbers(0, 0, 2))};
-  capsules.items = {Node::map()
-                        .set("link", Node::of(std::string("j3")))
-                        .set("from", numbers(0, 0, 0))
-                        .set("to", numbers(0.1, 0, 0))
-                        .set("radius", Node::of(0.05))};
-  const Fence fence = read(keep_out, capsules, none);
+  const Node plane = Node::map().set("point", numbers(0, 0, -1)).set("normal", numbers(0, 0, 2));
+  const Fence fence = read(list_of({box(1, 2, 3), plane}), list_of({capsule("j3", 0.05)}), none);
   EXPECT_FALSE(none.any());
+  ASSERT_EQ(fence.keep_outs.size(), 2U);
+  ASSERT_EQ(fence.capsules.size(), 1U);
   EXPECT_EQ(fence.keep_outs[0].box->max(), Vector3d(1, 2, 3));
   EXPECT_EQ(fence.keep_outs[1].outward, Vector3d::UnitZ());
   EXPECT_EQ(
       rx90().statics()->mechanics().links[static_cast<std::size_t>(fence.capsules[0].link)].frame,
       "j3");
   Problems some;
-  keep_out.items[0].set("max", numbers(1, -2, 3));
-  capsules.items[0].set("link", Node::of(std::string("elbow")));
-  read(keep_out, capsules, some);
-  EXPECT_EQ(some.list.size(), 2U);
+  read(list_of({box(1, -2, 3)}), list_of({capsule("elbow", 0.05), capsule("j3", -1)}), some);
+  EXPECT_EQ(some.list.size(), 3U);
 }
 
 TEST(TouchPlan, KeepsOutOfABoxThatStandsInTheWay) {

@@ -1,5 +1,6 @@
-// What planning gains over as many configurations at random, by the end position's sigma as it is
-// asked for, over many seeds.
+// What planning gains over as many configurations at random, over many seeds: by the end position's
+// sigma without the part that no such row tells, however many (ConfigurationPlan::rest), which is
+// printed beside.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +23,8 @@ Set set_from(const std::string& name, const Node& entry) {
 
 Node plane_entry() { return Node::map().set("method", Node::of(std::string("plane"))); }
 
-/// The median over seeds of the end position's sigma after random configurations over that after
-/// the planned ones.
+/// The median over seeds of what is left of the end position's sigma after random configurations
+/// over that after the planned ones.
 double median_gain_over_random(const std::string& name, PlanRequest request) {
   const auto robot = load_robot(SELFCAL_SOURCE_DIR "/app/examples/" + name + ".robot.yaml");
   EXPECT_TRUE(robot) << robot.error().what;
@@ -44,10 +45,10 @@ double median_gain_over_random(const std::string& name, PlanRequest request) {
       "%.2f of what rows tell\n",
       name.c_str(), seeds, median(before), median(after), median(gains),
       *std::ranges::min_element(gains), median(rests));
-  return median(gains);
+  return median(rests);
 }
 
-TEST(Planning, KnowsTheEndPositionOfTheRx90TwiceAsWellAsRandomTouchesOfThreePlanes) {
+TEST(Planning, TellsTwiceAsMuchOfTheRx90AsRandomTouchesOfThreePlanes) {
   PlanRequest request;
   for (const char* plane : {"plane1", "plane2", "plane3"})
     request.pool.sets.push_back(set_from(plane, plane_entry()));
@@ -56,7 +57,7 @@ TEST(Planning, KnowsTheEndPositionOfTheRx90TwiceAsWellAsRandomTouchesOfThreePlan
   EXPECT_GE(median_gain_over_random("rx90", request), 2);
 }
 
-TEST(Planning, KnowsTheEndPositionOfTheDeltaTwiceAsWellAsRandomTouchesOfItsBed) {
+TEST(Planning, TellsTwiceAsMuchOfTheDeltaAsRandomTouchesOfItsBed) {
   PlanRequest request;
   const Eigen::VectorXd bed = Eigen::Vector3d(0, 0, -10);
   request.pool.sets.push_back(set_from("bed", plane_entry().set("plane", Node::of(bed))));
