@@ -136,10 +136,12 @@ Lived live(const std::string& role, const std::filesystem::path& folder,
 /// All that a store has, in words, touch by touch.
 std::string told_of(Store& store) {
   std::ostringstream words;
-  for (const SessionRecord& session : store.sessions(100).value()) {
+  const auto sessions = store.sessions(100);
+  for (const SessionRecord& session : *sessions) {
     words << "session " << session.id << " " << static_cast<int>(session.state) << " of "
           << session.steps << ":";
-    for (const TouchRecord& touch : store.touches(session.id).value())
+    const auto touches = store.touches(session.id);
+    for (const TouchRecord& touch : *touches)
       words << " " << touch.step << "/" << touch.edge << "/" << touch.before.counts[5];
     const auto result = store.result(session.id).value();
     if (result) words << ", " << static_cast<int>(result->decision) << " " << result->json.size();
@@ -149,8 +151,10 @@ std::string told_of(Store& store) {
     if (const auto record = store.slot(slot).value())
       words << to_string(slot) << " " << record->session << " " << record->robot_text;
   words << store.remembered("held").value() << "\n";
-  for (const EventRecord& event : store.events(100).value()) words << event.text << "\n";
-  for (const DamageRecord& damage : store.damage().value()) words << "DAMAGE " << damage.what;
+  const auto events = store.events(100);
+  for (const EventRecord& event : *events) words << event.text << "\n";
+  const auto damages = store.damage();
+  for (const DamageRecord& damage : *damages) words << "DAMAGE " << damage.what;
   return words.str();
 }
 

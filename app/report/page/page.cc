@@ -53,8 +53,8 @@ nlohmann::ordered_json page_begin(const char* kind, const PageSubject& subject) 
 
 std::string page_of(const nlohmann::ordered_json& data) {
   // cppcheck-suppress comparePointers  // the assembler's labels are of one object
-  const std::string_view page(selfcal_page_begin,
-                              static_cast<std::size_t>(selfcal_page_end - selfcal_page_begin));
+  const auto size = static_cast<std::size_t>(selfcal_page_end - selfcal_page_begin);
+  const std::string_view page(selfcal_page_begin, size);
   const std::size_t at = page.find(kPlace);
   std::string text(page.substr(0, at));
   // What users wrote may be no UTF-8: such bytes come as the replacement character.
