@@ -15,8 +15,8 @@
 #include <numbers>
 #include <span>
 
-#include "diagnosis/constants.h"
 #include "constraints/estimation/resolution.h"
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
