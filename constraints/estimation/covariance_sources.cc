@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/equations/resolution.h"
 #include "constraints/estimation/half_samples.h"
 #include "constraints/estimation/noise.h"
 #include "constraints/estimation/posterior.h"
-#include "constraints/estimation/resolution.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {

@@ -15,7 +15,7 @@
 #include <numbers>
 #include <span>
 
-#include "constraints/estimation/resolution.h"
+#include "constraints/equations/resolution.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/visits.h"
 

@@ -1,4 +1,4 @@
-#include "constraints/estimation/resolution.h"
+#include "constraints/equations/resolution.h"
 #include "diagnosis/evidence/discrepancy.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A reading rounded to a step errs by step / sqrt(12); an equation by that times what the joint's
 // own variable moves it, W of its zero, the joints apart from each other.
-#include "constraints/estimation/resolution.h"
+#include "constraints/equations/resolution.h"
 
 #include <cmath>
 
