@@ -16,18 +16,22 @@ std::string at_line(const std::string& file, int line) {
   return line > 0 ? file + ":" + std::to_string(line) : file;
 }
 
-bool is_xacro(const TiXmlElement& element) {
+/// `foreign`: inside what other programs read of a URDF, whose texts are their own.
+bool is_xacro(const TiXmlElement& element, bool foreign) {
   if (std::strncmp(element.Value(), "xacro:", 6) == 0) return true;
+  if (foreign) return false;
   for (const TiXmlAttribute* a = element.FirstAttribute(); a; a = a->Next())
     if (a->ValueStr().find("${") != std::string::npos) return true;
   return false;
 }
 
 /// The first element, in the order of the file, that only xacro understands; null without one.
-const TiXmlElement* first_xacro(const TiXmlElement& element) {
-  if (is_xacro(element)) return &element;
+const TiXmlElement* first_xacro(const TiXmlElement& element, bool foreign = false) {
+  for (const char* other : {"gazebo", "ros2_control", "transmission"})
+    foreign = foreign || element.ValueStr() == other;
+  if (is_xacro(element, foreign)) return &element;
   for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
-    if (const TiXmlElement* found = first_xacro(*child)) return found;
+    if (const TiXmlElement* found = first_xacro(*child, foreign)) return found;
   return nullptr;
 }
 
