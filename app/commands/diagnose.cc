@@ -12,7 +12,6 @@
 #include "app/report/diagnosis_json.h"
 #include "app/report/diagnosis_summary.h"
 #include "app/report/format.h"
-#include "app/report/gap_words.h"
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/progress_line.h"
 #include "app/service/cause_search.h"
@@ -134,7 +133,12 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
       inputs.simulated->name,
       differences(found.diagnosis, other,
                   compare(inputs.robot, simulated, data, Between::machines, {}, shown_on(line))),
-      inputs.gap};
+      inputs.gap,
+      {}};
+  if (inputs.gap)
+    found.sim->mended =
+        mended_simulator(arguments.simulated, arguments.tool, inputs.measured,
+                         robot_text(*found.diagnosis.model, found.diagnosis.values));
   return found;
 }
 
@@ -149,11 +153,8 @@ std::string words_of(const Findings& findings) {
   std::string text = summary(findings.diagnosis);
   if (findings.since)
     text += "Since " + findings.since->name + ": " + findings.since->comparison.why + "\n";
-  if (findings.sim && findings.sim->gap)
-    text += "Against " + findings.sim->name + ": " + gap_in_words(*findings.sim->gap) + "\n";
-  if (findings.sim)
-    for (const std::string& each : findings.sim->differences.sentences)
-      text += "Against " + findings.sim->name + ": " + each + "\n";
+  for (const std::string& each : simulator_sentences(findings))
+    text += "Against " + findings.sim->name + ": " + each + "\n";
   return text;
 }
 
@@ -163,10 +164,12 @@ Result<void> write_folder(const std::filesystem::path& out, const Inputs& inputs
   const Diagnosis& diagnosis = findings.diagnosis;
   const PageSubject subject{*inputs.robot, inputs.measured.data, inputs.measured.name,
                             unix_now_ms()};
-  const std::pair<const char*, std::string> files[] = {
+  std::vector<std::pair<const char*, std::string>> files = {
       {"diagnosis.json", json_of(inputs, findings)},
       {"report.html", page_of(diagnosis_data(subject, findings))},
       {"corrected.robot.yaml", robot_text(*diagnosis.model, diagnosis.values)}};
+  if (findings.sim && findings.sim->mended)
+    files.emplace_back("mended.xml", findings.sim->mended->text);
   for (const auto& [name, text] : files)
     if (auto done = write_file_atomically(out / name, text); !done) return done;
   return {};
@@ -213,8 +216,10 @@ void add_diagnose(CLI::App& app, int& status) {
   command->add_option("--next", arguments->next, "File for the rows to measure next");
   command->add_option("--cell", arguments->cell,
                       "CONFIG.yaml of the robot's cell: what to measure next are touches in it");
-  command->add_option("--out", arguments->out,
-                      "Folder for diagnosis.json, report.html and corrected.robot.yaml");
+  command->add_option(
+      "--out", arguments->out,
+      "Folder for diagnosis.json, report.html, corrected.robot.yaml and, with a model, "
+      "mended.xml");
   command->add_flag("--json", arguments->json, "Print diagnosis.json alone on standard output");
   command->callback([arguments, &status] { status = diagnose_command(*arguments); });
 }

@@ -1,19 +1,16 @@
 // selfcal robot convert FILE: a robot from another program's file, or for another program.
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "app/commands/subcommand.h"
+#include "app/commands/support/convert_notes.h"
+#include "app/commands/support/for_controller.h"
 #include "app/commands/support/foreign_robot.h"
-#include "app/report/format.h"
+#include "app/commands/support/mended_model.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
-#include "io/models/delta_firmware.h"
-#include "io/models/mjcf_text.h"
-#include "io/models/ur_kinematics.h"
 #include "io/models/urdf_text.h"
-#include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
@@ -24,62 +21,8 @@ struct ConvertArguments : ForeignRobot {
   std::string to = "yaml", like, out;
 };
 
-void note_left_out(const std::vector<std::string>& all) {
-  for (const std::string& each : all) note("left out: " + each);
-}
-
-/// Names what another program does not hold of a robot: its effects but for those that it `holds`.
-void note_effects(const Node& robot, bool (*holds)(const Node& entry) = nullptr) {
-  const Node* effects = robot.find("effects");
-  if (!effects) return;
-  for (const Node& entry : effects->items) {
-    if (holds && holds(entry)) continue;
-    const Node* name = entry.find("effect");
-    const Node* at = entry.find("at");
-    note("left out: the effect " + (name ? name->text : "?") +
-         (at && !at->text.empty() ? " at " + at->text : ""));
-  }
-}
-
-/// The same of a serial robot's gears, and of its coupling unless the program has it (`coupled`).
-void note_transmissions(const serial::Model& model, bool coupled) {
-  for (const serial::Frame& frame : model.frames)
-    if (frame.gear != 1)
-      note("left out: the gear ratio of " + frame.name + ", " + format_number(frame.gear) +
-           ": positions there are the ratio times the reading");
-  if (!coupled && model.coupling.size() > 0)
-    note("left out: the coupling of joints: positions there are coupling times readings");
-}
-
-/// The serial robot that a robot file describes, its effects apart.
-Result<serial::Model> serial_model(const Node& robot, const ConvertArguments& arguments) {
-  if (robot.find("kind")->text != "serial")
-    return bad_input(arguments.file + ": a robot of kind " + robot.find("kind")->text +
-                     " has loops, and " + arguments.to + " holds chains of joints only");
-  Problems problems;
-  serial::Model model = serial::read(robot.without({"effects"}), problems);
-  if (problems.any()) return bad_input(problems);
-  return model;
-}
-
-Result<CorrectedChain> corrected(const JointChain& original, const serial::Model& model,
-                                 const ConvertArguments& arguments) {
-  CorrectedChain chain = corrected_chain(original, model);
-  if (!chain.problem.empty())
-    return bad_input(arguments.file + ": is no calibration of " + arguments.like + ": " +
-                     chain.problem);
-  const double length = chain.base.translation().norm();
-  const double angle = log_rotation(chain.base.linear()).norm();
-  if (length > 1e-9 || angle > 1e-9)
-    note(
-        printed("the base moves by %.3f mm and %.3f mrad, to where the data set's world has it; "
-                "this goes into the first joint",
-                1e3 * length, 1e3 * angle));
-  return chain;
-}
-
 Result<std::string> to_urdf(const Node& robot, const ConvertArguments& arguments) {
-  const auto model = serial_model(robot, arguments);
+  const auto model = serial_model(robot, arguments.file, arguments.to);
   if (!model) return tl::unexpected(model.error());
   note_effects(robot);
   note_transmissions(*model, !arguments.like.empty());
@@ -92,8 +35,9 @@ Result<std::string> to_urdf(const Node& robot, const ConvertArguments& arguments
   if (!text) return tl::unexpected(text.error());
   const auto original = read_urdf(*text, arguments.like, arguments.ends);
   if (!original) return tl::unexpected(original.error());
-  const auto chain = corrected(original->chain, *model, arguments);
+  const auto chain = corrected_by(*model, arguments.file, original->chain, arguments.like);
   if (!chain) return tl::unexpected(chain.error());
+  note_base(*chain);
   const auto made = urdf_like(*text, arguments.like, *original, *chain);
   if (!made) return tl::unexpected(made.error());
   note_left_out(made->left_out);
@@ -104,57 +48,10 @@ Result<std::string> to_urdf(const Node& robot, const ConvertArguments& arguments
   return made->text;
 }
 
-/// A joint's compliance as one number, which MuJoCo has as a spring.
-bool is_joint_spring(const Node& entry) {
-  const Node *name = entry.find("effect"), *c = entry.find("c"), *at = entry.find("at");
-  return name && name->text == "joint_compliance" && at && c &&
-         written_number(c->text).value_or(0) > 0;
-}
-
 Result<std::string> to_mjcf(const Node& robot, const ConvertArguments& arguments) {
-  const auto model = serial_model(robot, arguments);
-  if (!model) return tl::unexpected(model.error());
-  note_effects(robot, is_joint_spring);
-  std::vector<JointSpring> springs;
-  if (const Node* effects = robot.find("effects"))
-    for (const Node& entry : effects->items)
-      if (is_joint_spring(entry))
-        springs.push_back({entry.find("at")->text, *written_number(entry.find("c")->text)});
-  const MjcfText made = mjcf_of(serial::with_usual_masses(*model), springs);
-  note_left_out(made.left_out);
-  return made.text;
-}
-
-Result<std::string> to_ur(const Node& robot, const ConvertArguments& arguments) {
-  const auto model = serial_model(robot, arguments);
-  if (!model) return tl::unexpected(model.error());
-  note_effects(robot);
-  note_transmissions(*model, false);
-  const auto text = read_file(arguments.like, kMostModelBytes);
-  if (!text) return tl::unexpected(text.error());
-  const auto original = read_ur_kinematics(*text, arguments.like);
-  if (!original) return tl::unexpected(original.error());
-  const auto chain = corrected(original->chain, *model, arguments);
-  if (!chain) return tl::unexpected(chain.error());
-  note_left_out(chain->left_out);
-  const Eigen::Isometry3d tool = chain->chain.joints.back().X_WJ.inverse() * chain->chain.X_WT;
-  if ((tool.matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() > 1e-12)
-    note("left out: the tool's correction, for the file ends at wrist_3");
-  note(
-      "give it to the driver as kinematics_params_file: it holds the offsets of the joints, too, "
-      "so no corrected URDF and no offsets beside it");
-  return ur_kinematics_text(chain->chain, original->hash);
-}
-
-Result<std::string> to_delta(const Node& robot, const ConvertArguments& arguments) {
-  if (robot.find("kind")->text != "linear-delta")
-    return bad_input(arguments.file + ": a robot of kind " + robot.find("kind")->text +
-                     " is no linear-delta, which the firmwares of delta printers are for");
-  Problems problems;
-  const linear_delta::Delta delta = linear_delta::read(robot.without({"effects"}), problems);
-  if (problems.any()) return bad_input(problems);
-  note_effects(robot);
-  const auto made = delta_firmware(delta, arguments.file);
+  const auto made = arguments.like.empty()
+                        ? mjcf_of_robot(robot, arguments.file)
+                        : mjcf_mended(robot, arguments.file, arguments.like, arguments.ends.tip);
   if (!made) return tl::unexpected(made.error());
   note_left_out(made->left_out);
   return made->text;
@@ -166,24 +63,28 @@ Result<std::string> converted(const std::string& robot, const ConvertArguments& 
   if (!node) return tl::unexpected(node.error());
   if (arguments.to == "urdf") return to_urdf(*node, arguments);
   if (arguments.to == "mjcf") return to_mjcf(*node, arguments);
-  if (arguments.to == "ur") return to_ur(*node, arguments);
-  return to_delta(*node, arguments);
+  return for_controller(*node,
+                        {arguments.to, arguments.file, arguments.like, arguments.convention});
 }
 
 int convert(const ConvertArguments& arguments) {
-  if (!arguments.like.empty() && arguments.to != "urdf" && arguments.to != "ur")
-    return wrong_usage("--like needs --to urdf or --to ur");
+  if (!arguments.like.empty() && arguments.to != "urdf" && arguments.to != "mjcf" &&
+      arguments.to != "ur")
+    return wrong_usage("--like needs --to urdf, --to mjcf or --to ur");
   if (arguments.to == "ur" && arguments.like.empty())
     return wrong_usage(
         "--to ur needs --like FILE, the kinematics file that calibration_correction wrote for this "
         "robot: its links and its hash, which the driver compares with the controller, are kept");
-  if (!arguments.convention.empty() && !is_table(arguments.file))
-    return wrong_usage("--convention is of a table (FILE.csv)");
+  if (!arguments.convention.empty() && !is_table(arguments.file) && arguments.to != "dh")
+    return wrong_usage("--convention is of a table: FILE.csv, or --to dh");
+  if (arguments.to == "dh" && arguments.convention.empty())
+    return wrong_usage("--to dh needs --convention standard or modified, as the controller has it");
   const auto text = read_file(arguments.file, kMostModelBytes);
   if (!text) return tell(text.error());
   const bool ends = !arguments.ends.base.empty() || !arguments.ends.tip.empty();
-  const bool like_urdf = arguments.to == "urdf" && !arguments.like.empty();
-  if (ends && !looks_like_xml(*text) && !like_urdf)
+  const bool like_model =
+      (arguments.to == "urdf" || arguments.to == "mjcf") && !arguments.like.empty();
+  if (ends && !looks_like_xml(*text) && !like_model)
     return wrong_usage("--base and --tip choose a chain of a URDF, and there is none");
   const auto robot = as_robot_file(*text, arguments);
   if (!robot) return tell(robot.error());
@@ -220,13 +121,14 @@ void add_robot_convert(CLI::App& robot, int& status) {
                       "(default: the only one)");
   command
       ->add_option("--to", arguments->to,
-                   "yaml: a robot file; urdf; mjcf: a model for MuJoCo; ur: kinematics of "
-                   "Universal Robots' driver; delta: "
-                   "lines for printers' firmwares")
-      ->check(CLI::IsMember({"yaml", "urdf", "mjcf", "ur", "delta"}))
+                   "yaml: a robot file; urdf; mjcf: a model for MuJoCo; for controllers offsets: "
+                   "of joints, with base and tool; dh: a table; ur: kinematics of Universal "
+                   "Robots' driver; delta: lines for printers' firmwares")
+      ->check(CLI::IsMember({"yaml", "urdf", "mjcf", "offsets", "dh", "ur", "delta"}))
       ->capture_default_str();
-  command->add_option("--like", arguments->like,
-                      "URDF or UR kinematics whose joints get the calibrated poses");
+  command->add_option(
+      "--like", arguments->like,
+      "URDF, model for MuJoCo or UR kinematics whose joints get the calibrated poses");
   command->add_option("--out", arguments->out, "File to write (default: standard output)");
   command->callback([arguments, &status] { status = convert(*arguments); });
 }

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "io/models/controller_text.h"
+
 namespace selfcal {
 namespace {
 
@@ -41,7 +43,8 @@ FirmwareNumbers numbers_of(const Eigen::VectorXd& xi) {
   for (int t = 0; t < kTowers; ++t) {
     n.rod[t] = 1e3 * xi[index(t, kRod)];
     n.trim[t] = trim(xi, t);
-    n.stop[t] = 1e3 * xi[index(t, kEndstop)] - std::sqrt(n.rod[t] * n.rod[t] - n.radius * n.radius);
+    n.stop[t] = 1e3 * (xi[index(t, kEndstop)] + xi[kTool + 2]) -
+                std::sqrt(n.rod[t] * n.rod[t] - n.radius * n.radius);
   }
   return n;
 }
@@ -77,14 +80,7 @@ std::string klipper_lines(const FirmwareNumbers& n) {
 
 /// `lines`, and behind comment signs those of the `before`, which undo them.
 std::string with_undo(const std::string& lines, const std::string& before, char sign) {
-  const std::string comment = std::string(1, sign) + " ";
-  std::string text = lines + comment + "To undo it, the maker's figures:\n";
-  for (std::size_t at = 0; at < before.size();) {
-    const std::size_t end = before.find('\n', at);
-    if (end > at) text += comment + before.substr(at, end - at) + "\n";
-    at = end + 1;
-  }
-  return text;
+  return lines + commented("To undo it, the maker's figures:\n" + before, sign);
 }
 
 std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
@@ -99,31 +95,50 @@ std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
     if (size > 0) lacks.push_back(what);
   };
   lack(radii > 1e-9 ? radii : 0,
-       "radii of single towers: their mean stands, up to " + rounded(1e3 * radii) + " mm off");
+       "radii of single towers, up to " + rounded(1e3 * radii) + " mm from that of all");
   lack(tilt, "tilts of towers, up to " + rounded(1e3 * tilt) + " mrad");
   lack(scale, "scales of towers, up to " + rounded(1e6 * scale) +
                   " ppm: multiply the steps per mm by them");
   lack(delta.value.segment<2>(kEffector).norm(), "the effector's tilt");
-  lack(delta.value.segment<3>(kTool).norm(), "the tool's offset: take its z off the heights");
+  const Eigen::Vector2d across = 1e3 * delta.value.segment<2>(kTool);
+  lack(across.norm(),
+       "the tool's offset across, x " + rounded(across.x()) + " y " + rounded(across.y()) + " mm");
   return lacks;
 }
 
 }  // namespace
 
-Result<FirmwareText> delta_firmware(const Delta& delta, const std::string& file) {
+ControllerNumbers firmware_numbers(const Delta& delta) {
+  ControllerNumbers numbers{delta.nominal, Eigen::MatrixXd::Zero(kParameters, 1 + 3 * kTowers)};
+  double radius = 0;
+  for (int t = 0; t < kTowers; ++t) radius += delta.nominal[index(t, kRadius)] / kTowers;
+  for (int t = 0; t < kTowers; ++t) {
+    numbers.start[index(t, kRadius)] = radius;
+    numbers.start.segment<2>(index(t, kTiltX)).setZero();
+    numbers.start[index(t, kScale)] = delta.value[index(t, kScale)];
+    numbers.basis(index(t, kRadius), 0) = 1;
+    int column = 1 + 3 * t;
+    for (const Field each : {kAngle, kRod, kEndstop}) numbers.basis(index(t, each), column++) = 1;
+  }
+  numbers.start.segment<2>(kEffector).setZero();
+  return numbers;
+}
+
+Result<FirmwareText> delta_firmware(const Delta& delta, const Eigen::VectorXd& told,
+                                    const std::string& head, const std::string& file) {
   for (int t = 0; t < kTowers; ++t)
-    if (std::abs(trim(delta.value, t)) > kMostTrim)
-      return bad_input(file + ": " + tower_name(t) + " stands " + rounded(trim(delta.value, t)) +
+    if (std::abs(trim(told, t)) > kMostTrim)
+      return bad_input(file + ": " + tower_name(t) + " stands " + rounded(trim(told, t)) +
                        " degrees from where firmwares have it (210, 330, 90 in this order)");
-  const FirmwareNumbers now = numbers_of(delta.value), before = numbers_of(delta.nominal);
+  const FirmwareNumbers now = numbers_of(told), before = numbers_of(delta.nominal);
   FirmwareText out;
   out.text =
       "; RepRapFirmware (config.g). Heights are above the base plane: take the bed's off.\n" +
-      with_undo(reprap_lines(now), reprap_lines(before), ';') +
+      commented(head, ';') + with_undo(reprap_lines(now), reprap_lines(before), ';') +
       "\n; Marlin, then G28 and M500. Heights as above. A B C are the rods' trims; where M665 "
       "has none\n; (B is the calibration radius there), leave them out.\n" +
       with_undo(marlin_lines(now), marlin_lines(before), ';') + "\n# Klipper (printer.cfg)\n" +
-      with_undo(klipper_lines(now), klipper_lines(before), '#');
+      commented(head, '#') + with_undo(klipper_lines(now), klipper_lines(before), '#');
   out.left_out = firmware_lacks(delta, now.radius * 1e-3);
   return out;
 }

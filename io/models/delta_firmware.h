@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/result.h"
+#include "kinematics/inverse/controller_fit.h"
 #include "kinematics/robots/linear_delta.h"
 
 namespace selfcal {
@@ -16,8 +17,14 @@ struct FirmwareText {
   std::vector<std::string> left_out;  ///< what a firmware does not hold, with its size
 };
 
-/// Refuses towers that do not stand near 210, 330 and 90 degrees in this order, as firmwares have
-/// them; `file` stands for the robot's. Lengths are mm, angles degrees there.
-Result<FirmwareText> delta_firmware(const linear_delta::Delta& delta, const std::string& file);
+/// What firmwares hold of a delta: one radius of all towers, and of each its angle, rod and
+/// endstop. Its scales, which the steps per mm take, and the tool are given.
+ControllerNumbers firmware_numbers(const linear_delta::Delta& delta);
+
+/// The lines of the values `told`, of firmware_numbers, behind `head` in comments. Refuses towers
+/// that do not stand near 210, 330 and 90 degrees in this order, as firmwares have them; `file`
+/// stands for the robot's. Lengths are mm, angles degrees there, heights those of the tool.
+Result<FirmwareText> delta_firmware(const linear_delta::Delta& delta, const Eigen::VectorXd& told,
+                                    const std::string& head, const std::string& file);
 
 }  // namespace selfcal

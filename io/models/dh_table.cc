@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "io/files/csv.h"
+#include "io/files/file.h"
 #include "io/files/units.h"
 
 namespace selfcal {
 namespace {
+
+constexpr std::size_t kMostTableBytes = std::size_t{1} << 20;
 
 std::string lower(std::string_view text) {
   std::string list(text);
@@ -158,16 +161,31 @@ class Table {
   std::vector<Node> frames_;
 };
 
+/// The line of the names: what stands above it behind # is for people.
+Result<int> header_line(const std::filesystem::path& path) {
+  const auto text = read_file(path, kMostTableBytes);
+  if (!text) return tl::unexpected(text.error());
+  int line = 1;
+  for (std::size_t at = 0; at < text->size() && (*text)[at] == '#'; ++line) {
+    at = text->find('\n', at);
+    if (at == std::string::npos) break;
+    ++at;
+  }
+  return line;
+}
+
 }  // namespace
 
 Result<Node> read_dh_table(const std::filesystem::path& path, const std::string& convention) {
-  const auto separator = separator_of(path, 1);
+  const auto header = header_line(path);
+  if (!header) return tl::unexpected(header.error());
+  const auto separator = separator_of(path, *header);
   if (!separator) return tl::unexpected(separator.error());
   Table table;
   const Result<void> read = read_csv(
       path, [&](Cells cells) { return table.take_header(cells); },
       [&](Cells cells, int row) { return table.take_row(cells, row); },
-      {1, separator->value_or(',')});
+      {*header, separator->value_or(',')});
   if (!read) return tl::unexpected(read.error());
   Node frames = Node::list();
   frames.items = std::move(table).frames();

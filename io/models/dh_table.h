@@ -3,10 +3,10 @@
 //
 //   joint, alpha [deg], a [mm], d [mm], theta [deg], type, min [deg], max [deg]
 //
-// In any order and capitals, with units in brackets or parentheses behind the names (rad and m
-// without). a is the distance along x and d that along z; a table after Khalil and Kleinfinger has
-// d along x and r along z. type is revolute (by default), prismatic or fixed. What a table lacks
-// but theta, which is the joint's own, is 0.
+// Lines that begin with # may stand above the names. In any order and capitals, with units in
+// brackets or parentheses behind the names (rad and m without). a is the distance along x and d
+// that along z; a table after Khalil and Kleinfinger has d along x and r along z. type is revolute
+// (by default), prismatic or fixed. What a table lacks but theta, which is the joint's own, is 0.
 #pragma once
 
 #include <filesystem>

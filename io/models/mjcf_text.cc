@@ -4,131 +4,97 @@
 
 #include <tinyxml.h>
 
+#include "io/models/mjcf_elements.h"
+
 namespace selfcal {
 namespace {
 
-constexpr double kNoMass = 1e-6;      // kg, of a link whose mass the robot file lacks
-constexpr double kGyration = 0.1;     // m, radius of gyration, which no robot file has
-constexpr double kSpringTime = 0.01;  // s, in which a spring comes to rest by its damping
-constexpr double kPiGrace = 1e-12;    // of a quaternion's sign
-
-std::string numbers(const Eigen::VectorXd& v) {
-  std::string text;
-  for (const double each : v) text += (text.empty() ? "" : " ") + format_number(each + 0.0);
-  return text;
-}
-
-void set_pose(TiXmlElement& element, const Eigen::Isometry3d& X) {
-  Eigen::Quaterniond q(X.linear());
-  if (q.w() < -kPiGrace) q.coeffs() *= -1;
-  element.SetAttribute("pos", numbers(X.translation()));
-  element.SetAttribute("quat", numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
-}
-
-TiXmlElement inertial_element(double mass, const Eigen::Vector3d& com) {
-  TiXmlElement element("inertial");
-  element.SetAttribute("pos", numbers(com));
-  element.SetAttribute("mass", format_number(mass));
-  element.SetAttribute("diaginertia",
-                       numbers(Eigen::Vector3d::Constant(mass * kGyration * kGyration)));
-  return element;
-}
-
-TiXmlElement moving_element(const std::string& name, serial::Motion motion) {
-  TiXmlElement element("joint");
-  element.SetAttribute("name", name);
-  element.SetAttribute("type", motion == serial::Motion::prismatic ? "slide" : "hinge");
-  element.SetAttribute("axis", "0 0 1");
-  return element;
-}
-
 TiXmlElement motor_element(const serial::Frame& frame) {
-  TiXmlElement element = moving_element(frame.name, frame.motion);
+  TiXmlElement element = mjcf_joint(frame.name, frame.motion);
   if (!(frame.lower < frame.upper)) return element;
   element.SetAttribute("limited", "true");
-  element.SetAttribute("range", numbers(Eigen::Vector2d(frame.lower, frame.upper)));
+  element.SetAttribute("range", mjcf_numbers(Eigen::Vector2d(frame.lower, frame.upper)));
   return element;
 }
 
-TiXmlElement spring_element(const serial::Frame& frame, double compliance) {
-  TiXmlElement element = moving_element(frame.name + ".spring", frame.motion);
-  element.SetAttribute("stiffness", format_number(1 / compliance));
-  element.SetAttribute("damping", format_number(kSpringTime / compliance));
+TiXmlElement play_element(const serial::Frame& frame, double play) {
+  TiXmlElement element = mjcf_joint(frame.name + ".play", frame.motion);
+  element.SetAttribute("limited", "true");
+  element.SetAttribute("range", mjcf_numbers(Eigen::Vector2d(-play / 2, play / 2)));
   return element;
-}
-
-/// What a joint moves beside its own reading, in proportion to the reading of one (11.16).
-struct Following {
-  std::string joint, leader, name;
-  double factor = 0;
-};
-
-std::vector<Following> followings(const serial::Model& robot) {
-  const std::vector<int> moving = serial::moving_frames(robot);
-  const auto n = static_cast<Eigen::Index>(moving.size());
-  const Eigen::MatrixXd coupling =
-      robot.coupling.size() > 0 ? robot.coupling : Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n));
-  const auto frame = [&](Eigen::Index j) -> const serial::Frame& {
-    return robot.frames[static_cast<size_t>(moving[static_cast<size_t>(j)])];
-  };
-  std::vector<Following> list;
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double factor = coupling(j, i) * frame(i).gear - (i == j ? 1 : 0);
-      if (factor != 0)
-        list.push_back(
-            {frame(j).name, frame(i).name, frame(j).name + ".of." + frame(i).name, factor});
-    }
-  return list;
 }
 
 TiXmlElement equality_element(const std::vector<Following>& all) {
   TiXmlElement equality("equality");
-  for (const Following& each : all) {
-    TiXmlElement joint("joint");
-    joint.SetAttribute("joint1", each.name);
-    joint.SetAttribute("joint2", each.leader);
-    joint.SetAttribute("polycoef", "0 " + format_number(each.factor) + " 0 0 0");
-    equality.InsertEndChild(joint);
-  }
+  for (const Following& each : all) equality.InsertEndChild(follow_element(each));
   return equality;
 }
 
 TiXmlElement body_element(const serial::Frame& frame, const std::vector<Following>& following,
-                          const std::vector<JointSpring>& springs) {
+                          const MjcfEffects& effects, const Eigen::Vector3d& parent) {
   TiXmlElement body("body");
   body.SetAttribute("name", frame.name);
-  set_pose(body, serial::pose_in_parent(frame, 0));
+  set_mjcf_pose(body, Eigen::Translation3d(-parent) * serial::pose_in_parent(frame, 0));
   const bool moves = frame.motion != serial::Motion::fixed, has_mass = frame.mass.value_or(0) > 0;
   if (moves || has_mass)
     body.InsertEndChild(
-        inertial_element(has_mass ? *frame.mass : kNoMass,
-                         has_mass ? frame.com : Eigen::Vector3d(Eigen::Vector3d::Zero())));
+        mjcf_inertial(has_mass ? *frame.mass : kNoMjcfMass,
+                      has_mass ? frame.com : Eigen::Vector3d(Eigen::Vector3d::Zero())));
   if (!moves) return body;
   body.InsertEndChild(motor_element(frame));
   for (const Following& each : following)
-    if (each.joint == frame.name) body.InsertEndChild(moving_element(each.name, frame.motion));
-  for (const JointSpring& spring : springs)
-    if (spring.joint == frame.name) body.InsertEndChild(spring_element(frame, spring.compliance));
+    if (each.joint == frame.name) body.InsertEndChild(mjcf_joint(each.name, frame.motion));
+  for (const DeadBand& each : effects.plays)
+    if (each.joint == frame.name) body.InsertEndChild(play_element(frame, each.play));
+  for (const JointSpring& each : effects.joints) {
+    if (each.joint != frame.name) continue;
+    TiXmlElement spring = mjcf_joint(frame.name + ".spring", frame.motion);
+    set_mjcf_spring(spring, each.compliance);
+    body.InsertEndChild(spring);
+  }
   return body;
+}
+
+/// The bodies that give way between a frame's own and the next one's, whose origin is at `next`.
+/// `parent` becomes the last of them; where that stands in the frame's axes.
+Eigen::Vector3d add_sprung(const std::string& frame, const MjcfEffects& effects,
+                           const Eigen::Vector3d& next, TiXmlElement*& parent) {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  const auto add = [&](SprungBody body) {
+    const Eigen::Vector3d place = body.p;
+    body.p -= at;
+    parent = parent->InsertEndChild(sprung_element(body))->ToElement();
+    at = place;
+  };
+  for (const BodySpring& each : effects.tools)
+    if (each.frame == frame) add(mounting_body(each));
+  for (const BodySpring& each : effects.links)
+    if (each.frame == frame)
+      for (const SprungBody& body : bending_bodies(each, next)) add(body);
+  return at;
 }
 
 }  // namespace
 
-MjcfText mjcf_of(const serial::Model& robot, const std::vector<JointSpring>& springs) {
-  MjcfText out;
+MjcfText mjcf_of(const serial::Model& robot, const MjcfEffects& effects) {
+  MjcfText out{{}, effects.left_out};
   TiXmlDocument document;
   TiXmlElement root("mujoco"), compiler("compiler"), option("option");
   root.SetAttribute("model", robot.name);
   compiler.SetAttribute("angle", "radian");
-  option.SetAttribute("gravity", numbers(robot.gravity));
+  option.SetAttribute("gravity", mjcf_numbers(robot.gravity));
   root.InsertEndChild(compiler);
   root.InsertEndChild(option);
   TiXmlElement* parent = root.InsertEndChild(TiXmlElement("worldbody"))->ToElement();
-  const std::vector<Following> following = followings(robot);
+  const std::vector<Following> following = followings(robot, effects.drags);
   std::string silent;
-  for (const serial::Frame& frame : robot.frames) {
-    parent = parent->InsertEndChild(body_element(frame, following, springs))->ToElement();
+  Eigen::Vector3d sprung = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < robot.frames.size(); ++i) {
+    const serial::Frame& frame = robot.frames[i];
+    parent = parent->InsertEndChild(body_element(frame, following, effects, sprung))->ToElement();
+    if (i + 1 < robot.frames.size())
+      sprung = add_sprung(frame.name, effects,
+                          serial::pose_in_parent(robot.frames[i + 1], 0).translation(), parent);
     if (frame.motion != serial::Motion::fixed && !frame.mass)
       silent += (silent.empty() ? "" : ", ") + frame.name;
   }
@@ -139,7 +105,7 @@ MjcfText mjcf_of(const serial::Model& robot, const std::vector<JointSpring>& spr
   document.InsertEndChild(root);
   if (!silent.empty())
     out.left_out.push_back("masses of " + silent + ", which the robot file lacks: " +
-                           format_number(1e3 * kNoMass) + " g written, put yours");
+                           format_number(1e3 * kNoMjcfMass) + " g written, put yours");
   out.left_out.emplace_back(
       "moments of inertia, which a robot file lacks: those of 0.1 m of gyration written, put "
       "yours");

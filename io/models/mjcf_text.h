@@ -4,15 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "kinematics/robots/serial.h"
+#include "io/models/mjcf_effects.h"
 
 namespace selfcal {
-
-/// A joint that gives way.
-struct JointSpring {
-  std::string joint;      ///< the frame that it moves
-  double compliance = 0;  ///< rad/(N m), m/N; positive
-};
 
 /// A model, and what it does not hold of the robot.
 struct MjcfText {
@@ -21,9 +15,11 @@ struct MjcfText {
 };
 
 /// A body a frame, called after it, in the robot's world, with a site `tool` at the last frame. Its
-/// joints' positions are the readings; no actuator drives them. Gear ratios and coupling are joints
-/// NAME.of.LEADER that follow others by an equality, joints that give way have NAME.spring behind
-/// them.
-MjcfText mjcf_of(const serial::Model& robot, const std::vector<JointSpring>& springs);
+/// joints' positions are the readings; no actuator drives them. Gear ratios, coupling and drags are
+/// joints NAME.of.LEADER that follow others by an equality, joints that give way have NAME.spring
+/// behind them, those with play NAME.play, free within its range. Links that give way have two
+/// bodies NAME.bend1 and NAME.bend2 on their length, the tool's mount NAME.mount, with springs
+/// about all axes.
+MjcfText mjcf_of(const serial::Model& robot, const MjcfEffects& effects);
 
 }  // namespace selfcal

@@ -4,7 +4,9 @@
 // mujoco_engine.cc is built where libmujoco is found; mujoco_missing.cc, which refuses, where not.
 //
 // Of the joints between the world and the tool those are the robot's that an actuator drives or no
-// spring holds; the others, springs that nothing drives, give way.
+// spring holds; the others, springs that nothing drives, give way. A limited one without spring and
+// actuator on one axis with the first of its body is that one's play: it lies where its load puts
+// it, at an end of its range.
 #pragma once
 
 #include <filesystem>
@@ -17,9 +19,21 @@
 
 namespace selfcal {
 
+/// One body on the way from the world to the tool.
+struct MujocoBody {
+  int place = 0;  ///< in the order in which the model's file has its bodies, from 0
+  std::string name;
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();  ///< with all joints at zero
+  std::vector<int> joints = {};                            ///< of the chain, that it has
+};
+
 struct MujocoChain {
-  JointChain chain;                  ///< W is the model's world, T the tool; springs at their rest
-  std::string tool;                  ///< the site or body that T is, as found
+  JointChain chain;                 ///< W is the model's world, T the tool; springs at their rest
+  std::vector<MujocoBody> bodies;   ///< that carry T, from the world on
+  int every_body = 0;               ///< that the model has
+  std::vector<std::string> driven;  ///< the chain's joints that a position actuator holds
+  std::string tool;                 ///< the site or body that T is, as found
+  bool tool_is_site = false;
   std::vector<std::string> notices;  ///< what a person should know
 };
 
@@ -46,8 +60,10 @@ struct MujocoPoses {
 /// gives way as the actuator lets it; one without stands at its reading. Joints that follow these
 /// by an equality follow exactly. Springs of the chain settle to the balance of all forces, by
 /// Newton's method on the inverse dynamics at no acceleration; what is off the chain stays where
-/// the model has it.
+/// the model has it. With a `text`, that is the model in place of the file's, beside which the
+/// files that it names lie.
 Result<MujocoPoses> settled_poses(const std::filesystem::path& file, const std::string& tool,
-                                  const std::vector<MujocoLoad>& loads);
+                                  const std::vector<MujocoLoad>& loads,
+                                  const std::string& text = {});
 
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "io/models/mujoco.h"
@@ -21,7 +22,10 @@ using Eigen::VectorXd;
 constexpr double kDifference = 1e-7;  // rad or m, of the derivative
 constexpr double kMostStep = 0.05;    // rad or m, of one of Newton's
 constexpr double kAtRest = 1e-10;     // rad or m: the last step's
-constexpr int kMostSteps = 60, kMostHalvings = 12;
+constexpr int kMostSteps = 60, kMostHalvings = 12, kMostSides = 10;
+constexpr double kNoTorque = 1e-9;  // N m, N: that keeps a joint on no side of its play
+/// Of a play's range, where it lies: at its end, where the model's own soft limit does not act yet.
+constexpr double kWithin = 1 - 1e-9;
 
 struct ModelEnd {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -61,11 +65,31 @@ struct Follower {
 class Model {
  public:
   static Result<Model> load(const std::filesystem::path& file, const std::string& tool) {
+    return load(file, nullptr, tool);
+  }
+
+  /// The model whose text is `text`, with the file's folder for what it names.
+  static Result<Model> load_text(const std::filesystem::path& file, const std::string& text,
+                                 const std::string& tool) {
+    const auto files = std::make_unique<mjVFS>();  // large
+    mj_defaultVFS(files.get());
+    const std::string name = file.filename().string();
+    if (mj_makeEmptyFileVFS(files.get(), name.c_str(), static_cast<int>(text.size())) != 0)
+      return bad_input(file.string() + ": MuJoCo takes no model of this size or name");
+    const int place = mj_findFileVFS(files.get(), name.c_str());
+    std::memcpy(files->filedata[place], text.data(), text.size());
+    auto loaded = load(file, files.get(), tool);
+    mj_deleteVFS(files.get());
+    return loaded;
+  }
+
+  static Result<Model> load(const std::filesystem::path& file, const mjVFS* files,
+                            const std::string& tool) {
     mju_user_warning = take_warning;
     std::array<char, 1000> error{};
     Model loaded;
     loaded.file_ = file.string();
-    loaded.model_.reset(mj_loadXML(file.c_str(), nullptr, error.data(), error.size()));
+    loaded.model_.reset(mj_loadXML(file.c_str(), files, error.data(), error.size()));
     if (!loaded.model_) return bad_input(loaded.file_ + ": MuJoCo: " + in_one_line(error.data()));
     loaded.data_.reset(mj_makeData(loaded.model_.get()));
     if (auto found = loaded.find_tool(tool); !found) return tl::unexpected(found.error());
@@ -94,18 +118,37 @@ class Model {
   }
 
   std::size_t followers() const { return followers_.size(); }
+  int every_body() const { return model_->nbody - 1; }
+
+  /// Where chain() has them.
+  std::vector<MujocoBody> bodies() const {
+    std::vector<MujocoBody> list;
+    for (int id = tool_.body; id > 0; id = model_->body_parentid[id]) {
+      const char* name = mj_id2name(model_.get(), mjOBJ_BODY, id);
+      MujocoBody body{id - 1, name ? name : "",
+                      pose_at(data_->xpos + 3 * id, data_->xmat + 9 * id)};
+      for (std::size_t j = 0; j < joints_.size(); ++j)
+        if (model_->jnt_bodyid[joints_[j].id] == id) body.joints.push_back(static_cast<int>(j));
+      list.push_back(std::move(body));
+    }
+    std::ranges::reverse(list);
+    return list;
+  }
+
+  std::vector<std::string> driven_joints() const {
+    std::vector<std::string> names;
+    for (const ModelJoint& joint : joints_)
+      if (joint.actuator >= 0) names.push_back(joint_name(joint.id));
+    return names;
+  }
 
   /// The tool at rest, or nothing.
   std::optional<Location> settle(const MujocoLoad& load) {
     stand(load.q);
-    VectorXd r = imbalance(load);
-    double step = free_.empty() ? 0 : 1;
-    for (int i = 0; i < kMostSteps && step > kAtRest; ++i) {
-      const VectorXd change = newton(load, r);
-      if (!change.allFinite()) return std::nullopt;
-      step = descend(load, change, r);
+    for (int i = 0; i < kMostSides; ++i) {
+      if (!balance(load)) return std::nullopt;
+      if (!change_sides()) break;
     }
-    if (step > kAtRest || !r.allFinite()) return std::nullopt;
     follow();
     mj_fwdPosition(model_.get(), data_.get());
     const Isometry3d X = tool_pose();
@@ -113,6 +156,33 @@ class Model {
   }
 
  private:
+  /// Moves what may give way until nothing pulls; false where it comes to no rest.
+  bool balance(const MujocoLoad& load) {
+    VectorXd r = imbalance(load);
+    double step = free_.empty() ? 0 : 1;
+    for (int i = 0; i < kMostSteps && step > kAtRest; ++i) {
+      const VectorXd change = newton(load, r);
+      if (!change.allFinite()) return false;
+      step = descend(load, change, r);
+    }
+    return step <= kAtRest && r.allFinite();
+  }
+
+  /// Puts each joint with play where the load of the last balance drives it; false where all are.
+  bool change_sides() {
+    bool changed = false;
+    for (const int joint : plays_) {
+      const double torque = -force_missing_[model_->jnt_dofadr[joint]];
+      const mjtNum* range = model_->jnt_range + 2 * joint;
+      const double side = std::abs(torque) < kNoTorque ? zero(joint)
+                          : torque > 0                 ? kWithin * range[1]
+                                                       : kWithin * range[0];
+      changed = changed || position(joint) != side;
+      position(joint) = side;
+    }
+    return changed;
+  }
+
   static std::string in_one_line(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     while (text.ends_with(' ')) text.pop_back();
@@ -211,6 +281,16 @@ class Model {
     return std::nullopt;
   }
 
+  /// On one axis with the body's first joint, free within a range: what that joint has play by.
+  bool is_play(int joint) const {
+    const mjModel& m = *model_;
+    const int first = m.body_jntadr[m.jnt_bodyid[joint]];
+    return joint != first && m.jnt_type[joint] == m.jnt_type[first] && m.jnt_limited[joint] &&
+           m.jnt_stiffness[joint] == 0 && !is_driven(joint) &&
+           vector_at(m.jnt_axis + 3 * joint) == vector_at(m.jnt_axis + 3 * first) &&
+           vector_at(m.jnt_pos + 3 * joint) == vector_at(m.jnt_pos + 3 * first);
+  }
+
   Result<void> find_joints() {
     const mjModel& m = *model_;
     std::vector<int> bodies;
@@ -223,6 +303,10 @@ class Model {
                            tool_.name + "' is neither a hinge nor a slide");
         if (const auto follower = follower_of(joint)) {
           followers_.push_back(*follower);
+          continue;
+        }
+        if (is_play(joint)) {
+          plays_.push_back(joint);
           continue;
         }
         const bool spring = m.jnt_stiffness[joint] > 0 && !is_driven(joint);
@@ -300,15 +384,15 @@ class Model {
                tool_.body, applied.data());
     mju_zero(data_->qacc, model_->nv);
     mj_inverse(model_.get(), data_.get());
-    VectorXd force_missing = VectorXd::Zero(model_->nv);
+    force_missing_ = VectorXd::Zero(model_->nv);
     for (int dof = 0; dof < model_->nv; ++dof)
-      force_missing[dof] = data_->qfrc_inverse[dof] - data_->qfrc_actuator[dof] - applied[dof];
+      force_missing_[dof] = data_->qfrc_inverse[dof] - data_->qfrc_actuator[dof] - applied[dof];
     for (const Follower& each : followers_)  // by virtual work
-      force_missing[model_->jnt_dofadr[each.leader]] +=
-          slope(each) * force_missing[model_->jnt_dofadr[each.id]];
+      force_missing_[model_->jnt_dofadr[each.leader]] +=
+          slope(each) * force_missing_[model_->jnt_dofadr[each.id]];
     VectorXd r(static_cast<Eigen::Index>(free_.size()));
     for (Eigen::Index i = 0; i < r.size(); ++i) {
-      r[i] = force_missing[free_[static_cast<std::size_t>(i)]];
+      r[i] = force_missing_[free_[static_cast<std::size_t>(i)]];
     }
     return r;
   }
@@ -384,7 +468,9 @@ class Model {
   std::vector<ModelJoint> joints_;  ///< of the robot, from the world to the tool
   std::vector<Follower> followers_;
   std::vector<int> springs_;  ///< joints between them that give way
+  std::vector<int> plays_;    ///< joints between them that lie where their load puts them
   std::vector<int> free_;     ///< degrees of freedom that settle
+  VectorXd force_missing_;    ///< N m, N: by degree of freedom, in the last imbalance
 };
 
 }  // namespace
@@ -392,7 +478,13 @@ class Model {
 Result<MujocoChain> read_mujoco(const std::filesystem::path& file, const std::string& tool) {
   auto model = Model::load(file, tool);
   if (!model) return tl::unexpected(model.error());
-  MujocoChain read{model->chain(), model->tool().name, {}};
+  MujocoChain read;
+  read.chain = model->chain();
+  read.bodies = model->bodies();
+  read.every_body = model->every_body();
+  read.driven = model->driven_joints();
+  read.tool = model->tool().name;
+  read.tool_is_site = model->tool().site >= 0;
   if (model->followers() > 0)
     return bad_input(file.string() + ": " + std::to_string(model->followers()) +
                      " joints on the way to '" + model->tool().name +
@@ -405,8 +497,8 @@ Result<MujocoChain> read_mujoco(const std::filesystem::path& file, const std::st
 }
 
 Result<MujocoPoses> settled_poses(const std::filesystem::path& file, const std::string& tool,
-                                  const std::vector<MujocoLoad>& loads) {
-  auto model = Model::load(file, tool);
+                                  const std::vector<MujocoLoad>& loads, const std::string& text) {
+  auto model = text.empty() ? Model::load(file, tool) : Model::load_text(file, text, tool);
   if (!model) return tl::unexpected(model.error());
   MujocoPoses poses;
   poses.driven = model->driven();

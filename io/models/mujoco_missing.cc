@@ -17,7 +17,7 @@ Result<MujocoChain> read_mujoco(const std::filesystem::path& file, const std::st
 }
 
 Result<MujocoPoses> settled_poses(const std::filesystem::path& file, const std::string&,
-                                  const std::vector<MujocoLoad>&) {
+                                  const std::vector<MujocoLoad>&, const std::string&) {
   return built_without(file);
 }
 

@@ -285,7 +285,7 @@ towers:
 )";
   Problems problems;
   const auto delta = linear_delta::read(*parse_yaml(text, "d.yaml"), problems);
-  const auto made = delta_firmware(delta, "d.yaml");
+  const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
   ASSERT_TRUE(made);
   EXPECT_THAT(made->left_out, IsEmpty());
   const auto robot = robot_of(text, "d.yaml");
@@ -326,7 +326,7 @@ towers:
   Problems problems;
   auto delta = linear_delta::read(*parse_yaml(text, "d.yaml"), problems);
   delta.nominal[linear_delta::index(0, linear_delta::kRod)] = 0.2140;
-  const auto made = delta_firmware(delta, "d.yaml");
+  const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
   ASSERT_TRUE(made);
   const auto robot = robot_of(text, "d.yaml");
   const Eigen::Vector3d q(-0.20, -0.21, -0.19);
@@ -359,13 +359,13 @@ TEST(DeltaFirmware, NamesWhatItLacksAndRefusesOtherTowers) {
   }
   delta.value[linear_delta::index(1, linear_delta::kTiltX)] = 0.002;
   delta.value[linear_delta::index(1, linear_delta::kScale)] = 1.0001;
-  const auto made = delta_firmware(delta, "d.yaml");
+  const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
   ASSERT_TRUE(made);
   EXPECT_THAT(made->left_out, Contains(HasSubstr("up to 2.0000 mrad")));
   EXPECT_THAT(made->left_out, Contains(HasSubstr("up to 100.0000 ppm")));
   std::swap(delta.value[linear_delta::index(0, linear_delta::kAngle)],
             delta.value[linear_delta::index(1, linear_delta::kAngle)]);
-  EXPECT_FALSE(delta_firmware(delta, "d.yaml"));
+  EXPECT_FALSE(delta_firmware(delta, delta.value, "", "d.yaml"));
 }
 
 }  // namespace

@@ -86,7 +86,9 @@ TEST(MujocoModels, OfARobotFileHaveItsLocations) {
   ASSERT_FALSE(problems.any()) << problems.list.front();
   const auto robot = robot_of(kGeared, "geared.yaml");
   ASSERT_TRUE(robot);
-  Engine engine(scratch.write("geared.xml", mjcf_of(model, {{"b", 1e-5}}).text));
+  MjcfEffects effects;
+  effects.joints = {{"b", 1e-5}};
+  Engine engine(scratch.write("geared.xml", mjcf_of(model, effects).text));
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-2, 2);
   for (int i = 0; i < 30; ++i) {
@@ -300,6 +302,10 @@ TEST(MujocoModels, AreMendedByWhatTheRobotShowsThatTheyLack) {
   ASSERT_EQ(first.status, 0) << first.out;
   EXPECT_THAT(first.out, HasSubstr("its simulation lacks: joint compliance at j2"));
   EXPECT_GT(told_gap(first.out, "arm.xml"), 1) << first.out;
+  const std::string again = "mended by what was found in the robot and run again, ";
+  ASSERT_THAT(first.out, HasSubstr(again));
+  // As below, where the same is done by hand.
+  EXPECT_LT(std::stod(first.out.substr(first.out.find(again) + again.size())), 0.05) << first.out;
   const Ran mended =
       run_selfcal("robot convert " + folder + "found/corrected.robot.yaml --to mjcf --out " +
                   folder + "mended.xml");

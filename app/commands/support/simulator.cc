@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "app/commands/support/mended_model.h"
 #include "constraints/methods/data_set.h"
+#include "io/files/yaml.h"
 #include "io/models/mujoco.h"
 
 namespace selfcal {
@@ -108,6 +110,27 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
   measured.data.sets = {position_set(free_set_name(file, real.data), real.data)};
   measured.data.rows = simulated_rows(real.data.rows, poses->tool);
   return simulation;
+}
+
+std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& file,
+                                                const std::string& tool, const LoadedDataSet& real,
+                                                const std::string& corrected) {
+  const auto robot = parse_yaml(corrected, "corrected.robot.yaml");
+  if (!robot || robot->find("kind")->text != "serial") return std::nullopt;
+  auto model = mjcf_mended(*robot, "corrected.robot.yaml", file.string(), tool);
+  const bool own = model.has_value();
+  if (!own) model = mjcf_of_robot(*robot, "corrected.robot.yaml");
+  if (!model) return std::nullopt;
+  const auto poses =
+      settled_poses(own ? file : file.parent_path() / "mended.xml", own ? tool : std::string(),
+                    loads_of(real.data.rows), model->text);
+  if (!poses) return std::nullopt;
+  MendedSimulator mended{model->text, simulator_gap(real.data, poses->tool), model->left_out};
+  if (!own)
+    mended.left_out.insert(mended.left_out.begin(),
+                           "all of the model but the robot's own bodies, for it is not of this "
+                           "robot file");
+  return mended;
 }
 
 }  // namespace selfcal

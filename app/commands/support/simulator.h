@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/report/page/diagnosis_page.h"
 #include "diagnosis/comparison/simulator_gap.h"
 #include "io/files/data_set_file.h"
 
@@ -24,5 +26,12 @@ struct Simulation {
 /// rows act on the tool.
 Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::string& tool,
                                  const LoadedDataSet& real, const Robot& robot);
+
+/// The model `file`, or where it is none of MuJoCo's own or another robot's a model of the robot
+/// alone, mended by the robot file `corrected` and asked at the same rows; nothing where there is
+/// no such model.
+std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& file,
+                                                const std::string& tool, const LoadedDataSet& real,
+                                                const std::string& corrected);
 
 }  // namespace selfcal

@@ -134,14 +134,14 @@ function shown_causes(title, causes) {
                           each.confounded_with.map(effect_words).join(", ")]))] : [];
 }
 
-function simulation_of(sim) {
+function simulation_of(sim, sentences) {
   const shared = sim.both.flatMap(cause => cause.parameters.map(p => {
     const [factor, unit] = shown(p.unit, Math.abs(p.robot));
     const side = (value, sigma) => figure(factor * value) + " ± " + figure(factor * sigma, 2) + " " + unit;
     return [cause_words(cause) + ": " + p.name, side(p.robot, p.robot_sigma), side(p.simulation, p.simulation_sigma),
             figure(p.sigmas, 2) + " sigma"];
   }));
-  return [bullets(sim.why), shown_causes("In the robot alone", sim.robot_only),
+  return [bullets(sentences), shown_causes("In the robot alone", sim.robot_only),
     shown_causes("In the simulation alone", sim.simulation_only),
     shared.length ? element("h3", {}, "In both") : null,
     table([{title: "parameter"}, {title: "robot", number: true}, {title: "simulation", number: true},
@@ -159,7 +159,7 @@ function show_diagnosis(data) {
   section("What to measure next", next_of(result));
   if (result.since) section("What changed since " + data.since_name, paragraph(result.since.why),
                             changes_table(result.since.changes));
-  if (result.sim) section("Against the simulation " + data.sim_name, simulation_of(result.sim));
+  if (result.sim) section("Against the simulation " + data.sim_name, simulation_of(result.sim, data.words.simulator));
   section("Where what calibration leaves lies", where_of(data));
   section("What would have been seen", limits_of(result));
   if (result.rejected.length) section("Rows put aside", outlier_table(result.rejected));

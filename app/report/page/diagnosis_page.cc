@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/report/diagnosis_json.h"
+#include "app/report/format.h"
 #include "app/report/gap_words.h"
 #include "app/report/page/robot_picture.h"
 #include "io/files/json_parts.h"
@@ -39,6 +40,21 @@ std::vector<std::string> next_sentences(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::vector<std::string> simulator_sentences(const Findings& findings) {
+  std::vector<std::string> list;
+  if (!findings.sim) return list;
+  if (findings.sim->gap) list.push_back(gap_in_words(*findings.sim->gap));
+  if (const auto& mended = findings.sim->mended; mended && mended->gap.rows > 0) {
+    list.push_back("mended by what was found in the robot and run again, " + mm(mended->gap.rms) +
+                   " mm, of which " + mm(findings.diagnosis.gap.noise_floor) + " mm are noise");
+    std::string left;
+    for (const std::string& each : mended->left_out) left += (left.empty() ? "" : "; ") + each;
+    if (!left.empty()) list.push_back("the mended model lacks: " + left);
+  }
+  for (const std::string& each : findings.sim->differences.sentences) list.push_back(each);
+  return list;
+}
+
 Json to_json(const Findings& findings) {
   Json json = to_json(findings.diagnosis);
   if (findings.since) json["since"] = to_json(findings.since->comparison);
@@ -47,6 +63,10 @@ Json to_json(const Findings& findings) {
     if (findings.sim->gap)
       json["sim"]["gap"] = {{"rms", finite(findings.sim->gap->rms)},
                             {"rows", findings.sim->gap->rows}};
+    if (const auto& mended = findings.sim->mended)
+      json["sim"]["mended"] = {{"rms", finite(mended->gap.rms)},
+                               {"rows", mended->gap.rows},
+                               {"left_out", mended->left_out}};
   }
   return json;
 }
@@ -61,7 +81,8 @@ Json diagnosis_data(const PageSubject& subject, const Findings& findings) {
   json["words"] = {{"named", named_in_words(diagnosis)},
                    {"found", found_in_words(diagnosis)},
                    {"closed", closed_in_words(diagnosis)},
-                   {"false_rows", false_rows_in_words(diagnosis)}};
+                   {"false_rows", false_rows_in_words(diagnosis)},
+                   {"simulator", simulator_sentences(findings)}};
   if (findings.since) json["since_name"] = findings.since->name;
   if (findings.sim) json["sim_name"] = findings.sim->name;
   if (!diagnosis.judged.empty()) json["judged"] = judged_json(diagnosis.judged);

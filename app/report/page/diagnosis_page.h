@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/report/page/page.h"
 #include "diagnosis/comparison/comparison.h"
@@ -17,10 +18,17 @@ struct SinceBefore {
   std::string name;
   Comparison comparison;
 };
+/// A simulator's model with all that was found in the robot, run again.
+struct MendedSimulator {
+  std::string text;  ///< MJCF
+  SimulatorGap gap;
+  std::vector<std::string> left_out;  ///< what it does not hold
+};
 struct AgainstSimulation {
   std::string name;
   Differences differences;
-  std::optional<SimulatorGap> gap = {};  ///< of a model that was asked itself
+  std::optional<SimulatorGap> gap = {};        ///< of a model that was asked itself
+  std::optional<MendedSimulator> mended = {};  ///< of such a one
 };
 
 /// All that a person asked of one data set.
@@ -30,6 +38,10 @@ struct Findings {
   std::optional<SinceBefore> since;
   std::optional<AgainstSimulation> sim;
 };
+
+/// How far the simulator is from the robot, before and after it was mended, what is left then, and
+/// in what the two differ; empty where none was given.
+std::vector<std::string> simulator_sentences(const Findings& findings);
 
 /// diagnosis.json: the diagnosis, `since` and `sim`.
 nlohmann::ordered_json to_json(const Findings& findings);

@@ -1,0 +1,132 @@
+// Robots for controllers that take little, read back.
+#include "io/models/controller_text.h"
+
+#include <gmock/gmock.h>
+
+#include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+#include "io/models/dh_table.h"
+#include "tests/io/scratch.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kTableSame = 1e-9;  // m, rad: digits of a table are 1e-9 mm and degrees
+
+constexpr const char* kTableArm = R"(robot: arm
+kind: serial
+frames:
+  - {name: j1, joint: revolute, theta: 0.302, r: 0.4003, nominal: {theta: 0.3, r: 0.4}}
+  - {name: j2, joint: revolute, alpha: -1.5718, d: 0.1504, nominal: {alpha: -pi/2, d: 0.15}}
+  - {name: slide, joint: prismatic, alpha: 0.7, d: 0.5, theta: 1.0005, r: 0.199, nominal: {theta: 1, r: 0.2}}
+  - {name: j4, joint: revolute, alpha: 1.2, r: 0.1}
+)";
+
+serial::Model model_of(const std::string& text) {
+  Problems problems;
+  serial::Model model = serial::read(*parse_yaml(text, "arm.yaml"), problems);
+  EXPECT_FALSE(problems.any()) << problems.list.front();
+  return model;
+}
+
+class ControllerText : public testing::TestWithParam<const char*> {
+ protected:
+  /// The robot that the table comes to.
+  std::unique_ptr<Robot> read_back(const std::string& table) const {
+    const auto node = read_dh_table(scratch_.write("arm.csv", table), GetParam());
+    EXPECT_TRUE(node) << (node ? "" : node.error().what);
+    auto robot = robot_of(write_yaml(*node), "arm");
+    EXPECT_TRUE(robot) << (robot ? "" : robot.error().what);
+    return robot ? *std::move(robot) : nullptr;
+  }
+
+  Scratch scratch_;
+};
+
+TEST_P(ControllerText, OfATableIsReadBackAsTheRobot) {
+  const auto table = dh_table_text(model_of(kTableArm), GetParam(), "Of arm.\n", "arm.yaml");
+  ASSERT_TRUE(table) << table.error().what;
+  const auto robot = robot_of(kTableArm, "arm.yaml");
+  const auto back = read_back(*table);
+  ASSERT_TRUE(back);
+  for (const Eigen::Vector4d& q : {Eigen::Vector4d(0, 0, 0, 0), Eigen::Vector4d(0.3, -1.2, 0.1, 2),
+                                   Eigen::Vector4d(-2, 1, -0.3, 1)}) {
+    const Location is = locate(*back, values(*back), q),
+                   wanted = locate(**robot, values(**robot), q);
+    EXPECT_LT((is.p - wanted.p).norm(), kTableSame);
+    EXPECT_LT((is.R - wanted.R).norm(), kTableSame);
+  }
+}
+
+TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
+  const auto table = dh_table_text(model_of(kTableArm), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto at = table->find("# To undo it, the maker's:\n");
+  ASSERT_NE(at, std::string::npos);
+  std::string undo;
+  std::istringstream lines(table->substr(table->find('\n', at) + 1));
+  for (std::string line; std::getline(lines, line) && !line.starts_with("# the first row");)
+    undo += line.substr(2) + "\n";
+  const auto back = read_back(undo);
+  ASSERT_TRUE(back);
+  const auto robot = robot_of(kTableArm, "arm.yaml");
+  const Eigen::Vector4d q(0.3, -1.2, 0.1, 2);
+  EXPECT_LT(
+      (locate(*back, values(*back), q).p - locate(**robot, nominal_values(**robot), q).p).norm(),
+      kTableSame);
+}
+
+INSTANTIATE_TEST_SUITE_P(Conventions, ControllerText, testing::Values("standard", "modified"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST(ControllerText, OfATableNamesBaseAndTool) {
+  std::string text = kTableArm;
+  text += "  - {name: tool, joint: fixed, xyz: [0.01, 0, 0.1], rpy: [0, 0, pi/2]}\n";
+  text.insert(text.find("  - {name: j1"),
+              "  - {name: base, joint: fixed, xyz: [1, 2, 3], rpy: [0, 0, 0]}\n");
+  const auto table = dh_table_text(model_of(text), "modified", "", "arm.yaml");
+  ASSERT_TRUE(table);
+  EXPECT_THAT(*table, HasSubstr("# the first row stands in the world at x y z 1000 2000 3000 mm, "
+                                "roll pitch yaw 0 0 0 degrees"));
+  EXPECT_THAT(*table, HasSubstr("# the tool stands in the last row's frame at x y z 10 0 100 mm, "
+                                "roll pitch yaw 0 0 90 degrees"));
+  text.insert(text.find("  - {name: slide"),
+              "  - {name: bracket, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}\n");
+  const auto refused = dh_table_text(model_of(text), "modified", "", "arm.yaml");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("arm.yaml: frame bracket between the joints"));
+}
+
+// A person adds offsets to the maker's figures, in the maker's kinematics, and sets the tool.
+TEST(ControllerText, OfOffsetsPutsTheMakersRobotThere) {
+  const std::string text =
+      std::string(kTableArm) +
+      "  - {name: tool, joint: fixed, xyz: [0.01, 0.002, 0.1], rpy: [0, 0, 0.5], "
+      "nominal: {xyz: [0.01, 0, 0.1], rpy: [0, 0, 0.49]}}\n";
+  const serial::Model model = model_of(text);
+  const auto file = parse_yaml(controller_offsets_text(model, "Of arm.\n"), "offsets.yaml");
+  ASSERT_TRUE(file) << file.error().what;
+  const auto number = [&](const Node& node) { return *parse_number(node.text); };
+  const Node& offsets = *file->find("offsets");
+  EXPECT_NEAR(number(*offsets.find("j1")), 0.002, 1e-9);
+  EXPECT_NEAR(number(*offsets.find("slide")), -0.001, 1e-9);
+  EXPECT_EQ(number(*offsets.find("j4")), 0);
+  EXPECT_EQ(number(*file->find("undo")->find("offsets")->find("j1")), 0);
+  const Node& tool = *file->find("tool");
+  EXPECT_NEAR(number(tool.find("xyz")->items[1]), 0.002, 1e-9);
+  EXPECT_NEAR(number(tool.find("rpy")->items[2]), 0.5, 1e-9);
+  EXPECT_EQ(number(file->find("undo")->find("tool")->find("xyz")->items[1]), 0);
+  // The correction stands in the tool's own axes, which are turned by 0.49 rad.
+  const Node& correction = *file->find("tool_correction");
+  EXPECT_NEAR(number(correction.find("xyz")->items[0]), 0.002 * std::sin(0.49), 1e-9);
+  EXPECT_NEAR(number(correction.find("rpy")->items[2]), 0.01, 1e-9);
+}
+
+TEST(ControllerText, CommentsEveryLine) {
+  EXPECT_EQ(commented("a\n\nb"), "# a\n#\n# b\n");
+  EXPECT_EQ(commented("", ';'), "");
+}
+
+}  // namespace
+}  // namespace selfcal
