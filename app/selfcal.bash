@@ -26,7 +26,7 @@ _selfcal() {
     2:data) words="check --help" ;;
     *:data) words="--help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;
-    *:bridge) words="--action --touch --acceleration --patience --help" ;;
+    *:bridge) words="--action --touch --touch-gpio --acceleration --patience --help" ;;
     *:monitor) words="--robot --domain --once --wait --json --web --allow-commands --token --help" ;;
     2:command) words="start check diagnose done abort accept reject rollback --help" ;;
     *:command) words="--robot --domain --wait --json --help" ;;

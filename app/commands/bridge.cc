@@ -2,18 +2,21 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/bridge/line_relay.h"
 #include "app/bridge/motion_bridge.h"
 #include "app/bridge/touch_relay.h"
 #include "app/commands/subcommand.h"
 #include "app/commands/support/signals.h"
 #include "app/service/config.h"
 #include "io/dds/time_mapping.h"
+#include "io/files/yaml.h"
+#include "io/triggers.h"
 
 namespace selfcal {
 namespace {
 
 struct BridgeArguments {
-  std::string config, action, touch;
+  std::string config, action, touch, line;
   double acceleration = 1, patience = 2;
 };
 
@@ -28,6 +31,16 @@ void look(EncoderSource& encoders, std::vector<EncoderSample>& samples, MotionBr
   bridge.see(std::move(q), last.time);
 }
 
+/// The settings of a GPIO line, as the trigger of kind gpio has them.
+Result<TriggerKindPtr> line_kind(const std::string& text, const std::string& robot) {
+  const auto node = parse_yaml(text, "--touch-gpio");
+  if (!node) return tl::unexpected(node.error());
+  Problems problems;
+  TriggerKindPtr kind = make_trigger("gpio", {*node, robot, problems});
+  if (problems.any()) return bad_input(problems);
+  return kind;
+}
+
 Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) {
   Wakeup wakeup;
   const auto participant = DdsParticipant::open(static_cast<std::uint32_t>(config.domain),
@@ -40,17 +53,29 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
   auto encoders = config.encoders->open({*participant, wakeup});
   if (!encoders) return tl::unexpected(encoders.error());
   std::unique_ptr<TouchRelay> touch;
-  if (!arguments.touch.empty()) {
+  std::unique_ptr<LineRelay> line;
+  std::string from = "not its own";
+  if (!arguments.touch.empty() || !arguments.line.empty()) {
     auto trigger = config.trigger->open_sender({*participant, wakeup, {}});
     if (!trigger) return tl::unexpected(trigger.error());
-    auto relay = TouchRelay::open(*participant, arguments.touch, *std::move(trigger), wakeup);
-    if (!relay) return tl::unexpected(relay.error());
-    touch = *std::move(relay);
+    if (!arguments.line.empty()) {
+      const auto kind = line_kind(arguments.line, config.id);
+      if (!kind) return tl::unexpected(kind.error());
+      auto edges = (*kind)->open({*participant, wakeup});
+      if (!edges) return tl::unexpected(edges.error());
+      line = std::make_unique<LineRelay>(*std::move(edges), *std::move(trigger));
+      from = "from " + (*kind)->source();
+    } else {
+      auto relay = TouchRelay::open(*participant, arguments.touch, *std::move(trigger), wakeup);
+      if (!relay) return tl::unexpected(relay.error());
+      touch = *std::move(relay);
+      from = "from topic " + arguments.touch;
+    }
   }
-  std::fprintf(
-      stderr, "bridge of robot %s on DDS domain %d: action %s, encoders on %s, trigger %s\n",
-      config.id.c_str(), config.domain, arguments.action.c_str(), config.encoders->source().c_str(),
-      touch ? ("from topic " + arguments.touch).c_str() : "not its own");
+  std::fprintf(stderr,
+               "bridge of robot %s on DDS domain %d: action %s, encoders on %s, trigger %s\n",
+               config.id.c_str(), config.domain, arguments.action.c_str(),
+               config.encoders->source().c_str(), from.c_str());
   MotionBridge bridge({.acceleration = arguments.acceleration,
                        .patience = nanoseconds(arguments.patience),
                        .action = arguments.action},
@@ -62,6 +87,8 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
     if (!samples.empty()) look(**encoders, samples, bridge);
     if (touch)
       if (auto passed = touch->turn(monotonic_now()); !passed) return passed;
+    if (line)
+      if (auto passed = line->turn(monotonic_now()); !passed) return passed;
     if (auto turned = bridge.turn(monotonic_now()); !turned) return turned;
     wakeup.wait(5 * kMillisecond);
   }
@@ -72,9 +99,13 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
 int bridge_command(const BridgeArguments& arguments) {
   const auto config = load_config(arguments.config);
   if (!config) return tell(config.error());
-  if (!arguments.touch.empty() && config->trigger->stamped_by() == StampedBy::kernel)
-    return wrong_usage("--touch needs a trigger of kind dds, and the configuration's is " +
-                       config->trigger->source());
+  if (!arguments.touch.empty() && !arguments.line.empty())
+    return wrong_usage("--touch and --touch-gpio are two triggers, and one is meant");
+  const bool own = !arguments.touch.empty() || !arguments.line.empty();
+  if (own && config->trigger->stamped_by() == StampedBy::kernel)
+    return wrong_usage(
+        "--touch and --touch-gpio need a trigger of kind dds, and the configuration's is " +
+        config->trigger->source());
   listen_to_signals();
   const auto ran = run_bridge(arguments, *config);
   return ran ? kDone : tell(ran.error());
@@ -93,6 +124,9 @@ void add_bridge(CLI::App& app, int& status) {
       ->required();
   command->add_option("--touch", arguments->touch,
                       "Topic of std_msgs/Bool (true: in contact) that becomes the trigger");
+  command->add_option("--touch-gpio", arguments->line,
+                      "GPIO line of this computer that becomes the trigger, as "
+                      "'{chip: gpiochip0, line: 3}'");
   command
       ->add_option("--acceleration", arguments->acceleration,
                    "Largest acceleration of a joint (rad/s^2 or m/s^2)")
