@@ -17,6 +17,8 @@ namespace selfcal {
 namespace {
 
 constexpr int kComparedPoses = 200, kSteps = 4;
+constexpr double kEpsilon = 1e-6;  ///< m
+constexpr double kMotion = 50e-3;  ///< m or rad, of the motion that is taken out
 
 /// End positions (3 a pose) with `xi`, and their derivative to `columns`.
 struct EndPositions {
@@ -66,10 +68,20 @@ ControllerSigma controller_sigma(const Robot& robot, const DataSet& data,
   for (const int i : taken) xi[i] = solution.values[i];
   for (int step = 0; step <= kSteps; ++step) {
     const EndPositions ends = end_positions(robot, xi, q, taken);
-    Eigen::MatrixXd both(wanted.size(), ends.J.cols() + motion.cols());
+    const Eigen::Index n = ends.J.cols() + motion.cols();
+    Eigen::VectorXd unit = Eigen::VectorXd::Constant(n, kMotion);
+    for (size_t i = 0; i < taken.size(); ++i)
+      unit[static_cast<Eigen::Index>(i)] =
+          std::max(robot.parameters()[static_cast<size_t>(taken[i])].tolerance, kEpsilon);
+    Eigen::MatrixXd both(wanted.size(), n);
     both << ends.J, motion;
     left = wanted - ends.p;
-    const Eigen::VectorXd s = least_squares(both, left);
+    Eigen::MatrixXd A(wanted.size() + n, n);
+    A.topRows(wanted.size()) = both * unit.asDiagonal() / kEpsilon;
+    A.bottomRows(n).setIdentity();
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(A.rows());
+    y.head(wanted.size()) = left / kEpsilon;
+    const Eigen::VectorXd s = unit.cwiseProduct(least_squares(A, y));
     if (step == kSteps)
       left -= both * s;
     else
