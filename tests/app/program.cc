@@ -280,8 +280,7 @@ TEST_F(Program, SaysNoToACellWhosePlanMissesItsTarget) {
   std::ofstream(config) << text;
   const Ran check = run_selfcal("serve " + config + " --check", true);
   EXPECT_EQ(check.status, 1) << check.out;
-  EXPECT_NE(check.out.find("target 0.002 mm: no; plan more touches or surfaces"),
-            std::string::npos)
+  EXPECT_NE(check.out.find("target 0.002 mm: no; plan more touches or surfaces"), std::string::npos)
       << check.out;
   const Ran plan = run_selfcal("plan " + config + " --json", true);
   EXPECT_EQ(plan.status, 1);
