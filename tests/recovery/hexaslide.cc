@@ -180,6 +180,7 @@ Objective by_end_position(const Robot& nominal, Random& random) {
     for (int c = 0; c < 3; ++c)
       objective.weight += psi.row(c * kLanes).transpose() * psi.row(c * kLanes) / kWhere;
   }
+  objective.weight *= 1e12;  // um^2, for exchanges gain where they are seen
   return objective;
 }
 
@@ -205,7 +206,7 @@ Choice best_rows(const Robot& nominal, const DataSet& pool, int count, ChosenBy 
   Design design(candidates, end_position);
   design.choose(as_there.chosen());
   if (by == ChosenBy::end_position) exchange(design);
-  Choice best{{}, std::sqrt(-design.merit())};
+  Choice best{{}, 1e-6 * std::sqrt(-design.merit())};
   for (const int each : design.chosen()) best.rows.push_back(rows[static_cast<size_t>(each)]);
   return best;
 }
