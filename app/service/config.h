@@ -36,8 +36,7 @@
 //     limit_margin   0.02       0 to 1          kept from the joint limits (rad, m)
 //     spacing        0          0 to 1 m        least between touched points of a surface
 //     longest        0          0 to 1e6 s      most that a session's motion may take; 0: any time
-//     keep_out       []                         where no part of the robot may be: [{min: [x, y,
-//     z],
+//     keep_out       []                         where nothing may be: [{min: [x, y, z],
 //                                               max: [x, y, z]}, {point: [x, y, z], normal: ...}]
 //     capsules       []                         how thick it is: [{link: FRAME, from: [x, y, z],
 //                                               to: [x, y, z], radius: R}, ...]

@@ -52,7 +52,11 @@ NextPlace place_of(const Robot& robot, const Tried& tried, const std::vector<int
       if (tried.pool.data.rows.set[row] == last)
         points.push_back(
             locate(robot, tried.pool.state.xi, tried.pool.data.rows.q.row(row).transpose()).p);
-  if (points.empty()) return place;
+  // No more than say where it lies itself tell nothing of the robot.
+  const Method& method = *tried.pool.data.sets.back().method;
+  if (points.size() * method.equations().size() <=
+      static_cast<std::size_t>(method.tangent_dimension() + method.group_freedom()))
+    return place;
   place.radius = 0;
   for (const Eigen::Vector3d& p : points) place.centre += p / static_cast<double>(points.size());
   for (const Eigen::Vector3d& p : points)

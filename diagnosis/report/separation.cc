@@ -58,14 +58,15 @@ Separation::Separation(const LinearisedModel& view, const std::vector<Node>& cau
     if (const int c = others[static_cast<size_t>(i)]; c < geometry && size > 0)
       R_(i, i) = std::hypot(kRidge, 1 / (size * view.adjusted().prior.sigma[c]));
   }
+  std::vector<std::vector<int>> of_row(static_cast<size_t>(data.rows.rows() - first));
   std::vector<int> counted;
-  further_.resize(static_cast<size_t>(data.rows.rows() - first));
   for (int e = 0; e < X.rows(); ++e) {
     if (const int row = dense.row[static_cast<size_t>(e)]; row >= first)
-      further_[static_cast<size_t>(row - first)].push_back({X.row(e).transpose(), t[e]});
+      of_row[static_cast<size_t>(row - first)].push_back(e);
     else
       counted.push_back(e);
   }
+  for (const std::vector<int>& each : of_row) further_.push_back({X(each, Eigen::all), t(each)});
   add(X(counted, Eigen::all), t(counted));
 }
 
@@ -82,18 +83,19 @@ void Separation::add(const Eigen::MatrixXd& X, const Eigen::VectorXd& t) {
 }
 
 double Separation::gain(int row) const {
-  double sum = 0;
-  for (const Equation& each : further_[static_cast<size_t>(row - first_)]) {
-    const Eigen::VectorXd s = R_.transpose().triangularView<Eigen::Lower>().solve(each.x);
-    const double off = each.t - s.dot(z_);
-    sum += off * off / (1 + s.squaredNorm());
-  }
-  return sum;
+  const RowEquations& further = further_[static_cast<size_t>(row - first_)];
+  const Eigen::Index k = further.t.size();
+  if (k == 0) return 0;
+  const Eigen::MatrixXd S =
+      R_.transpose().triangularView<Eigen::Lower>().solve(further.X.transpose());
+  const Eigen::VectorXd off = further.t - S.transpose() * z_;
+  const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(k, k) + S.transpose() * S;
+  return off.dot(spread.llt().solve(off));
 }
 
 void Separation::take(int row) {
-  for (const Equation& each : further_[static_cast<size_t>(row - first_)])
-    add(each.x.transpose(), Eigen::VectorXd::Constant(1, each.t));
+  const RowEquations& further = further_[static_cast<size_t>(row - first_)];
+  if (further.t.size() > 0) add(further.X, further.t);
 }
 
 void Separation::take_all() {

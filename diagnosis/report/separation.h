@@ -2,8 +2,9 @@
 // explain it, in squared sigmas, and what each further row adds to that.
 //
 // The least squares behind it are kept as a triangle R, z of [X | t] = Q [R | z]: X the columns of
-// geometry, surfaces and the other cause, t what the first one does at its size. A row (x, t) adds
-//   (t - x' R^-1 z)^2 / (1 + |R^-T x|^2)
+// geometry, surfaces and the other cause, t what the first one does at its size. The equations
+// (X, t) of a further row add, with S = R^-T X',
+//   (t - S' z)' (I + S' S)^-1 (t - S' z)
 // to the squares that are left.
 #pragma once
 
@@ -29,9 +30,9 @@ class Separation {
   void take_all();
 
  private:
-  struct Equation {
-    Eigen::VectorXd x;
-    double t = 0;
+  struct RowEquations {
+    Eigen::MatrixXd X;  ///< equations x columns
+    Eigen::VectorXd t;
   };
   void add(const Eigen::MatrixXd& X, const Eigen::VectorXd& t);
 
@@ -39,7 +40,7 @@ class Separation {
   Eigen::VectorXd z_;
   double left_ = 0;
   int first_ = 0;
-  std::vector<std::vector<Equation>> further_;  ///< by row from `first` on
+  std::vector<RowEquations> further_;  ///< by row from `first` on
 };
 
 }  // namespace selfcal

@@ -29,7 +29,7 @@ TEST(NextPlaces, SayWhatAFurtherPlaneIsWorthBesideMoreOfTheFirst) {
   EXPECT_NEAR(next.sigma_now, first.planned.sigma, 1e-4 * first.planned.sigma);
   EXPECT_LT(next.sigma_same, next.sigma_now);
   ASSERT_GE(next.places.size(), 3U);
-  EXPECT_LT(next.places.front().sigma, next.sigma_same) << "one plane leaves much in the dark";
+  EXPECT_LT(next.places.back().sigma, next.sigma_now) << "more rows never know less";
   for (std::size_t i = 1; i < next.places.size(); ++i)
     EXPECT_GE(next.places[i].sigma, next.places[i - 1].sigma);
   for (const NextPlace& each : next.places) {

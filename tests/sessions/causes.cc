@@ -38,13 +38,14 @@ const std::vector<Hidden>& hidden_in_irb1600() {
   return list;
 }
 
-/// The delta has no statics: what its carriages and the probe may have.
+/// The delta has no statics, and touches all come from above: of play there is nothing to see.
 const std::vector<Hidden>& hidden_in_delta() {
   static const std::vector<Hidden> list = {
-      {"backlash", "tower2", "{effect: backlash, at: tower2, play: 2.0e-4}"},
-      {"none", "", ""},
       {"transmission_error", "tower1",
-       "{effect: transmission_error, at: tower1, waves: [40], sin40: 6.0e-5, cos40: 3.0e-5}"}};
+       "{effect: transmission_error, at: tower1, waves: [40], sin40: 1.2e-4, cos40: 6.0e-5}"},
+      {"none", "", ""},
+      {"transmission_error", "tower2",
+       "{effect: transmission_error, at: tower2, waves: [25], sin25: 6.0e-5, cos25: 1.2e-4}"}};
   return list;
 }
 
@@ -72,17 +73,25 @@ double visible(const ResultMessage& full) {
   return rows > 0 ? std::sqrt(std::max(0.0, squares / rows - 1)) : 0;
 }
 
-void look_for(const std::string& robot, const Hidden& hidden, int seed, Tally& tally) {
+CellOptions options_of(const std::string& robot, const Hidden& hidden, int seed) {
   CellOptions options;
   options.robot = robot;
   options.seed = seed;
   options.automatic = false;
   if (!hidden.entry.empty()) options.machine = "effects: [" + hidden.entry + "]";
-  Cell cell(options);
-  if (robot == "irb1600")  // the same robot, but for its masses
-    std::filesystem::copy_file(SELFCAL_SOURCE_DIR "/app/examples/irb1600_loaded.robot.yaml",
-                               cell.folder / "irb1600.robot.yaml",
-                               std::filesystem::copy_options::overwrite_existing);
+  return options;
+}
+
+/// The same robot, but for its masses.
+void give_masses(const Cell& cell) {
+  std::filesystem::copy_file(SELFCAL_SOURCE_DIR "/app/examples/irb1600_loaded.robot.yaml",
+                             cell.folder / "irb1600.robot.yaml",
+                             std::filesystem::copy_options::overwrite_existing);
+}
+
+void look_for(const std::string& robot, const Hidden& hidden, int seed, Tally& tally) {
+  Cell cell(options_of(robot, hidden, seed));
+  if (robot == "irb1600") give_masses(cell);
   cell.start_service();
   if (!cell.start_session()) return;
   const bool came = cell.until(
@@ -141,11 +150,8 @@ void expect_found(const std::string& robot, const std::vector<Hidden>& hidden, i
 
 /// Killed again and again while it diagnoses and touches.
 TEST(HiddenCause, IsFoundInOneSessionHoweverOftenTheServiceIsKilled) {
-  CellOptions options;
-  options.robot = "delta";
-  options.automatic = false;
-  options.machine = "effects: [" + hidden_in_delta().front().entry + "]";
-  Cell cell(options);
+  Cell cell(options_of("irb1600", hidden_in_irb1600()[2], 1));  // which has look-alikes at first
+  give_masses(cell);
   cell.start_service();
   ASSERT_TRUE(cell.start_session());
   std::set<std::string> killed_in;
