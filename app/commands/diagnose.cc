@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
+#include "app/commands/foreign/simulator.h"
 #include "app/commands/subcommand.h"
 #include "app/commands/support/file_slips.h"
-#include "app/commands/support/simulator.h"
 #include "app/report/diagnosis_json.h"
 #include "app/report/diagnosis_summary.h"
 #include "app/report/format.h"

@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/commands/foreign/convert_notes.h"
+#include "app/commands/foreign/for_controller.h"
+#include "app/commands/foreign/foreign_robot.h"
+#include "app/commands/foreign/mended_model.h"
 #include "app/commands/subcommand.h"
-#include "app/commands/support/convert_notes.h"
-#include "app/commands/support/for_controller.h"
-#include "app/commands/support/foreign_robot.h"
-#include "app/commands/support/mended_model.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"

@@ -1,4 +1,4 @@
-#include "app/commands/support/foreign_robot.h"
+#include "app/commands/foreign/foreign_robot.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,9 +1,9 @@
-#include "app/commands/support/for_controller.h"
+#include "app/commands/foreign/for_controller.h"
 
 #include <memory>
 
-#include "app/commands/support/convert_notes.h"
-#include "app/commands/support/foreign_robot.h"
+#include "app/commands/foreign/convert_notes.h"
+#include "app/commands/foreign/foreign_robot.h"
 #include "app/report/format.h"
 #include "constraints/sampling/random_poses.h"
 #include "io/files/file.h"

@@ -1,6 +1,6 @@
-#include "app/commands/support/convert_notes.h"
+#include "app/commands/foreign/convert_notes.h"
 
-#include "app/commands/support/foreign_robot.h"
+#include "app/commands/foreign/foreign_robot.h"
 #include "app/report/format.h"
 #include "kinematics/rotation.h"
 

@@ -1,8 +1,8 @@
-#include "app/commands/support/simulator.h"
+#include "app/commands/foreign/simulator.h"
 
 #include <algorithm>
 
-#include "app/commands/support/mended_model.h"
+#include "app/commands/foreign/mended_model.h"
 #include "constraints/methods/data_set.h"
 #include "io/files/yaml.h"
 #include "io/models/mujoco.h"

@@ -1,6 +1,6 @@
-#include "app/commands/support/mended_model.h"
+#include "app/commands/foreign/mended_model.h"
 
-#include "app/commands/support/convert_notes.h"
+#include "app/commands/foreign/convert_notes.h"
 #include "io/files/file.h"
 #include "io/models/mjcf_like.h"
 
