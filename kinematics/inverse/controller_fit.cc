@@ -10,10 +10,10 @@
 namespace selfcal {
 namespace {
 
-constexpr double kTurnArm = 0.1;   // m: what a turn weighs beside a shift
-constexpr double kNear = 1e-6;     // m, that a move by its tolerance is worth
-constexpr double kAllOfIt = 1e-9;  // m: robots that are one
-constexpr double kFitted = 1e-12;  // rad, m: the last step's
+constexpr double kTurnArm = 0.1;    // m: what a turn weighs beside a shift
+constexpr double kNear = 1e-6;      // m, that a move by its tolerance is worth
+constexpr double kAllOfIt = 1e-9;   // m: robots that are one
+constexpr double kFitStep = 1e-12;  // rad, m: the last step's
 constexpr int kMostFits = 20;
 
 /// Up to kLanes rows of `q` from `first` on.
@@ -27,7 +27,7 @@ ConfigurationBlock poses_from(const Eigen::MatrixXd& q, Eigen::Index first) {
 }
 
 /// Shift and turn from where `X` has the end to where `wanted` has it, in the world.
-Eigen::Matrix<double, 6, 1> way(const Location& X, const Location& wanted) {
+Eigen::Matrix<double, 6, 1> way_between(const Location& X, const Location& wanted) {
   Eigen::Matrix<double, 6, 1> e;
   e << wanted.p - X.p, log_rotation(wanted.R * X.R.transpose());
   return e;
@@ -55,7 +55,7 @@ class Fit {
       const Linearised at = linearised(s);
       const Eigen::VectorXd step = least_squares(at.A, at.b);
       s += step;
-      if (step.size() == 0 || step.cwiseAbs().maxCoeff() < kFitted) break;
+      if (step.size() == 0 || step.cwiseAbs().maxCoeff() < kFitStep) break;
     }
     return numbers_.start + numbers_.basis * s;
   }
@@ -75,7 +75,7 @@ class Fit {
       for (int lane = 0; lane < block.count; ++lane) {
         if (!closure.closes(lane)) continue;
         const Eigen::Matrix<double, 6, 1> e =
-            way(X.at(lane), wanted_[static_cast<std::size_t>(first + lane)]);
+            way_between(X.at(lane), wanted_[static_cast<std::size_t>(first + lane)]);
         for (int c = 0; c < 6; ++c) {
           const double weight = (c < 3 ? 1 : kTurnArm) / kNear;
           at.A.row(6 * (first + lane) + c) = weight * J.row(c * kLanes + lane);
@@ -125,7 +125,7 @@ EndsApart ends_apart(const Robot& one, const Eigen::VectorXd& xi_one, const Robo
     closure.add(other.locate(block, xi_other, Body::endpoint, Y, nullptr));
     for (int lane = 0; lane < block.count; ++lane) {
       if (!closure.closes(lane)) continue;
-      const Eigen::Matrix<double, 6, 1> e = way(X.at(lane), Y.at(lane));
+      const Eigen::Matrix<double, 6, 1> e = way_between(X.at(lane), Y.at(lane));
       squares += e.head<3>().squaredNorm();
       squares_angle += e.tail<3>().squaredNorm();
       apart.most = std::max(apart.most, e.head<3>().norm());
