@@ -158,8 +158,7 @@ class TouchPool {
 };
 
 bool is_kept(const FoundEffect& found) {
-  const Node* effect = found.entry.find("effect");
-  return effect && std::ranges::count(kInRobot, effect->text) > 0;
+  return std::ranges::count(kInRobot, found.what.effect) > 0;
 }
 
 }  // namespace

@@ -18,19 +18,19 @@ constexpr double kKnotsFrom = 10;  ///< that they serve; below, the exact value 
 NoiseTail::NoiseTail(double freedom) : freedom_(freedom) {
   if (freedom < kKnotsFrom) return;
   const double sigma = std::sqrt(2 * freedom);
-  step_ = kStep * sigma;
-  first_ = std::max(freedom - kFromBelow * sigma, freedom / 10);
-  const double surely = freedom + 10 * sigma + 50;
-  for (double x = first_; x < surely + step_; x += step_) {
-    const double log = log_chi_square_below(x, freedom);
-    const double log_density =
-        (freedom / 2 - 1) * std::log(x / 2) - x / 2 - std::lgamma(freedom / 2) - std::numbers::ln2;
+  step_ = kStep * sigma / freedom;
+  const double first = std::max(freedom - kFromBelow * sigma, freedom / 10);
+  first_ = std::log(first);
+  const double surely = std::log(freedom + 10 * sigma + 50);
+  for (double log_x = first_; log_x < surely + step_; log_x += step_) {
+    const double x = std::exp(log_x), log = log_chi_square_below(x, freedom);
+    const double log_density = freedom / 2 * std::log(x / 2) - x / 2 - std::lgamma(freedom / 2);
     knots_.push_back({log, step_ * std::exp(log_density - log)});
   }
 }
 
 double NoiseTail::log_below(double value) const {
-  const double at = (value - first_) / step_;
+  const double at = (std::log(value) - first_) / step_;
   if (knots_.empty() || at < 0) return log_chi_square_below(value, freedom_);
   const auto i = static_cast<std::size_t>(at);
   if (i + 1 >= knots_.size()) return 0;

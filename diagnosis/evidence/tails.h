@@ -6,8 +6,8 @@
 
 namespace selfcal {
 
-/// log P(chi-square of some freedom < value), from cubics between exact values and slopes that are
-/// `kStep` sigma apart: within 1e-5.
+/// log P(chi-square of some freedom < value), from cubics in log(value) between exact values and
+/// slopes, a quarter of a sigma apart: within 1e-4.
 class NoiseTail {
  public:
   NoiseTail() = default;
@@ -16,7 +16,7 @@ class NoiseTail {
   double log_below(double value) const;
 
  private:
-  double freedom_ = 0, first_ = 0, step_ = 1;
+  double freedom_ = 0, first_ = 0, step_ = 1;  ///< the latter two of log(value)
   struct Knot {
     double value, slope;
   };

@@ -17,7 +17,8 @@ Diagnosis named(const std::vector<bool>& found) {
   Diagnosis diagnosis;
   diagnosis.verdict = {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9};
   diagnosis.named = {diagnosis.verdict};
-  for (const bool each : found) diagnosis.found.push_back({Node::map(), {}, each});
+  for (const bool each : found)
+    diagnosis.found.push_back({.what = {"joint_compliance", "j2"}, .named = each});
   diagnosis.gap = {.rms_nominal = 2e-3,
                    .rms_before = 1e-3,
                    .rms_after = 6.4e-4,

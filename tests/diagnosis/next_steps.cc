@@ -13,10 +13,6 @@ namespace {
 
 using testing::HasSubstr;
 
-Node entry_of(const char* effect, const char* at, const char* key, const char* text) {
-  return recovery::entry({{"effect", effect}, {"at", at}, {key, text}});
-}
-
 /// Made once: it takes seconds.
 class NextStepsOfAnArm : public testing::Test {
  protected:
@@ -33,19 +29,22 @@ class NextStepsOfAnArm : public testing::Test {
   }
 
   static CauseResult backlash(double probability) {
-    Node entry = entry_of("backlash", "j3", "play", "2.0e-5");
     return {.effect = "backlash",
             .where = {"j3"},
             .probability = probability,
-            .correction = {{entry, {1e-4}, true}}};
+            .correction = {{.what = {"backlash", "j3"},
+                            .values = {{"play", 2e-5}},
+                            .sigma = {1e-4},
+                            .named = true}}};
   }
   static CauseResult coupling(double probability) {
-    Node entry = recovery::entry(
-        {{"effect", "joint_coupling"}, {"at", "j3"}, {"from", "j2"}, {"kappa_j2", "2.0e-5"}});
     return {.effect = "joint_coupling",
             .where = {"j3"},
             .probability = probability,
-            .correction = {{entry, {1e-4}, true}}};
+            .correction = {{.what = {"joint_coupling", "j3", {.from = "j2"}},
+                            .values = {{"kappa_j2", 2e-5}},
+                            .sigma = {1e-4},
+                            .named = true}}};
   }
   static NextSteps of(Diagnosis diagnosis) { return next_steps(*view_, *data_, diagnosis); }
 

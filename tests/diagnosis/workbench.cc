@@ -28,7 +28,7 @@ Eigen::MatrixXd random_matrix(int rows, int columns, std::mt19937_64& random) {
 std::shared_ptr<const NoiseBlocks> one_block(const Eigen::MatrixXd& covariance) {
   std::vector<int> all(static_cast<size_t>(covariance.rows()));
   std::iota(all.begin(), all.end(), 0);
-  return std::make_shared<const NoiseBlocks>(std::vector{all},
+  return std::make_shared<const NoiseBlocks>(std::vector<std::vector<int>>{all},
                                              [&](int i, int j) { return covariance(i, j); });
 }
 
