@@ -42,6 +42,7 @@ struct Misfit {
   double left = 0, tool_moved = 0;
   double zero_moved = 0;  ///< rad or m, of the joint that was asked for
   bool lengths = true, any = false;
+  std::vector<double> by_set = {};       ///< as `left`, of each set; 0 where it has no lengths
   std::vector<std::string> angles = {};  ///< what is told of sets whose angles do not fit
 };
 
@@ -78,6 +79,10 @@ Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
   result.any = !lengths.empty() || !angles.empty();
   result.lengths = !lengths.empty();
   if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
+  std::vector<std::vector<double>> of_set(data.sets.size());
+  for (const RowResidual& row : judged.fit)
+    if (row.lengths > 0) of_set[static_cast<size_t>(row.set)].push_back(row.size());
+  for (std::vector<double>& each : of_set) result.by_set.push_back(median(std::move(each)));
   if (moves.tool) result.angles = gross_angles(robot, data, judged, judged);
   result.tool_moved = tool_moved(robot, placed.state.xi);
   if (zero >= 0) result.zero_moved = placed.state.xi[zero] - prior.centre[zero];
@@ -197,15 +202,21 @@ std::vector<TriedSlip> moved_zeros(const Robot& robot, const DataSet& data) {
   return list;
 }
 
-/// Sets of touches that may be of two planes each.
-std::vector<Slip> slips_of_planes(const Robot& robot, const DataSet& data) {
-  std::vector<Slip> list;
-  for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
-    if (auto parted = parted_planes(robot, data, s))
-      list.push_back(
-          {"the touches of set " + data.sets[static_cast<size_t>(s)].name + " are of two planes",
-           nullptr, std::move(parted->rows), std::move(parted->sets)});
-  return list;
+/// A set of touches of two planes, by what is left of its rows with the two as one and parted: in
+/// a small set they are too few to show among all rows. Nothing where there is none.
+std::optional<TriedSlip> two_planes_as_one(const Robot& robot, const DataSet& data,
+                                           const Misfit& given, double& left) {
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    left = given.by_set[s];
+    if (left < kLeastGross * size_of(robot)) continue;
+    const auto parted = parted_planes(robot, data, static_cast<int>(s));
+    if (!parted) continue;
+    const Misfit two = misfit(robot, *parted, {});
+    const double worse = std::max(two.by_set[s], two.by_set.back());
+    if (worse < kSlipCollapse * left)
+      return TriedSlip{"the touches of set " + data.sets[s].name + " are of two planes", worse};
+  }
+  return std::nullopt;
 }
 
 /// What each slip leaves, best first.
@@ -213,12 +224,10 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
                              const std::vector<Slip>& others) {
   std::vector<Slip> slips = others;
   std::ranges::move(slips_of_rows(robot, data.rows), std::back_inserter(slips));
-  std::ranges::move(slips_of_planes(robot, data), std::back_inserter(slips));
   std::vector<TriedSlip> list;
   for (const Slip& slip : slips) {
     DataSet changed = data;
     if (slip.rows) changed.rows = *slip.rows;
-    if (!slip.sets.empty()) changed.sets = slip.sets;
     const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, {});
     if (left.any) list.push_back({slip.what, left.left});
   }
@@ -254,6 +263,14 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;
   if (!given.angles.empty()) look.found = given.angles.front();
+  double as_one = 0;
+  if (const auto planes = two_planes_as_one(*robot, data, given, as_one)) {
+    look.left = as_one;
+    look.tried = {*planes};
+    look.explained = true;
+    look.found = planes->what;
+    return look;
+  }
   const double least =
       std::max(kLeastGross * (given.lengths ? size_of(*robot) : 1), kWithin * look.expected);
   const double gross = gross_misfit(*robot, given.lengths);

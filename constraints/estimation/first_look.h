@@ -17,7 +17,6 @@ struct Slip {
   std::string what;                    ///< "j3 is read with the other sign"
   std::shared_ptr<const Robot> robot;  ///< null: as given
   std::optional<Observations> rows;    ///< nothing: as given
-  std::vector<Set> sets = {};          ///< that the rows are of; none: as given
 };
 
 /// What a slip leaves.

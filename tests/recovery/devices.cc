@@ -33,10 +33,6 @@ std::vector<Device> devices() {
   const auto cable = [](const char* name) {
     return of(name, {{"method", "fixed-point-distance"}, {"offset", "unknown"}}, kRows / 3);
   };
-  const auto bar = [](const char* name,
-                      std::initializer_list<std::pair<const char*, const char*>> fields) {
-    return of(name, fields, kRows / 3);
-  };
   // Two stations see the robot at nearly all rows; the step gives the scale.
   const auto seen = [](double times) {
     std::vector<SetPart> sets = {of("one", {{"method", "bearing"}, {"frame", "unknown"}}, 120),
@@ -51,16 +47,6 @@ std::vector<Device> devices() {
       {"two theodolites of 20 urad, and the step", 20e-6, seen(1)},
       {"two laser scanners of 100 urad, and the step", 20e-6, seen(5)},
       {"three cables", 0.1e-3, {cable("a"), cable("b"), cable("c")}},
-      {"telescoping ball bar, held in three sockets",
-       5e-6,
-       {bar("a", {{"method", "fixed-point-distance"}}),
-        bar("b", {{"method", "fixed-point-distance"}}),
-        bar("c", {{"method", "fixed-point-distance"}})}},
-      {"ball bar of 400 mm, held in three sockets",
-       5e-6,
-       {bar("a", {{"method", "sphere"}, {"radius", "0.4"}}),
-        bar("b", {{"method", "sphere"}, {"radius", "0.4"}}),
-        bar("c", {{"method", "sphere"}, {"radius", "0.4"}})}},
       {"laser tracker of today",
        20e-6,
        {of("tracker", {{"method", "position"}, {"frame", "unknown"}}, kRows)}},

@@ -91,7 +91,7 @@ TEST(RoughTrials, AreAnsweredAsOftenRightAsIsStated) {
   ReliabilityDiagram diagram;
   RoughTally tally;
   for (int i = 0; i < trials; ++i) {
-    // Every family at every size in the course of them; every fourth has a cause of no list.
+    // Every fourth has a cause of no list; the others go through twelve of the families.
     const std::string& effect = i % 4 == 3 ? kUnknown : effects[(7 * i) % effects.size()];
     const double r = kSizes[(i / 4) % std::size(kSizes)];
     const MadeTrial made = rough_trial(effect, r, i);

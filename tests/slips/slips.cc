@@ -1,10 +1,12 @@
-// What is said of each was read and judged by hand; a set's sound answer is in answers.cc.
+// What is said of each was read and judged by hand; what is named is compared in answers.cc.
 #include "tests/slips/slips.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+
+#include "tests/shared_data.h"
 
 namespace selfcal::slips {
 namespace {
@@ -274,10 +276,10 @@ std::vector<Slip> of_a_tracker() {
       {"motoman-tracker", "readings rounded to a degree", rounded(kSix, kDegree), "Not determined",
        ""},
       {"motoman-tracker", "positions rounded to a millimetre", rounded(kPosition, 1e-3), "", ""},
-      {"motoman-tracker", "a table of the other convention",
-       robot("kind: serial", "kind: serial\nconvention: standard"),
-       "the table is modified DH and no standard one",
-       "the table is modified DH and no standard one"},
+      {"motoman-tracker", "another robot's file",
+       [](Files& files) { files.robot = Files(shared_dir() / "data/mukca-panda-1").robot; },
+       "is far outside the limits [-3.08, -0.06] of joint j4",
+       "is far outside the limits [-3.08, -0.06] of joint j4"},
       {"motoman-tracker", "lengths of the robot twice as large",
        [](Files& files) { files.scale_robot(2); },
        "the lengths in the robot's file are twice what they are",
@@ -403,6 +405,10 @@ std::vector<Slip> of_simulated_touches() {
        "is `noise` in metres, and 1 sigma?", ""},
       {"rx90-planes", "a robot twice as large", robot("0.5", "1.0"), "Look at the files first",
        "Look at the files first"},
+      {"rx90-planes", "a table of the other convention",
+       robot("kind: serial", "kind: serial\nconvention: standard"),
+       "the table is modified DH and no standard one",
+       "the table is modified DH and no standard one"},
       {"rx90-planes", "kelvin", temperature([](double) { return 294.3; }), "(kelvin?)",
        "(kelvin?)"},
       {"rx90-planes", "three rows", first_rows(3), "Not determined",
