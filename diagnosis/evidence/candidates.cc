@@ -6,7 +6,6 @@
 #include <set>
 
 #include "diagnosis/constants.h"
-#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -48,23 +47,36 @@ class Maker {
   }
 
  private:
-  /// One shape of a cause; those `beside` it take up its errors.
+  /// One shape of a cause; those `beside` it take up its errors. Where the robot or the site cannot
+  /// have it, that is told.
   void add(std::string_view effect, const std::string& at, EffectShape shape = {},
            std::vector<EffectShape> beside = {}) {
     Candidate candidate{.effect = std::string(effect), .at = at, .joint = joint_};
-    candidate.needs = take(candidate, shape, candidate.main);
-    for (const EffectShape& each : beside) take(candidate, each, candidate.slack);
+    const auto made = static_cast<std::ptrdiff_t>(all_.made.size());
+    const int parameters = parameters_;
+    Problems problems;
+    candidate.needs = take(candidate, shape, candidate.main, problems);
+    for (const EffectShape& each : beside) take(candidate, each, candidate.slack, problems);
+    if (problems.any()) {
+      all_.made.erase(all_.made.begin() + made, all_.made.end());
+      parameters_ = parameters;
+      const bool told = std::ranges::any_of(all_.untestable, [&](const Untestable& each) {
+        return each.effect == effect && each.at == at;
+      });
+      if (!told) cannot(effect, at, problems.list.front());
+      return;
+    }
     candidate.shape = std::move(shape);
     candidate.beside = std::move(beside);
     all_.list.push_back(std::move(candidate));
   }
 
   /// Numbers the parameters of one shape, and says what rows must have for it.
-  std::string take(const Candidate& of, const EffectShape& shape, std::vector<int>& parameters) {
+  std::string take(const Candidate& of, const EffectShape& shape, std::vector<int>& parameters,
+                   Problems& problems) {
     all_.made.push_back({of.effect, of.at, shape});
-    Problems problems;
     const auto effect = make_effect(entry_of(all_.made.back()), robot_, site_, problems);
-    expects(effect && !problems.any(), "a candidate is an effect that the robot can have");
+    if (!effect) return {};
     for (size_t k = 0; k < effect->parameters().size(); ++k) parameters.push_back(parameters_++);
     return effect->needs();
   }
