@@ -29,14 +29,14 @@ std::set<TouchKey> stored_touches(const Store& const_store, std::int64_t session
   return keys;
 }
 
-struct Answer {
+struct SessionAnswer {
   std::string answer, decision;
   std::map<std::string, std::pair<double, double>> identified;  ///< value and sigma by name
   std::map<int, Eigen::VectorXd> readings;                      ///< by step of the plan
 };
 
-Answer answer_of(const ResultMessage& result, Store& store) {
-  Answer answer{result.answer, result.decision, {}, {}};
+SessionAnswer answer_of(const ResultMessage& result, Store& store) {
+  SessionAnswer answer{result.answer, result.decision, {}, {}};
   const Decoding meaning = must(read_meaning(must(store.session(1)).config));
   for (const TouchRecord& touch : must(store.touches(1)))
     answer.readings[touch.step] = reading_of(touch, meaning).q;
@@ -55,7 +55,7 @@ void run_to_result(Cell& cell, const std::string& preload = {}) {
   cell.until([&] { return !cell.results.empty(); });
 }
 
-void expect_same(const Answer& found, const Answer& wanted) {
+void expect_same(const SessionAnswer& found, const SessionAnswer& wanted) {
   EXPECT_EQ(found.answer, wanted.answer);
   EXPECT_EQ(found.decision, wanted.decision);
   for (const auto& [name, value] : wanted.identified) {
@@ -77,7 +77,7 @@ void kill_at_random(bool live, const std::string& preload, int kills, std::uint6
   options.touches = 8;
   options.live = live;
   options.id = "undisturbed";
-  Answer wanted;
+  SessionAnswer wanted;
   {
     Cell cell(options);
     if (live) cell.start_robot();

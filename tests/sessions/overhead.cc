@@ -1,8 +1,10 @@
 // What the service costs the robot's computer.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
+#include "io/dds/names.h"
 #include "tests/support/cell.h"
 
 namespace selfcal {
@@ -38,6 +40,48 @@ TEST(Overhead, StaysBelowFiveMillisecondsOfCpuATouch) {
       1e3 * nuisance, 1e3 * all, megabytes(cell.service_pid(), "VmHWM"));
   // Three times the bound, for sanitizers and loaded machines; the figure itself is printed.
   EXPECT_LT(nuisance, 0.015);
+}
+
+/// A domain in which this process sends messages of any size, and those that it starts do not.
+std::uint32_t domain_of_long_messages() {
+  const std::uint32_t domain = new_domain();
+  const std::string usual = std::getenv("CYCLONEDDS_URI");
+  setenv("CYCLONEDDS_URI",
+         (usual + ",<Internal><MaxSampleSize>100 MB</MaxSampleSize></Internal>").c_str(), 1);
+  return domain;
+}
+
+TEST(Overhead, KeepsToItsMemoryUnderCommandsOfTwentyMegabytes) {
+  CellOptions options;
+  options.touches = 8;
+  options.domain = domain_of_long_messages();
+  Cell cell(options);
+  const auto rude = must(DdsParticipant::open(cell.domain, "rude"));
+  const std::string raised = std::getenv("CYCLONEDDS_URI");
+  setenv("CYCLONEDDS_URI", raised.substr(0, raised.rfind(',')).c_str(), 1);
+  cell.start_service();
+  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
+  const double before = megabytes(cell.service_pid(), "VmHWM");
+
+  std::string huge(20'000'000, 'x'), large(1'000'000, 'y');
+  char verb[] = "start", nobody[] = "";
+  int sent = 0;
+  for (int i = 0; i < 30; ++i) {
+    // Each from a writer of its own, whose history the next does not wait for.
+    auto commands =
+        must(DdsWriter<dds::Command>::open(rude, robot_topic("cell", "command"), kReplies));
+    ASSERT_TRUE(cell.until([&] { return commands.matched() > 0; }));
+    std::string id = std::to_string(i);
+    sent += commands.write({.id_ = id.data(), .verb_ = huge.data(), .from_ = nobody}).has_value();
+    sent += commands.write({.id_ = large.data(), .verb_ = verb, .from_ = nobody}).has_value();
+    cell.listen();
+  }
+  EXPECT_EQ(cell.command("abort").why, "no session is running") << "others are still heard";
+  const double after = megabytes(cell.service_pid(), "VmHWM");
+  std::printf("%d commands of 1 and 20 MB: %.1f MB at most before, %.1f MB after\n", sent, before,
+              after);
+  // The unit allows 512 MB. What is on its way at the moment is kept, and no more.
+  EXPECT_LT(after, before + 60);
 }
 
 TEST(Overhead, KeepsToItsMemoryOverManySessions) {

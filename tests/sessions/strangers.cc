@@ -1,10 +1,12 @@
 // Somebody else in the robot's DDS domain: pretends to be it, or commands its service.
 #include <gtest/gtest.h>
 
+#include "io/dds/messenger.h"
 #include "io/dds/names.h"
 #include "io/dds/robot_side.h"
 #include "io/dds/senders.h"
 #include "tests/support/cell.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -71,6 +73,36 @@ TEST_F(Strangers, WhoPublishTheTriggerAreAFaultAndNotBelieved) {
   bool closed = false;
   expect_fault("the trigger",
                [&] { (void)trigger->send(stamp += kMillisecond, closed = !closed); });
+}
+
+TEST_F(Strangers, WhoSpeakAsItsServiceAreAFaultForAsLongAsTheyAreThere) {
+  auto other = must(DdsMessenger::open(participant, "cell", wakeup));
+  ASSERT_TRUE(cell.until([&] { return cell.in_state("fault"); }));
+  EXPECT_NE(cell.statuses.back().why.find("another service of robot cell"), std::string::npos)
+      << cell.statuses.back().why;
+  other.reset();
+  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
+  EXPECT_TRUE(cell.command("start").accepted) << "goes on when a person says so";
+}
+
+TEST(TwoServices, OfOneRobotDoNotRunWhateverTheirFolders) {
+  CellOptions options;
+  options.touches = 8;
+  Cell cell(options);
+  const std::filesystem::path other = cell.folder / "other";
+  std::filesystem::create_directory(other);
+  for (const auto& file : std::filesystem::directory_iterator(cell.folder))
+    if (file.is_regular_file())
+      std::filesystem::copy_file(file.path(), other / file.path().filename());
+  cell.start_service();
+  ASSERT_TRUE(cell.until([&] { return cell.in_state("idle"); }));
+
+  Running second({"serve", other / "config.yaml", "--simulate"}, other / "log");
+  EXPECT_EQ(second.wait(), kDeviceFailed);
+  EXPECT_NE(text_of(other / "log").find("a service of robot cell is in DDS domain"),
+            std::string::npos)
+      << text_of(other / "log");
+  EXPECT_TRUE(cell.command("start").accepted) << "the first has not noticed it";
 }
 
 TEST(Commands, AreNotTakenUnlessTheConfigurationAllowsThem) {
