@@ -45,7 +45,9 @@ TouchMoves moves_of(const Choosing& c, const std::vector<std::size_t>& of,
     const auto at = static_cast<std::size_t>(i);
     const TouchTarget& target = c.targets[of[at]];
     std::vector<std::optional<PossibleTouch>> list(static_cast<std::size_t>(by.cols()));
-    if (!target.plane || c.options.spacing > 0) return list;
+    // Near where the loops of a machine come into another way of closing the maker's figures do not
+    // tell on which side of it the true machine is.
+    if (!target.plane || c.options.spacing > 0 || c.robot.has_loops()) return list;
     looked = c.candidates.moved(target, touches[at], by);
     for (std::size_t k = 0; k < list.size(); ++k)
       if (looked[k]) list[k] = PossibleTouch{*looked[k], target.set, -1, target.outward};

@@ -158,6 +158,14 @@ TEST_P(Slips, NeverGiveAConfidentWrongCalibration) {
   EXPECT_LT(left_of_sound(folder_ / "identified/calibrated.robot.yaml"), makers) << ran.out;
 }
 
+bool gives_way(const std::string& effect) { return effect.ends_with("_compliance"); }
+
+/// A machine that bends does so at several joints and links, between which a slip moves the shares.
+bool names_what_gives_way(const json& diagnosis) {
+  return std::ranges::any_of(diagnosis.at("verdict").at("named"),
+                             [](const json& each) { return gives_way(each.at("effect")); });
+}
+
 TEST_P(Slips, NeverNameACauseThatIsNotThere) {
   const Slip& slip = GetParam();
   const Ran ran = run("diagnose", "spoiled", "diagnosed");
@@ -181,6 +189,7 @@ TEST_P(Slips, NeverNameACauseThatIsNotThere) {
       run("diagnose", "sound", "sound_diagnosed");
       sound = json_of(folder_ / "sound_diagnosed/diagnosis.json");
     }
+    if (gives_way(effect) && names_what_gives_way(sound)) continue;
     const auto truly = figures_of(sound, effect, named.at("where"));
     for (const auto& [name, figure] : figures_of(diagnosis, effect, named.at("where"))) {
       ASSERT_TRUE(truly.contains(name)) << effect << ": " << name << "\n" << ran.out;
