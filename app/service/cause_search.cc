@@ -73,7 +73,7 @@ class TouchPool {
         continue;
       PlannedTouch touch;
       touch.set = static_cast<int>(set - config_.sets.begin());
-      touch.start = vector_of(step.start);
+      touch.outside = touch.start = vector_of(step.start);
       touch.touch = vector_of(step.touch);
       touch.end = vector_of(step.end);
       old.push_back(std::move(touch));
