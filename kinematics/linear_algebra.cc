@@ -134,6 +134,7 @@ SingularValues singular_values(const Eigen::MatrixXd& A) {
 }
 
 Symmetric symmetric_eigen(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) return {};
   if (A.rows() >= kLarge) return large_symmetric_eigen(A);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
