@@ -151,8 +151,6 @@ void expect_found(const std::string& robot, const std::vector<Hidden>& hidden, i
 
 /// Killed again and again while it diagnoses and touches.
 TEST(HiddenCause, IsFoundInOneSessionHoweverOftenTheServiceIsKilled) {
-  if (!std::getenv("SELFCAL_CAUSES"))
-    GTEST_SKIP() << "minutes of diagnosis; did not end in the last run: set SELFCAL_CAUSES";
   Cell cell(options_of("irb1600", hidden_in_irb1600()[2], 1));  // which has look-alikes at first
   give_masses(cell);
   cell.start_service();
