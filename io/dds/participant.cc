@@ -2,13 +2,36 @@
 
 #include "io/dds/participant.h"
 
+#include <dds/ddsrt/log.h>
+
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <mutex>
 
+#include "io/clock.h"
+#include "io/dds/allowance.h"
+
 namespace selfcal {
 namespace {
+
+/// What Cyclone has to say of strangers' packets goes to stderr as ever, but no faster than anybody
+/// reads it: a flood of them would fill the journal.
+void say_sparingly(void*, const dds_log_data_t* said) {
+  static std::mutex mutex;
+  static Allowance allowance(1, 50);
+  static std::uint64_t left_out = 0;
+  const std::scoped_lock lock(mutex);
+  if (!allowance.take(monotonic_now())) {
+    ++left_out;
+    return;
+  }
+  if (left_out > 0)
+    std::fprintf(stderr, "%llu lines of DDS left out\n", static_cast<unsigned long long>(left_out));
+  left_out = 0;
+  std::fprintf(stderr, "%.*s\n", static_cast<int>(said->size), said->message);
+}
 
 /// The domain as this process configures it, which all of its participants share. Null where
 /// somebody else in the process has joined it before, whose configuration holds then.
@@ -16,6 +39,7 @@ Result<std::shared_ptr<DdsEntity>> domain_of(std::uint32_t number) {
   static std::mutex mutex;
   static std::map<std::uint32_t, std::weak_ptr<DdsEntity>> joined;
   const std::scoped_lock lock(mutex);
+  if (joined.empty()) dds_set_log_sink(say_sparingly, nullptr);
   if (auto domain = joined[number].lock()) return domain;
   const char* given = std::getenv("CYCLONEDDS_URI");
   // Of two settings the later one holds.
