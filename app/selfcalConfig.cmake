@@ -2,6 +2,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
 find_dependency(PkgConfig)
+find_dependency(Threads)
 pkg_check_modules(HWY REQUIRED libhwy)
 pkg_check_modules(OPENBLAS REQUIRED IMPORTED_TARGET openblas)
 find_dependency(tl-expected)

@@ -109,7 +109,8 @@ struct RowFigure {
 
 struct Residuals {
   Figures fit, check;
-  std::vector<RowFigure> rows;       ///< all that gave an equation, in the order of the data set
+  /// Those that gave an equation, in the order of the data set; of more than 100 000 every so many.
+  std::vector<RowFigure> rows;
   std::vector<CheckRow> check_rows;  ///< in the order of the data set's
   std::vector<SetFigures> check_by_set;
 };

@@ -104,18 +104,18 @@ class CorrectedRobot final : public Robot, public RobotText {
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
     const auto kept =
-        memory_.of(block, body, bytes_of_a_block(), [&] { return deviations_of(block, body); });
+        memory_.of(block, body, bytes_of(block), [&] { return deviations_of(block, body); });
     const std::vector<Deviation>& deviations = *kept;
     const Eigen::VectorXd own = xi.head(geometry_parameters());
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
-    ConfigurationBlock moved = block;
-    moved.added.setZero(kLanes, block.q.cols());
-    for (int lane = 0; lane < kLanes; ++lane)
+    ConfigurationBlock moved{block.q, block.count};
+    moved.added.setZero(block.lanes(), block.q.cols());
+    for (int lane = 0; lane < block.lanes(); ++lane)
       moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();
     PsiBlock inner;
     Closure closure = geometry_->locate(moved, own, body, X, psi ? &inner : nullptr);
     if (psi) fill(deviations, own, v, inner, *psi);
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < block.lanes(); ++lane) {
       const Eigen::Matrix<double, 6, 1> twist = deviations[lane].by.tip * v;
       if (twist.isZero(0)) continue;
       const Eigen::Vector3d turn = twist.tail<3>();
@@ -162,10 +162,11 @@ class CorrectedRobot final : public Robot, public RobotText {
     Eigen::Vector3d arm;
   };
 
-  std::size_t bytes_of_a_block() const {
+  std::size_t bytes_of(const ConfigurationBlock& block) const {
     const std::size_t effects =
         parameters_.size() - static_cast<std::size_t>(geometry_parameters());
-    return kLanes * (effects * (joints().size() + 6) + 3) * sizeof(double);
+    return static_cast<std::size_t>(block.lanes()) * (effects * (joints().size() + 6) + 3) *
+           sizeof(double);
   }
 
   Eigen::Index geometry_parameters() const {
@@ -238,7 +239,7 @@ class CorrectedRobot final : public Robot, public RobotText {
       Locations X;
       geometry_->locate(plain, values(*geometry_), Body::endpoint, X, &psi);
     }
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < block.lanes(); ++lane) {
       if (lane >= std::max(block.count, 1)) {
         all.push_back(all.back());
         continue;
@@ -256,7 +257,8 @@ class CorrectedRobot final : public Robot, public RobotText {
     at.legs.resize(6, n);
     for (Eigen::Index j = 0; j < n; ++j)
       for (int c = 0; c < 6; ++c)
-        at.legs(c, j) = psi(c * kLanes + lane, geometry_->leg_parameter(static_cast<int>(j)));
+        at.legs(c, j) =
+            psi(c * (psi.rows() / 6) + lane, geometry_->leg_parameter(static_cast<int>(j)));
     at.leg_lengths = geometry_->leg_lengths(values(*geometry_), at.q);
   }
 
@@ -264,31 +266,32 @@ class CorrectedRobot final : public Robot, public RobotText {
   void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& xi,
             const Eigen::VectorXd& v, const PsiBlock& inner, PsiBlock& psi) const {
     const Eigen::Index own = geometry_parameters(), n = static_cast<Eigen::Index>(joints().size());
-    psi.resize(6 * kLanes, static_cast<Eigen::Index>(parameters_.size()));
+    const Eigen::Index lanes = inner.rows() / 6;
+    psi.resize(6 * lanes, static_cast<Eigen::Index>(parameters_.size()));
     psi.leftCols(own) = inner;
     Eigen::MatrixXd J(6, n);
     std::vector<Eigen::VectorXd> by_variable;  // of the whole block
     for (Eigen::Index j = 0; j < n; ++j)
       by_variable.emplace_back(inner * geometry_->variable_change(xi, static_cast<int>(j)));
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Regressor& by = deviations[lane].by;
+    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+      const Regressor& by = deviations[static_cast<size_t>(lane)].by;
       for (Eigen::Index j = 0; j < n; ++j)
-        for (int c = 0; c < 6; ++c)
-          J(c, j) = by_variable[static_cast<size_t>(j)][c * kLanes + lane];
+        for (int c = 0; c < 6; ++c) J(c, j) = by_variable[static_cast<size_t>(j)][c * lanes + lane];
       Eigen::MatrixXd columns = J * by.joints;
       const Eigen::Vector3d turn = by.tip.bottomRows<3>() * v;
       if (!turn.isZero(0)) {
         const Eigen::Matrix3d E = exp_rotation(turn);
         columns.bottomRows<3>() = (E * columns.bottomRows<3>()).eval();
         Eigen::MatrixXd turns(3, own);
-        for (int c = 0; c < 3; ++c) turns.row(c) = inner.row((3 + c) * kLanes + lane);
+        for (int c = 0; c < 3; ++c) turns.row(c) = inner.row((3 + c) * lanes + lane);
         turns = (E * turns).eval();
-        for (int c = 0; c < 3; ++c) psi.row((3 + c) * kLanes + lane).head(own) = turns.row(c);
+        for (int c = 0; c < 3; ++c) psi.row((3 + c) * lanes + lane).head(own) = turns.row(c);
       }
       columns.topRows<3>() +=
-          by.tip.topRows<3>() - skew(deviations[lane].arm) * by.tip.bottomRows<3>();
+          by.tip.topRows<3>() -
+          skew(deviations[static_cast<size_t>(lane)].arm) * by.tip.bottomRows<3>();
       columns.bottomRows<3>() += left_jacobian_inverse(turn).inverse() * by.tip.bottomRows<3>();
-      for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane).tail(v.size()) = columns.row(c);
+      for (int c = 0; c < 6; ++c) psi.row(c * lanes + lane).tail(v.size()) = columns.row(c);
     }
   }
 

@@ -53,12 +53,29 @@ void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
   A.triangularView<Eigen::StrictlyLower>().setZero();
 }
 
-void eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A.leftCols(columns));
-  A.rightCols(A.cols() - columns).applyOnTheLeft(qr.householderQ().adjoint());
-  A.leftCols(columns).setZero();
-  const Eigen::Index rows = std::min(columns, A.rows());
-  A.topLeftCorner(rows, columns) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+std::vector<Eigen::Index> eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns) {
+  constexpr double kNothing = 1e-12;  // of a column's length: rounding of what hangs on others
+  const Eigen::VectorXd length = A.leftCols(columns).colwise().norm();
+  std::vector<Eigen::Index> steps;
+  Eigen::VectorXd reflector(A.rows()), work(A.cols());
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const auto row = static_cast<Eigen::Index>(steps.size());
+    const Eigen::Index below = A.rows() - row;
+    auto column = A.col(c).tail(below);
+    if (column.norm() <= kNothing * length[c]) {
+      column.setZero();
+      continue;
+    }
+    double factor = 0, diagonal = 0;
+    auto essential = reflector.head(below - 1);
+    column.makeHouseholder(essential, factor, diagonal);
+    A.bottomRightCorner(below, A.cols() - c - 1)
+        .applyHouseholderOnTheLeft(essential, factor, work.data());
+    column.setZero();
+    column[0] = diagonal;
+    steps.push_back(c);
+  }
+  return steps;
 }
 
 Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) {
@@ -68,6 +85,11 @@ Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   if (A.cols() == 0) return {};
   return A.completeOrthogonalDecomposition().solve(b);
+}
+
+Eigen::MatrixXd least_squares_of_all(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  if (A.cols() == 0 || B.cols() == 0) return Eigen::MatrixXd::Zero(A.cols(), B.cols());
+  return A.completeOrthogonalDecomposition().solve(B);
 }
 
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <vector>
 
 namespace selfcal {
 
@@ -10,14 +11,18 @@ namespace selfcal {
 /// many rows as before.
 void triangularise(Eigen::Ref<Eigen::MatrixXd> A);
 
-/// Reflects the rows of `A` so that its first `columns` columns become upper triangular.
-void eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns);
+/// Reflects the rows of `A` so that its first `columns` columns become a staircase: a row for each
+/// that does not follow from those before it, which are returned, and zeros below.
+std::vector<Eigen::Index> eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index columns);
 
 /// Inverse of the upper triangular `R`.
 Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R);
 
 /// x of least length that minimises |A x - b| (complete orthogonal decomposition).
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// The same of every column of `B`.
+Eigen::MatrixXd least_squares_of_all(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
 /// What is left of the columns of `M` after projecting the column space of `onto` out.
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M);

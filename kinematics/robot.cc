@@ -148,9 +148,7 @@ std::vector<Eigen::Isometry3d> seen_poses(const Robot& robot, const Eigen::Vecto
   return {pose};
 }
 
-ConfigurationBlock block_of(const Eigen::VectorXd& q) {
-  return {q.transpose().replicate(kLanes, 1).array(), 1};
-}
+ConfigurationBlock block_of(const Eigen::VectorXd& q) { return {q.transpose().array(), 1}; }
 
 Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
                 Body body) {

@@ -1,8 +1,8 @@
 // The machine as the identification sees it: named parameters, the location of a body and its
 // generalized Jacobian Psi (Khalil and Dombre, equations 11.10 to 11.18).
 //
-// Everything is evaluated for a block of up to kLanes configurations at once. In every array the
-// lanes are contiguous, so that the same operation runs over all of them.
+// Everything is evaluated for a block of configurations at once, kLanes of them or one alone. In
+// every array the lanes are contiguous, so that the same operation runs over all of them.
 #pragma once
 
 #include <Eigen/Dense>
@@ -23,30 +23,32 @@ namespace selfcal {
 
 inline constexpr int kLanes = 32;
 
-/// kLanes x columns without the heap. The rows are counted at run time so that the compiler loops
+/// Lanes x columns without the heap. The rows are counted at run time so that the compiler loops
 /// over them: unrolled, one expression becomes hundreds of instructions.
 template <int columns>
 using LaneArray = Eigen::Array<double, Eigen::Dynamic, columns, 0, kLanes, columns>;
 
-/// One number a lane; always kLanes long.
+/// One number a lane.
 using Lanes = LaneArray<1>;
 
 /// What else held when the rows of a block were taken, a row a lane; NaN where it is not known. A
 /// matrix without rows is not known of any lane. Only effects ask for it.
 struct Conditions {
-  Eigen::MatrixXd wrench;    ///< kLanes x 6, on the tool at the last frame's origin, in its axes
-  Eigen::MatrixXd velocity;  ///< kLanes x joints
-  Eigen::MatrixXd normal;    ///< kLanes x 3, outward, of the touched surface, world, unit
+  Eigen::MatrixXd wrench;    ///< lanes x 6, on the tool at the last frame's origin, in its axes
+  Eigen::MatrixXd velocity;  ///< lanes x joints
+  Eigen::MatrixXd normal;    ///< lanes x 3, outward, of the touched surface, world, unit
   Eigen::VectorXd temperature, time;  ///< C, s
   std::vector<int> set;               ///< of the data set
 };
 
-/// Joint readings of a block: kLanes x joints (rad or m). Lanes past `count` repeat the last one.
+/// Joint readings of a block: kLanes x joints, or 1 x joints (rad or m). Lanes past `count` repeat
+/// the last one.
 struct ConfigurationBlock {
   Eigen::ArrayXXd q;
   int count = 0;
-  Eigen::ArrayXXd added = {};  ///< kLanes x joints, to the joint variables; without rows: nothing
+  Eigen::ArrayXXd added = {};  ///< lanes x joints, to the joint variables; without rows: nothing
   Conditions conditions = {};
+  int lanes() const { return static_cast<int>(q.rows()); }
 };
 
 /// Location of a body in the world frame.
@@ -60,12 +62,16 @@ struct Locations {
   LaneArray<9> rotation{kLanes, 9};  ///< column 3 j + i holds R(i, j)
   LaneArray<3> position{kLanes, 3};  ///< m
 
+  void resize(int lanes) {
+    rotation.resize(lanes, 9);
+    position.resize(lanes, 3);
+  }
   Eigen::Matrix3d R(int lane) const;
   Eigen::Vector3d p(int lane) const { return position.row(lane).matrix().transpose(); }
   Location at(int lane) const { return {R(lane), p(lane)}; }
 };
 
-/// Psi of a block, (6 kLanes) x parameters: row c kLanes + lane is component c (dx dy dz of the
+/// Psi of a block, (6 lanes) x parameters: row c lanes + lane is component c (dx dy dz of the
 /// body's origin, then the rotation vector, both in the world frame) of configuration `lane`.
 using PsiBlock = Eigen::MatrixXd;
 
@@ -145,7 +151,8 @@ class Robot {
   virtual const std::vector<int>& preference() const = 0;
 
   /// Location of `body` at each configuration and, unless null, its derivatives to every parameter
-  /// (`psi` is resized; zero where a lane stays open). `xi` has parameters().size() entries.
+  /// (`X` and `psi` are resized; zero where a lane stays open). `xi` has parameters().size()
+  /// entries.
   virtual Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                          Locations& X, PsiBlock* psi) const = 0;
   /// Has loops, so that locate may leave lanes open.
@@ -159,7 +166,7 @@ class Robot {
   /// Every passive joint is within its limit at readings `q`, by the maker's figures.
   virtual bool within_passive_limits(const Eigen::VectorXd&) const { return true; }
 
-  /// dX of `body` per joint reading, (6 kLanes) x joints, laid out as Psi; `psi` is that of the
+  /// dX of `body` per joint reading, (6 lanes) x joints, laid out as Psi; `psi` is that of the
   /// block and the body.
   virtual void joint_jacobian(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                               const PsiBlock& psi, Eigen::MatrixXd& J) const = 0;
@@ -210,7 +217,7 @@ bool has_body(const Robot& robot, Body body);
 /// theirs.
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin = 0);
 
-/// Readings `q` alone, in every lane.
+/// Readings `q` alone, of one lane.
 ConfigurationBlock block_of(const Eigen::VectorXd& q);
 /// Location of `body` at readings `q`, at which the loops of the machine must close.
 Location locate(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,

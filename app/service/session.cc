@@ -31,13 +31,13 @@ int group_index(Set& set, const std::string& name) {
 /// Speed of the endpoint along the way out of the contact (m/s); 0 where the robot cannot stand, of
 /// which no equation comes either.
 double speed_out(const Robot& robot, const Reading& reading, const Eigen::Vector3d& outward) {
-  ConfigurationBlock ends = block_of(reading.q);
-  const Eigen::ArrayXd step = (kSpeedStep / 2 * reading.dq).array();
-  ends.q.row(0) += step.transpose();
-  ends.q.row(1) -= step.transpose();
-  Locations X;
-  if (!robot.locate(ends, values(robot), Body::endpoint, X, nullptr).closes()) return 0;
-  return outward.dot(X.p(0) - X.p(1)) / kSpeedStep;
+  const Eigen::VectorXd step = kSpeedStep / 2 * reading.dq;
+  Locations ahead, behind;
+  const auto closes = [&](const Eigen::VectorXd& q, Locations& X) {
+    return robot.locate(block_of(q), values(robot), Body::endpoint, X, nullptr).closes();
+  };
+  if (!closes(reading.q + step, ahead) || !closes(reading.q - step, behind)) return 0;
+  return outward.dot(ahead.p(0) - behind.p(0)) / kSpeedStep;
 }
 
 /// Why a machine with loops cannot stand at these readings: one is out of its range, or the loops

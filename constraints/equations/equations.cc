@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "constraints/equations/in_order.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/kernels/kernels.h"
 #include "kinematics/rotation.h"
@@ -15,19 +16,21 @@
 namespace selfcal {
 namespace {
 
-/// Adds G (of one side) times Psi to the rows of W, equation by equation.
-void add_product(const MethodOutput::Block& G, const PsiBlock& psi, int equations,
+/// Adds G (of one side) times columns of Psi to the rows of W, equation by equation.
+template <class Runs>
+void add_product(const MethodOutput::Block& G, const PsiBlock& psi, int equations, const Runs& runs,
                  Eigen::MatrixXd& W) {
-  for (int a = 0; a < equations; ++a) {
-    std::array<kernels::LaneProduct, 6> products;
-    size_t terms = 0;
-    for (int c = 0; c < 6; ++c)
-      if ((G.col(6 * a + c) != 0).any())
-        products[terms++] = {G.col(6 * a + c).data(), psi.data() + c * kLanes};
-    kernels::add_products(products.data(), terms, kLanes, static_cast<size_t>(psi.cols()),
-                          static_cast<size_t>(psi.rows()), W.data() + a * kLanes,
-                          static_cast<size_t>(W.rows()));
-  }
+  for (int a = 0; a < equations; ++a)
+    for (const auto& run : runs) {
+      std::array<kernels::LaneProduct, 6> products;
+      size_t terms = 0;
+      for (int c = 0; c < 6; ++c)
+        if ((G.col(6 * a + c) != 0).any())
+          products[terms++] = {G.col(6 * a + c).data(), psi.col(run.from).data() + c * kLanes};
+      kernels::add_products(products.data(), terms, kLanes, static_cast<size_t>(run.count),
+                            static_cast<size_t>(psi.rows()), W.col(run.to).data() + a * kLanes,
+                            static_cast<size_t>(W.rows()));
+    }
 }
 
 /// Columns of a rigid motion of the world: shifts, then turns about the origin.
@@ -70,15 +73,40 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
   nuisance_end_ = robot_columns();
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) {
     make_plan(s, use);
+    make_parts(s);
     nuisance_at_.push_back(nuisance_end_);
     nuisance_count_.push_back(plans_[s].items.empty() ? 0
                                                       : data.sets[s].method->tangent_dimension());
     nuisance_end_ += nuisance_count_.back();
+    quantities_.push_back(data.sets[s].method->equations());
     known_at_.push_back(known_end_);
     if (!plans_[s].items.empty())
       known_end_ += static_cast<int>(data.sets[s].method->known_lengths().size());
   }
+  shared_.assign(data.sets.size(), 0);
+  for (size_t s = 0; s < data.sets.size(); ++s)
+    if (data.sets[s].reference >= 0 && !plans_[s].items.empty())
+      shared_[data.sets[s].reference] = 1;
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s) propagate_readings(s);
+}
+
+/// Ends with a cluster, where the set has groups; differences that share a touch hang on all before
+/// them.
+void Equations::make_parts(int set) {
+  constexpr int kFewestItems = 2048;  // of a part, the last one apart
+  const SetPlan& plan = plans_[set];
+  const int items = static_cast<int>(plan.items.size());
+  if (items == 0) return;
+  const bool apart = !data_.sets[set].method->shares_touches();
+  const bool grouped = !plan.clusters.front().groups.empty();
+  size_t cluster = 0;
+  for (int first = 0; first < items;) {
+    Part part{set, first, apart ? std::min(first + kFewestItems, items) : items, cluster};
+    while (grouped && plan.clusters[cluster].last < part.last) ++cluster;
+    if (grouped) part.last = plan.clusters[cluster++].last;
+    parts_.push_back(part);
+    first = part.last;
+  }
 }
 
 std::size_t Equations::items_of_all() const {
@@ -106,15 +134,17 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
   const auto load = [&](ConfigurationBlock& into, bool previous) {
     into.q.resize(kLanes, data_.rows.q.cols());
     into.count = count;
-    std::vector<int> rows(kLanes);
+    std::array<int, kLanes> rows;
     for (int lane = 0; lane < kLanes; ++lane) {
       const SetPlan::Item& item = plans_[set].items[first + std::min(lane, count - 1)];
       rows[lane] = previous ? item.previous : item.row;
-      into.q.row(lane) = data_.rows.q.row(rows[lane]).array();
     }
-    if (conditions_matter_) into.conditions = conditions(data_.rows, rows);
+    for (Eigen::Index j = 0; j < into.q.cols(); ++j)
+      for (int lane = 0; lane < kLanes; ++lane) into.q(lane, j) = data_.rows.q(rows[lane], j);
+    if (conditions_matter_)
+      into.conditions = conditions(data_.rows, std::vector<int>(rows.begin(), rows.end()));
   };
-  block.rows.resize(count);
+  block.count = count;
   for (int lane = 0; lane < count; ++lane) block.rows[lane] = plans_[set].items[first + lane].row;
   load(block.now, false);
   block.closure = robot_.locate(block.now, state.xi, method.body(), block.X_now,
@@ -124,8 +154,9 @@ void Equations::evaluate(int set, int first, int count, const State& state, Bloc
     block.closure.add(robot_.locate(block.before, state.xi, method.body(), block.X_before,
                                     jacobian ? &block.psi_before : nullptr));
   }
-  block.quantities = method.equations();
-  block.out.resize(static_cast<int>(block.quantities.size()), method.tangent_dimension(),
+  const int equations = static_cast<int>(quantities_[set].size());
+  block.factor.setOnes(kLanes, equations);
+  block.out.resize(equations, method.tangent_dimension(),
                    s.reference < 0 ? 0 : data_.sets[s.reference].method->tangent_dimension(),
                    method.group_freedom());
   MethodInput in;
@@ -152,7 +183,7 @@ void Equations::into_axes(Block& block) const {
   MethodOutput& out = block.out;
   const Eigen::Index equations = out.r.cols();
   block.G_axes.setZero(kLanes, 6 * equations);
-  for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+  for (int lane = 0; lane < block.count; ++lane) {
     const Eigen::Matrix3d to_axes = block.X_axes.R(lane).transpose();
     for (Eigen::Index a = 0; a < equations; a += 3) {
       const Eigen::Vector3d r = out.r.row(lane).segment<3>(a).matrix().transpose();
@@ -194,82 +225,142 @@ Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity
     r[count++] = out.r(lane, column);
   }
   if (count == 0) return Eigen::Vector3d::Zero();
+  if (count == 1 && G.row(0).squaredNorm() > 0)
+    return -G.row(0).transpose() * (r[0] / G.row(0).squaredNorm());
+  if (count == 3) {  // of coordinates in some axes: G turns
+    const Eigen::Matrix3d A = G.topRows<3>();
+    if ((A * A.transpose()).isIdentity(1e-12)) return -A.transpose() * r.head<3>();
+  }
   return -Eigen::MatrixXd(G.topRows(count)).completeOrthogonalDecomposition().solve(r.head(count));
 }
 
-std::vector<RowResidual> Equations::residuals(const State& state) const {
-  std::vector<RowResidual> list;
-  list.reserve(items_of_all());
-  Block block;
-  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
-    const int items = static_cast<int>(plans_[s].items.size());
-    for (int first = 0; first < items; first += kLanes) {
-      const int count = std::min(kLanes, items - first);
-      evaluate(s, first, count, state, block, false);
-      for (int lane = 0; lane < count; ++lane) {
-        list.push_back(row_residual(block.out, block.quantities, block.closure, lane,
-                                    block.rows[lane], s, data_.rows.factor(block.rows[lane])));
-        if (!block.closure.closes(lane)) continue;
-        list.back().at = block.X_now.p(lane);
-        list.back().way = shortest_way(block.out, block.quantities, lane);
-      }
+template <class Entry, class Of>
+std::vector<Entry> Equations::of_every_block(const State& state, const Of& of) const {
+  std::vector<Entry> all;
+  all.reserve(items_of_all());
+  const auto make = [&](int i) {
+    const Part& part = parts_[static_cast<size_t>(i)];
+    std::vector<Entry> list;
+    Block block;
+    for (int first = part.first; first < part.last; first += kLanes) {
+      evaluate(part.set, first, std::min(kLanes, part.last - first), state, block, false);
+      of(part.set, block, list);
     }
-  }
-  return list;
+    return list;
+  };
+  in_order(static_cast<int>(parts_.size()), processors(), make,
+           [&](int, std::vector<Entry> list) { std::ranges::move(list, std::back_inserter(all)); });
+  return all;
 }
 
-void Equations::chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const {
+std::vector<RowResidual> Equations::residuals(const State& state) const {
+  return of_every_block<RowResidual>(
+      state, [&](int set, const Block& block, std::vector<RowResidual>& list) {
+        add_residuals(set, block, list);
+      });
+}
+
+std::vector<RowNorm> Equations::norms(const State& state) const {
+  return of_every_block<RowNorm>(state,
+                                 [&](int set, const Block& block, std::vector<RowNorm>& list) {
+                                   add_norms(set, block, list);
+                                 });
+}
+
+std::vector<RowPlace> Equations::places(const State& state, int every) const {
+  return of_every_block<RowPlace>(state,
+                                  [&](int set, const Block& block, std::vector<RowPlace>& list) {
+                                    for (int lane = 0; lane < block.count; ++lane) {
+                                      if (block.rows[lane] % every != 0) continue;
+                                      RowPlace& place = list.emplace_back();
+                                      if (!block.closure.closes(lane)) continue;
+                                      place.at = block.X_now.p(lane);
+                                      place.way = shortest_way(block.out, quantities_[set], lane);
+                                    }
+                                  });
+}
+
+void Equations::add_residuals(int set, const Block& block, std::vector<RowResidual>& list) const {
+  for (int lane = 0; lane < block.count; ++lane)
+    list.push_back(row_residual(block.out, quantities_[set], block.closure, lane, block.rows[lane],
+                                set, data_.rows.factor(block.rows[lane])));
+}
+
+void Equations::add_norms(int set, const Block& block, std::vector<RowNorm>& norms) const {
+  Lanes length = Lanes::Zero(kLanes), angle = Lanes::Zero(kLanes);
+  for (size_t a = 0; a < quantities_[set].size(); ++a)
+    (quantities_[set][a] == Quantity::angle ? angle : length) +=
+        block.out.r.col(static_cast<Eigen::Index>(a)).square();
+  for (int lane = 0; lane < block.count; ++lane)
+    norms.push_back(
+        {block.closure.closes(lane) ? std::sqrt(length[lane]) : HUGE_VAL, std::sqrt(angle[lane])});
+}
+
+void Equations::chain_rule(const Block& block, int set, const Layout& layout,
+                           Eigen::MatrixXd& W) const {
   const Set& s = data_.sets[set];
-  const int equations = static_cast<int>(block.quantities.size());
-  W.setZero(equations * kLanes, columns() + (beside ? kMotions + known_lengths() : 0) + 1);
-  add_product(block.out.G_now, block.psi_now, equations, W);
-  if (s.method->paired()) add_product(block.out.G_before, block.psi_before, equations, W);
-  if (block.G_axes.cols() > 0) add_product(block.G_axes, block.psi_axes, equations, W);
-  const auto own_block = [&](const MethodOutput::Block& D, int of) {
+  const int equations = static_cast<int>(quantities_[set].size());
+  W.setZero(equations * kLanes, layout.width());
+  add_product(block.out.G_now, block.psi_now, equations, layout.robot, W);
+  if (s.method->paired())
+    add_product(block.out.G_before, block.psi_before, equations, layout.robot, W);
+  if (block.G_axes.cols() > 0)
+    add_product(block.G_axes, block.psi_axes, equations, layout.robot, W);
+  const auto own_block = [&](const MethodOutput::Block& D, int of, int at) {
     const int m = nuisance_count_[of];
     for (int a = 0; m > 0 && a < equations; ++a)
-      W.block(a * kLanes, nuisance_at_[of], kLanes, m) = D.middleCols(a * m, m).matrix();
+      W.block(a * kLanes, at, kLanes, m) = D.middleCols(a * m, m).matrix();
   };
-  own_block(block.out.D_own, set);
-  if (s.reference >= 0) own_block(block.out.D_reference, s.reference);
-  if (beside) beside_unknowns(block, set, W);
+  own_block(block.out.D_own, set, layout.own);
+  if (s.reference >= 0) own_block(block.out.D_reference, s.reference, layout.reference);
+  if (layout.motions >= 0) beside_unknowns(block, set, layout, W);
   for (int a = 0; a < equations; ++a)
     W.col(W.cols() - 1).segment(a * kLanes, kLanes) = -block.out.r.col(a).matrix();
 }
 
-void Equations::beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const {
+void Equations::beside_unknowns(const Block& block, int set, const Layout& layout,
+                                Eigen::MatrixXd& W) const {
   const Method& method = *data_.sets[set].method;
-  const int equations = static_cast<int>(block.quantities.size());
+  const int equations = static_cast<int>(quantities_[set].size());
+  const std::array<Layout::Run, 1> motions = {{{0, layout.motions, kMotions}}};
   PsiBlock psi;
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(W.rows(), kMotions);
   motion_columns(block.X_now, psi);
-  add_product(block.out.G_now, psi, equations, M);
+  add_product(block.out.G_now, psi, equations, motions, W);
   if (method.paired()) {
     motion_columns(block.X_before, psi);
-    add_product(block.out.G_before, psi, equations, M);
+    add_product(block.out.G_before, psi, equations, motions, W);
   }
   if (block.G_axes.cols() > 0) {
     motion_columns(block.X_axes, psi);
-    add_product(block.G_axes, psi, equations, M);
+    add_product(block.G_axes, psi, equations, motions, W);
   }
-  W.middleCols(columns(), kMotions) = M;
   const std::vector<KnownLength> known = method.known_lengths();
   Eigen::VectorXd by_length(equations);
   for (int a = 0; a < equations; ++a)
-    by_length[a] = block.quantities[static_cast<size_t>(a)] == Quantity::length ? 1 : 0;
+    by_length[a] = quantities_[set][static_cast<size_t>(a)] == Quantity::length ? 1 : 0;
   for (size_t i = 0; i < known.size(); ++i) {
     if (!known[i].by_row) continue;
-    auto column = W.col(columns() + kMotions + known_at_[set] + static_cast<Eigen::Index>(i));
-    for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+    auto column = W.col(layout.known + static_cast<Eigen::Index>(i));
+    for (int lane = 0; lane < block.count; ++lane) {
       const Eigen::VectorXd by =
           block.independent ? Eigen::VectorXd(block.independent[lane] * by_length) : by_length;
-      for (int a = 0; a < equations; ++a) column[a * kLanes + lane] = by[a];
+      for (int a = 0; a < equations; ++a) column[a * kLanes + lane] = block.factor(lane, a) * by[a];
     }
   }
 }
 
 State Equations::stepped(const State& state, const Linearised& at,
                          const Eigen::VectorXd& step) const {
+  return stepped(state, at.clusters, step, step);
+}
+
+State Equations::stepped(const State& state, const NormalEquations& at,
+                         const Eigen::VectorXd& step) const {
+  return stepped(state, at.clusters, step, step(at.columns));
+}
+
+State Equations::stepped(const State& state, const std::vector<ClusterFactor>& clusters,
+                         const Eigen::VectorXd& step, const Eigen::VectorXd& of_columns) const {
   State next = state;
   next.xi += step.head(robot_columns());
   size_t cluster_index = 0;
@@ -280,10 +371,10 @@ State Equations::stepped(const State& state, const Linearised& at,
     const int freedom = method.group_freedom();
     for (const SetPlan::Cluster& cluster : plans_[s].clusters) {
       if (cluster.groups.empty()) continue;
-      const Eigen::MatrixXd& factor = at.clusters[cluster_index++].rows;
+      const Eigen::MatrixXd& factor = clusters[cluster_index++].rows;
       const Eigen::Index local = factor.rows();
       const Eigen::VectorXd right =
-          factor.rightCols(1) - factor.middleCols(local, step.size()) * step;
+          factor.rightCols(1) - factor.middleCols(local, of_columns.size()) * of_columns;
       Eigen::VectorXd move = right;
       for (Eigen::Index i = local - 1; i >= 0; --i) {
         const double diagonal = factor(i, i);

@@ -18,7 +18,6 @@
 namespace selfcal {
 
 class SharedTouches;
-class StreamingQr;
 
 /// What is estimated: the robot's parameters, each set's own values, each set's group values
 /// (one column a group).
@@ -48,7 +47,7 @@ class Scalars {
   }
 
  private:
-  static constexpr std::size_t kFew = 6;
+  static constexpr std::size_t kFew = 3;
   std::array<double, kFew> few_{};
   std::vector<double> more_;
 };
@@ -57,17 +56,20 @@ class Scalars {
 /// where the robot, as it is, cannot take the row's configuration.
 struct RowResidual {
   int row = 0, set = 0;
-  double length = 0, angle = 0;  ///< norms (m, rad)
-  int lengths = 0, angles = 0;   ///< counts of scalars
-  double factor = 1;             ///< of its noise over its set's
-  Scalars scalars = {};          ///< lengths + angles entries, in the method's order
-  /// World (m), of Equations::residuals alone: where the method's body is, and its shortest way to
-  /// where the row's lengths would be met, to first order; zero of rows without lengths.
-  Eigen::Vector3d at = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
+  double length = 0, angle = 0;   ///< norms (m, rad)
+  short lengths = 0, angles = 0;  ///< counts of scalars
+  double factor = 1;              ///< of its noise over its set's
+  Scalars scalars = {};           ///< lengths + angles entries, in the method's order
   /// Its length, or its angle where it has no lengths (m; rad).
   double size() const { return lengths > 0 ? length : angle; }
   /// Distance from zero in sigmas of the set's noise and the row's factor.
   double sigmas(const Scale& scale) const;
+};
+
+/// World (m): where the method's body is at a row, and its shortest way to where the row's lengths
+/// would be met, to first order; zero of rows without lengths and of those it cannot take.
+struct RowPlace {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
 };
 
 /// Weights of the rows.
@@ -76,6 +78,8 @@ struct Weighting {
   std::vector<char> outlier;    ///< by row of the data set; 1 weighs nothing
   double soft_quantile = 0.99;  ///< rows beyond this chi quantile are weighed down (Huber)
   bool structural = false;  ///< links and equations between nuisance parameters have a sigma of 1
+  bool passed_over =
+      false;  ///< rows that weigh nothing need not be looked at: their norms are zero
 };
 
 enum class Use { fit, check, align };
@@ -88,15 +92,32 @@ struct OpenRow {
 
 /// The factor of one cluster of groups: enough to get its unknowns back from the global step.
 struct ClusterFactor {
-  Eigen::MatrixXd rows;  ///< local freedoms x [local | global | Delta Y], upper triangular in local
+  /// Local freedoms x [local | columns of the system | Delta Y], upper triangular in local; zero
+  /// rows of those that the cluster's rows do not tell.
+  Eigen::MatrixXd rows;
 };
 
-struct Linearised {
-  Eigen::MatrixXd R;  ///< [W | Delta Y], whitened and weighed, square upper triangular
+/// Lengths of a row's residual; infinite as RowResidual's.
+struct RowNorm {
+  double length = 0, angle = 0;  ///< m, rad
+};
+
+/// What linearise() and normal_equations() share.
+struct Passed {
   double cost = 0;    ///< sum of the rows' Huber costs and of the squares of the own equations
   int equations = 0;  ///< scalars that took part
-  std::vector<RowResidual> residuals;  ///< of every row of the use, put aside or not
+  std::vector<RowNorm> norms;  ///< of every row of the use, put aside or not, in the plans' order
   std::vector<ClusterFactor> clusters;
+};
+
+struct Linearised : Passed {
+  Eigen::MatrixXd R;  ///< [W | Delta Y], whitened and weighed, square upper triangular
+};
+
+/// Sums of products in place of the factor.
+struct NormalEquations : Passed {
+  std::vector<int> columns;  ///< of W that take part: some of the robot's, all own ones; ascending
+  Eigen::MatrixXd H;         ///< [W | Delta Y]^T [W | Delta Y]
 };
 
 /// Every equation of some rows, for data sets small enough to hold them: whitened, not weighed.
@@ -164,25 +185,46 @@ class Equations {
   /// `beside`: with the columns beside the unknowns. That of a known length is what the rows say
   /// when the length were shorter than its entry says, over their sigma.
   Linearised linearise(const State& state, const Weighting& weighting, bool beside = false) const;
-  /// R of [W | -r_vv] at `state`, r_vv the second derivative of the rows along `step` (which gives
-  /// the unweighed rows' second difference over a tenth of the step); `at` is the linearisation at
+  /// The same as sums of products, of W's `columns` alone (as NormalEquations has them): several
+  /// times as fast, and right to rounding of the squares of the columns' lengths, which hides what
+  /// is left of columns that nearly depend on each other.
+  NormalEquations normal_equations(const State& state, const Weighting& weighting,
+                                   const std::vector<int>& columns) const;
+  /// W^T (-r_vv) at `state`, r_vv the second derivative of the rows along `step` (which gives the
+  /// unweighed rows' second difference over a tenth of the step); `at` is the linearisation at
   /// `state`.
-  Eigen::MatrixXd geodesic_acceleration(const State& state, const Weighting& weighting,
-                                        const Linearised& at, const Eigen::VectorXd& step) const;
+  Eigen::VectorXd geodesic_acceleration(const State& state, const Weighting& weighting,
+                                        const NormalEquations& at,
+                                        const Eigen::VectorXd& step) const;
   std::vector<RowResidual> residuals(const State& state) const;
+  /// Of the same rows, in the same order, those whose numbers in the data set `every` divides.
+  std::vector<RowPlace> places(const State& state, int every = 1) const;
+  /// The lengths of the same, in the same order.
+  std::vector<RowNorm> norms(const State& state) const;
   /// `scale` by set. Rows that are put aside in `outlier` (by row of the data set) are left out.
   DenseEquations dense(const State& state, const std::vector<Scale>& scale,
                        const std::vector<char>& outlier) const;
 
   /// The state after a step of the global columns (columns() entries).
   State stepped(const State& state, const Linearised& at, const Eigen::VectorXd& step) const;
+  State stepped(const State& state, const NormalEquations& at, const Eigen::VectorXd& step) const;
 
  private:
   struct Block;
   struct GeodesicStep;
+  struct Layout;
+  struct Pass;
+  struct Swept;
+  /// Items of a set that are gone through together: always the same ones.
+  struct Part {
+    int set, first, last;
+    std::size_t cluster;  ///< that its first item is of
+  };
   class Gatherer;
+  class Rows;
 
   std::size_t items_of_all() const;
+  void make_parts(int set);
   void make_plan(int set, Use use);
   /// By item, why the robot cannot take it with its maker's figures; empty where it can.
   std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;
@@ -192,16 +234,22 @@ class Equations {
   void propagate_readings(int set);
   /// Makes those of a block so.
   void make_independent(int set, int first, Block& block) const;
+  void add_norms(int set, const Block& block, std::vector<RowNorm>& norms) const;
+  void add_residuals(int set, const Block& block, std::vector<RowResidual>& list) const;
   /// Takes the vectors of a method that has such in the axes of the first moving link.
   void into_axes(Block& block) const;
-  void chain_rule(const Block& block, int set, bool beside, Eigen::MatrixXd& W) const;
+  /// Where the rows of `set` have their columns, in the order of the whole system.
+  Layout whole_layout(int set, bool beside) const;
+  /// The same in few columns: those that rows of this set have, first those that no others have.
+  Layout layout(int set, const Pass& pass) const;
+  void chain_rule(const Block& block, int set, const Layout& layout, Eigen::MatrixXd& W) const;
   /// Writes the columns beside the unknowns.
-  void beside_unknowns(const Block& block, int set, Eigen::MatrixXd& W) const;
-  void weigh(int set, const Weighting& weighting, Block& block, Eigen::MatrixXd& W,
-             Linearised& out) const;
+  void beside_unknowns(const Block& block, int set, const Layout& layout, Eigen::MatrixXd& W) const;
+  /// Divides what a block says by its noise and multiplies it by the root of its weight.
+  void weigh(int set, const Weighting& weighting, Block& block, Passed& out) const;
   /// Makes rows of differences that share a touch independent.
   void share(int set, int first, int count, SharedTouches& shared, Eigen::MatrixXd& W,
-             Linearised& out) const;
+             Passed& out) const;
   void gather(int set, const SetPlan::Cluster& cluster, int lane, const Block& block,
               const Eigen::MatrixXd& W, Gatherer& gatherer) const;
   /// Writes the derivatives of a link's residual over `sigma` to its groups, whose columns begin at
@@ -209,26 +257,37 @@ class Equations {
   double link_row(int set, const GroupDistance& link, double sigma, const State& state,
                   Eigen::Index at_a, Eigen::Index at_b,
                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
-  void gather_links(int set, const SetPlan::Cluster& cluster, const State& state,
-                    const Weighting& weighting, bool bent, Gatherer& gatherer,
-                    Linearised& out) const;
-  Linearised sweep(const State& state, const Weighting& weighting, bool beside,
-                   const GeodesicStep* geodesic_acceleration) const;
-  void sweep_set(int set, const State& state, const Weighting& weighting, bool beside,
-                 const GeodesicStep* geodesic_acceleration, StreamingQr& qr, Gatherer& gatherer,
-                 Linearised& out) const;
+  void gather_links(int set, const SetPlan::Cluster& cluster, const Pass& pass,
+                    const Layout& layout, Gatherer& gatherer, Passed& out) const;
+  Eigen::MatrixXd own_equations(int set, const Pass& pass, const Layout& layout, Passed& out) const;
+  bool weighs_nothing(int set, int first, int count, const Weighting& weighting) const;
+  /// The rows of a part go through `rows`, in the columns of `layout`.
+  void sweep_part(const Part& part, const Pass& pass, const Layout& layout, Rows& rows,
+                  Passed& out) const;
+  /// All parts, several at a time; `take` has what became of one, in their order.
+  template <class Take>
+  void sweep(const Pass& pass, const std::vector<Layout>& layouts, Passed& out,
+             const Take& take) const;
+  std::vector<Layout> layouts(const Pass& pass) const;
+  /// Evaluates the blocks of all parts without derivatives; `of` makes entries of each.
+  template <class Entry, class Of>
+  std::vector<Entry> of_every_block(const State& state, const Of& of) const;
   void bend_right_side(int set, int first, int count, const GeodesicStep& geodesic_acceleration,
-                       Eigen::MatrixXd& W) const;
-  void own_equations(const State& state, bool structural, Linearised& out,
-                     Eigen::MatrixXd& rows) const;
+                       Block& block) const;
+  NormalEquations sum_products(const Pass& pass, const std::vector<int>& columns) const;
+  State stepped(const State& state, const std::vector<ClusterFactor>& clusters,
+                const Eigen::VectorXd& step, const Eigen::VectorXd& of_columns) const;
 
   const Robot& robot_;
   const DataSet& data_;
   bool conditions_matter_ = false;  ///< the robot has effects, which ask for them
   std::vector<SetPlan> plans_;
+  std::vector<Part> parts_;
   std::vector<Scale> stated_;
   /// By set and item, to multiply the residuals with; empty of sets without noise_joints.
   std::vector<std::vector<Eigen::MatrixXd>> independent_;
+  std::vector<std::vector<Quantity>> quantities_;  ///< by set, of its equations
+  std::vector<char> shared_;                       ///< by set: another one refers to it
   std::vector<OpenRow> open_rows_;
   std::vector<int> nuisance_at_, nuisance_count_, known_at_;
   int nuisance_end_ = 0, known_end_ = 0;

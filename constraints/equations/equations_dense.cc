@@ -50,13 +50,14 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
     const Method& method = *data_.sets[s].method;
     const int items = static_cast<int>(plans_[s].items.size()), freedom = method.group_freedom();
     SharedTouches shared;
+    const Layout layout = whole_layout(s, true);
     for (int first = 0; first < items; first += kLanes) {
       const int count = std::min(kLanes, items - first);
       evaluate(s, first, count, state, block, true);
-      chain_rule(block, s, true, W);
+      chain_rule(block, s, layout, W);
       for (int lane = 0; lane < count; ++lane) {
         if (outlier[block.rows[lane]] || !block.closure.closes(lane)) continue;
-        for (int a = 0; a < static_cast<int>(block.quantities.size()); ++a) {
+        for (int a = 0; a < static_cast<int>(quantities_[s].size()); ++a) {
           Eigen::RowVectorXd& row = collector.add(block.rows[lane]);
           row.head(columns()) = W.row(a * kLanes + lane).head(columns());
           row[all] = W(a * kLanes + lane, W.cols() - 1);
@@ -64,7 +65,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
           if (freedom > 0)
             row.segment(groups_at[s] + freedom * data_.rows.group[block.rows[lane]], freedom) =
                 block.out.D_group.row(lane).segment(a * freedom, freedom).matrix();
-          row /= scale[s].of(block.quantities[a]) * data_.rows.factor(block.rows[lane]);
+          row /= scale[s].of(quantities_[s][a]) * data_.rows.factor(block.rows[lane]);
           if (method.shares_touches())
             shared.whiten(block.rows[lane], plans_[s].items[first + lane].previous, row);
         }
@@ -77,13 +78,16 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
                              groups_at[s] + freedom * link.b, row);
       }
   }
-  Linearised unused;
-  Eigen::MatrixXd between(0, columns() + 1);
-  own_equations(state, false, unused, between);
-  for (const auto& each : between.rowwise()) {
-    Eigen::RowVectorXd& row = collector.add(-1);
-    row.head(columns()) = each.head(columns());
-    row[all] = each[columns()];
+  Passed unused;
+  const Weighting weighting{scale, outlier};
+  const Pass pass{state, weighting, {}};
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    const Eigen::MatrixXd between = own_equations(s, pass, whole_layout(s, false), unused);
+    for (const auto& each : between.rowwise()) {
+      Eigen::RowVectorXd& row = collector.add(-1);
+      row.head(columns()) = each.head(columns());
+      row[all] = each[columns()];
+    }
   }
   return collector.finish();
 }

@@ -1,7 +1,12 @@
 // What the two halves of the equations share; nobody else includes this.
 #pragma once
 
+#include <array>
+#include <optional>
+
+#include "constraints/equations/column_products.h"
 #include "constraints/equations/equations.h"
+#include "constraints/equations/streaming_qr.h"
 
 namespace selfcal {
 
@@ -16,8 +21,68 @@ struct Equations::Block {
   MethodOutput out;
   MethodOutput::Block G_axes;  ///< as G, to the axes of vectors; without columns: there are none
   const Eigen::MatrixXd* independent = nullptr;  ///< by lane, of sets with noise_joints
-  std::vector<int> rows;
-  std::vector<Quantity> quantities;
+  MethodOutput::Block
+      factor;  ///< root of the weight over sigma of each equation; one unless weighed
+  std::array<int, kLanes> rows;
+  int count = 0;
+};
+
+/// Columns of the rows of a set.
+struct Equations::Layout {
+  struct Run {
+    int from = 0, to = 0, count = 0;  ///< `count` columns of Psi from `from` on stand from `to` on
+  };
+  std::vector<Run> robot;
+  /// First columns of what is its own, of the set referred to, of the world's motions and of its
+  /// known lengths; -1 of what is not there.
+  int own = -1, reference = -1, motions = -1, known = -1;
+  int lone = 0;             ///< so many first columns no other set has
+  std::vector<int> global;  ///< by column, its place in the system; the last is Delta Y
+  int width() const { return static_cast<int>(global.size()); }
+};
+
+/// What one pass over all rows is for.
+struct Equations::Pass {
+  const State& state;
+  const Weighting& weighting;
+  std::vector<int> robot;  ///< columns of parameters that take part, ascending
+  bool beside = false, products = false;
+  const GeodesicStep* bend = nullptr;
+  int width = 0;  ///< of the whole system, Delta Y too
+};
+
+/// Where the rows of a set end: in a factor or in sums of products.
+class Equations::Rows {
+ public:
+  Rows(int width, bool products) {
+    if (products)
+      products_.emplace(width);
+    else
+      factor_.emplace(width);
+  }
+  void push(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
+    if (products_)
+      products_->push(rows);
+    else
+      factor_->push(rows);
+  }
+  /// A block's rows, of which the first `count` of kLanes for each equation say something.
+  void push_block(const Eigen::MatrixXd& W, int count) {
+    if (products_) return products_->add(W);
+    for (Eigen::Index at = 0; at < W.rows(); at += kLanes) push(W.middleRows(at, count));
+  }
+  /// All that was pushed is in the result, which alone is kept of the products.
+  void finish() {
+    result_ = products_ ? products_->sum() : factor_->R();
+    products_.reset();
+  }
+  const Eigen::MatrixXd& R() const { return result_; }
+  const Eigen::MatrixXd& products() const { return result_; }
+
+ private:
+  std::optional<StreamingQr> factor_;
+  std::optional<ColumnProducts> products_;
+  Eigen::MatrixXd result_;
 };
 
 /// States a little ahead and behind along a step, and in between.

@@ -39,7 +39,7 @@ void Equations::propagate_readings(int set) {
   if (!(s.noise_joints > 0) || items == 0) return;
   State state{nominal_values(robot_), {}, {}};
   start(state);
-  const std::vector<Quantity> quantities = s.method->equations();
+  const std::vector<Quantity>& quantities = quantities_[set];
   const auto n = static_cast<Eigen::Index>(quantities.size());
   Eigen::VectorXd stated(n);
   for (Eigen::Index a = 0; a < n; ++a)
@@ -79,8 +79,8 @@ void Equations::make_independent(int set, int first, Block& block) const {
   block.independent = nullptr;
   if (independent_[set].empty()) return;
   block.independent = &independent_[set][first];
-  const auto n = static_cast<Eigen::Index>(block.quantities.size());
-  for (int lane = 0; lane < static_cast<int>(block.rows.size()); ++lane) {
+  const auto n = static_cast<Eigen::Index>(quantities_[set].size());
+  for (int lane = 0; lane < block.count; ++lane) {
     const Eigen::MatrixXd& T = block.independent[lane];
     block.out.r.row(lane) = (T * block.out.r.row(lane).matrix().transpose()).transpose().array();
     Eigen::Matrix<double, Eigen::Dynamic, 6> G(n, 6);

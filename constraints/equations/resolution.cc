@@ -7,7 +7,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kMostRows = 300;  ///< that the mean is taken over
+constexpr int kMostAveraged = 300;  ///< that the mean is taken over
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::vector<double> resolution_shares(const Equations& equations, const State& s
   std::vector<double> squares(equations.data().sets.size(), 0), count(squares.size(), 0);
   if (steps.norm() == 0) return squares;
   std::vector<char> left_out = outlier;
-  const int each = 1 + rows.rows() / kMostRows;
+  const int each = 1 + rows.rows() / kMostAveraged;
   for (int row = 0; row < rows.rows(); ++row)
     if (row % each != 0) left_out[static_cast<size_t>(row)] = 1;
   const DenseEquations dense = equations.dense(state, scale, left_out);

@@ -32,16 +32,19 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
   const std::vector<double> rounding =
       resolution_shares(equations, fitted.state, fitted.noise.used, fitted.noise.outlier);
   const Observations& rows = equations.data().rows;
+  const std::vector<RowResidual> residuals =
+      rows.repeat.empty() ? std::vector<RowResidual>() : equations.residuals(fitted.state);
   Eigen::MatrixXd encoders = Eigen::MatrixXd::Zero(all.rows(), all.cols()), repeats = encoders;
   for (int s = 0; s < static_cast<int>(rounding.size()); ++s) {
     if (equations.plan(s).items.empty()) continue;
     const double spread =
-        std::max(0.0, repeat_sigma(equations.data(), s, fitted.at.residuals, fitted.noise.outlier));
+        std::max(0.0, repeat_sigma(equations.data(), s, residuals, fitted.noise.outlier));
     const double coarse = std::min(1.0, rounding[s]);
     const double repeated =
         std::clamp(std::pow(spread / fitted.noise.used[s].length, 2) - coarse, 0.0, 1 - coarse);
     if (coarse + repeated == 0) continue;
     Weighting alone{fitted.noise.used, fitted.noise.outlier};
+    alone.passed_over = true;
     for (int row = 0; row < rows.rows(); ++row)
       if (rows.set[static_cast<size_t>(row)] != s) alone.outlier[static_cast<size_t>(row)] = 1;
     const Eigen::MatrixXd R = equations.linearise(fitted.state, alone).R;

@@ -1,7 +1,10 @@
 // Iterative pseudo-inverse with damping behind it (Khalil and Dombre 11.31, 11.32, 11.4.3).
 //
-// Each iteration solves min |R_f s - z|^2 + |(xi + s - centre) / sigma|^2 + lambda |D s|^2 by a QR
-// of the stacked rows, lambda zero unless a step failed to lower the cost.
+// Each iteration solves min |W_f s - z|^2 + |(xi + s - centre) / sigma|^2 + lambda |D s|^2, lambda
+// zero unless a step failed to lower the cost: by the Cholesky factor of the normal equations,
+// which the priors keep regular, or where even these leave a direction to rounding by a QR of the
+// rows themselves. What an iteration finds is the same to rounding, for the gradient is; what is
+// told of the last one comes of a QR in any case.
 #include "constraints/estimation/fit.h"
 
 #include <algorithm>
@@ -20,6 +23,9 @@ constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
 constexpr double kRounding = 1e-13;  ///< a step this short (m or rad) is nothing
 constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
+/// Of a pivot of the normal equations over its diagonal, which rounding blurs by some 1e-15: the
+/// step of a direction is then good to a thousandth, and the next iteration does the rest.
+constexpr double kLeastPivot = 1e-12;
 
 /// What the noise is estimated from; it only goes forward.
 enum class NoiseStage {
@@ -36,8 +42,8 @@ class Iteration {
         rule_(rule),
         columns_(free_columns(equations, prior)) {
     fit_.state = start;
-    const auto residuals = equations.residuals(start);
-    fit_.noise = estimate_noise(equations, residuals, noise_rule(stage_, 0));
+    if (rule.near) stage_ = NoiseStage::pooled;
+    fit_.noise = estimate_noise(equations, equations.norms(start), noise_rule(stage_, 0));
     relinearise();
   }
 
@@ -49,19 +55,33 @@ class Iteration {
     if (!done_)
       fit_.stop_reason =
           "no convergence within " + std::to_string(rule_.most_iterations) + " iterations";
+    if (!by_factor_) {
+      by_factor_ = true;
+      relinearise();
+    }
     fit_.covariance = covariance();
+    fit_.at = std::move(factor_);
     fit_.objective = cost_;
-    for (const RowResidual& r : fit_.at.residuals)
-      if (!fit_.noise.outlier[r.row])
-        fit_.objective += 2 * r.lengths * std::log(fit_.noise.used[r.set].length) +
-                          2 * r.angles * std::log(fit_.noise.used[r.set].angle);
+    count_rows();
     NoiseRule told = noise_rule(stage_, freedom(fit_.covariance));
     told.pool = false;  // each set's own
-    fit_.noise.estimated = estimate_noise(equations_, fit_.at.residuals, told).estimated;
+    fit_.noise.estimated = estimate_noise(equations_, fit_.at.norms, told).estimated;
     return std::move(fit_);
   }
 
  private:
+  /// What noise they are weighed with is part of the objective.
+  void count_rows() {
+    for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s) {
+      const std::vector<SetPlan::Item>& items = equations_.plan(s).items;
+      fit_.rows.push_back(static_cast<int>(items.size()));
+      const auto used = static_cast<double>(std::ranges::count_if(
+          items, [&](const auto& item) { return !fit_.noise.outlier[item.row]; }));
+      for (const Quantity quantity : equations_.data().sets[s].method->equations())
+        if (used > 0) fit_.objective += 2 * used * std::log(fit_.noise.used[s].of(quantity));
+    }
+  }
+
   NoiseRule noise_rule(NoiseStage stage, double freedom) const {
     NoiseRule rule;
     rule.global_freedom = freedom;
@@ -73,9 +93,19 @@ class Iteration {
 
   Weighting weighting() const { return {fit_.noise.used, fit_.noise.outlier}; }
 
+  const Passed& at() const { return by_factor_ ? static_cast<const Passed&>(factor_) : products_; }
+
   void relinearise() {
-    fit_.at = equations_.linearise(fit_.state, weighting());
-    cost_ = fit_.at.cost + prior_cost(fit_.state);
+    if (by_factor_)
+      factor_ = equations_.linearise(fit_.state, weighting());
+    else
+      products_ = equations_.normal_equations(fit_.state, weighting(), columns_);
+    cost_ = at().cost + prior_cost(fit_.state);
+  }
+
+  State stepped(const Eigen::VectorXd& step) const {
+    return by_factor_ ? equations_.stepped(fit_.state, factor_, step)
+                      : equations_.stepped(fit_.state, products_, step);
   }
 
   double prior_cost(const State& state) const {
@@ -86,8 +116,44 @@ class Iteration {
     return cost;
   }
 
-  Eigen::MatrixXd triangle(const Eigen::MatrixXd& R, bool pull) const {
-    return triangle_with_priors(equations_, prior_, columns_, R, fit_.state.xi, pull);
+  /// Triangular [W | z] of the rows and the priors at the state.
+  Eigen::MatrixXd triangle() {
+    if (!by_factor_) {
+      const Eigen::VectorXd b =
+          products_.H.col(products_.H.cols() - 1).head(products_.H.rows() - 1);
+      Eigen::MatrixXd T = root(products_.H, b + pull(), 0);
+      if (T.size() > 0) return T;
+      by_factor_ = true;
+      relinearise();
+    }
+    return triangle_with_priors(equations_, prior_, columns_, factor_.R, fit_.state.xi, true);
+  }
+
+  /// What the priors add to W^T z.
+  Eigen::VectorXd pull() const {
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns_.size()));
+    for (Eigen::Index i = 0; i < b.size(); ++i)
+      if (const int c = columns_[static_cast<size_t>(i)]; c < equations_.robot_columns())
+        b[i] = std::pow(prior_weight(equations_, prior_, c), 2) *
+               (prior_.centre[c] - fit_.state.xi[c]);
+    return b;
+  }
+
+  /// [L^T | L^-1 b] of the normal equations L L^T with the priors, damped by lambda; empty where
+  /// they are not regular.
+  Eigen::MatrixXd root(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, double lambda) const {
+    const Eigen::Index n = b.size();
+    Eigen::MatrixXd N = H.topLeftCorner(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      N(i, i) += std::pow(prior_weight(equations_, prior_, columns_[static_cast<size_t>(i)]), 2);
+    N.diagonal() += lambda * damping().cwiseAbs2();
+    const Eigen::MatrixXd L = cholesky_root(N);
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (!(L(i, i) * L(i, i) > kLeastPivot * N(i, i))) return {};
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    T.topLeftCorner(n, n) = L.transpose();
+    T.col(n).head(n) = solve_lower(L, b);
+    return T;
   }
 
   /// Least-squares step of a triangle, damped by lambda; spread to all columns.
@@ -109,8 +175,12 @@ class Iteration {
   /// `v` with half its geodesic acceleration (Transtrum and Sethna), which bends the step along a
   /// curved valley of the residual; `v` alone where that is no small correction and so says little.
   Eigen::VectorXd bent(const Eigen::VectorXd& v, double lambda) const {
-    const Eigen::MatrixXd R = equations_.geodesic_acceleration(fit_.state, weighting(), fit_.at, v);
-    const Eigen::VectorXd a = step(triangle(R, false), lambda);
+    const NormalEquations at =
+        by_factor_ ? equations_.normal_equations(fit_.state, weighting(), columns_) : products_;
+    const Eigen::VectorXd b = equations_.geodesic_acceleration(fit_.state, weighting(), at, v);
+    const Eigen::MatrixXd T = root(at.H, b, lambda);
+    if (T.size() == 0) return v;
+    const Eigen::VectorXd a = step(T, 0);
     return prior_length(a) < 0.75 * prior_length(v) ? Eigen::VectorXd(v + a / 2) : v;
   }
 
@@ -138,7 +208,7 @@ class Iteration {
   }
 
   void iterate() {
-    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
+    const Eigen::MatrixXd Rz = triangle();
     ++fit_.iterations;
     const double free = std::sqrt(std::max<double>(1, static_cast<double>(columns_.size())));
     // How far the minimum is: the step without damping, which a short damped one does not tell.
@@ -147,13 +217,7 @@ class Iteration {
     const double distance = whitened(Rz, whole);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const Eigen::VectorXd s = lambda_ > 0 ? bent(step(Rz, lambda_), lambda_) : whole;
-      const State trial = equations_.stepped(fit_.state, fit_.at, s);
-      Linearised next = equations_.linearise(trial, weighting());
-      const double cost = next.cost + prior_cost(trial);
-      if (std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9) {
-        fit_.state = trial;
-        fit_.at = std::move(next);
-        cost_ = cost;
+      if (take(stepped(s))) {
         lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
         // A tenth of a sigma a parameter left: the geometry has settled for these weights.
         if (distance < 0.1 * free) settle(arrival(distance / free, whole));
@@ -165,6 +229,23 @@ class Iteration {
       lambda_ = lambda_ == 0 ? 1e-2 : lambda_ * 10;
     }
     stop(false, "no step lowers the residual");
+  }
+
+  /// Goes to `trial` if its cost is none the higher.
+  bool take(State trial) {
+    Linearised factor;
+    NormalEquations products;
+    if (by_factor_)
+      factor = equations_.linearise(trial, weighting());
+    else
+      products = equations_.normal_equations(trial, weighting(), columns_);
+    const double cost = (by_factor_ ? factor.cost : products.cost) + prior_cost(trial);
+    if (!(std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9)) return false;
+    fit_.state = std::move(trial);
+    factor_ = std::move(factor);
+    products_ = std::move(products);
+    cost_ = cost;
+    return true;
   }
 
   /// Why a step of `distance` sigmas a parameter is the last one; nothing when it is not.
@@ -186,7 +267,7 @@ class Iteration {
       stage_ = NoiseStage::pooled;
     else if (agrees(freedoms))
       stage_ = NoiseStage::nuisance;
-    const Noise noise = estimate_noise(equations_, fit_.at.residuals, noise_rule(stage_, freedoms));
+    const Noise noise = estimate_noise(equations_, at().norms, noise_rule(stage_, freedoms));
     const bool keep = before == NoiseStage::nuisance;
     const bool same_rows = noise.outlier == fit_.noise.outlier;
     const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
@@ -200,7 +281,7 @@ class Iteration {
 
   /// The residuals are as large as the noise that they are weighed with.
   bool agrees(double freedoms) const {
-    const double ratio = fit_.at.cost / std::max(fit_.at.equations - freedoms, 1.0);
+    const double ratio = at().cost / std::max(at().equations - freedoms, 1.0);
     return ratio > 0.8 && ratio < 1.25;
   }
 
@@ -231,8 +312,8 @@ class Iteration {
   }
 
   /// (R^T R)^-1 (11.35, whitened), spread to all columns.
-  Eigen::MatrixXd covariance() const {
-    const Eigen::MatrixXd Rz = triangle(fit_.at.R, true);
+  Eigen::MatrixXd covariance() {
+    const Eigen::MatrixXd Rz = triangle();
     const Eigen::Index n = Rz.cols() - 1;
     const Eigen::MatrixXd inverse = inverse_of_triangle(Rz.topLeftCorner(n, n));
     const Eigen::MatrixXd C = inverse * inverse.transpose();
@@ -247,6 +328,9 @@ class Iteration {
   const FitRule& rule_;
   std::vector<int> columns_;
   Fit fit_;
+  bool by_factor_ = false;  ///< the normal equations would leave a direction to rounding
+  Linearised factor_;
+  NormalEquations products_;
   double cost_ = 0, lambda_ = 0;
   NoiseStage stage_ = NoiseStage::robust;
   bool done_ = false;

@@ -22,6 +22,7 @@ struct FitRule {
   int most_iterations = 100;
   double most_rejected = 0;      ///< as NoiseRule's
   double step_tolerance = 1e-5;  ///< of the whitened step: a hundred-thousandth of a sigma
+  bool near = false;             ///< it starts where a fit of a part of the rows ended
 };
 
 struct Fit {
@@ -29,7 +30,8 @@ struct Fit {
   Noise noise;
   Linearised at;               ///< at `state`
   Eigen::MatrixXd covariance;  ///< of columns(): posterior; zero rows for what is not free
-  double objective = 0;  ///< -2 log posterior up to a constant: compares fits of the same rows
+  double objective = 0;   ///< -2 log posterior up to a constant: compares fits of the same rows
+  std::vector<int> rows;  ///< by set, that gave an equation
   int iterations = 0;
   bool converged = false;
   std::string stop_reason;

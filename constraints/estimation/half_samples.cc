@@ -7,6 +7,7 @@
 // series); in a stretch they do so all together, and the halves show by how much.
 #include "constraints/estimation/half_samples.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -41,8 +42,8 @@ struct HalfFit {
   Eigen::MatrixXd C;
 };
 
-HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Weighting& weighting) {
-  const Eigen::MatrixXd R = equations.linearise(adjusted.fitted.state, weighting).R;
+/// `R` is the system of the half's rows.
+HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Eigen::MatrixXd& R) {
   const std::vector<int> columns = free_columns(equations, adjusted.prior);
   const Eigen::MatrixXd A =
       triangle_with_priors(equations, adjusted.prior, columns, R, adjusted.fitted.state.xi, true);
@@ -55,19 +56,60 @@ HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Weigh
   return fit;
 }
 
+/// The systems of parts of the rows.
+class Parts {
+ public:
+  Parts(const Equations& equations, const Adjusted& adjusted)
+      : equations_(equations), adjusted_(adjusted), stretch_(stretches(equations)) {
+    for (int k = 0; apart() && k < kStretches; ++k)
+      each_.push_back(of([k](int stretch) { return stretch == k; }));
+  }
+
+  /// Of two stretches.
+  Eigen::MatrixXd half(int one, int other) const {
+    if (each_.empty()) return of([=](int stretch) { return stretch == one || stretch == other; });
+    const Eigen::MatrixXd& first = each_[static_cast<size_t>(one)];
+    Eigen::MatrixXd both(2 * first.rows(), first.cols());
+    both << first, each_[static_cast<size_t>(other)];
+    triangularise(both);
+    return both.topRows(first.rows());
+  }
+
+ private:
+  /// Rows of a stretch share nothing with those of another but the system's unknowns.
+  bool apart() const {
+    return std::ranges::all_of(equations_.data().sets, [](const Set& set) {
+      return set.reference < 0 && set.method->group_freedom() == 0 && !set.method->shares_touches();
+    });
+  }
+
+  template <class Taken>
+  Eigen::MatrixXd of(Taken taken) const {
+    Weighting part{adjusted_.fitted.noise.used, adjusted_.fitted.noise.outlier};
+    part.passed_over = true;
+    for (size_t row = 0; row < stretch_.size(); ++row)
+      if (!taken(stretch_[row])) part.outlier[row] = 1;
+    return equations_.linearise(adjusted_.fitted.state, part).R;
+  }
+
+  const Equations& equations_;
+  const Adjusted& adjusted_;
+  std::vector<int> stretch_;
+  std::vector<Eigen::MatrixXd> each_;  ///< by stretch, where these are apart
+};
+
 }  // namespace
 
 HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
-  const std::vector<int> stretch = stretches(equations);
-  const Noise& noise = adjusted.fitted.noise;
   const Eigen::Index n = equations.columns();
   const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
   HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
-  for (const int other : kSplits) {
-    Weighting first{noise.used, noise.outlier}, second = first;
-    for (size_t row = 0; row < stretch.size(); ++row)
-      (stretch[row] == 0 || stretch[row] == other ? second : first).outlier[row] = 1;
-    const HalfFit a = fit_of(equations, adjusted, first), b = fit_of(equations, adjusted, second);
+  const Parts parts(equations, adjusted);
+  for (const int with : kSplits) {
+    std::vector<int> left = {1, 2, 3};
+    std::erase(left, with);
+    const HalfFit a = fit_of(equations, adjusted, parts.half(left[0], left[1])),
+                  b = fit_of(equations, adjusted, parts.half(0, with));
     const Eigen::VectorXd difference = (a.step - b.step) / 2;
     const Eigen::MatrixXd shrunk = b.C - a.C;
     result.seen += difference * difference.transpose() / kSplits.size();

@@ -68,32 +68,41 @@ Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_ou
   return f;
 }
 
-RowFigure row_figure(const RowResidual& before, const RowResidual& after, bool check,
-                     bool rejected) {
-  const bool both = after.lengths > 0 && after.angles > 0;
-  return {after.row,
-          after.set,
-          check,
-          rejected,
-          before.size(),
-          after.size(),
-          both ? before.angle : 0,
-          both ? after.angle : 0,
-          after.at,
-          before.way,
-          after.way};
+/// Of so many rows every one is shown; of more of them every second, third …
+constexpr int kMostFigures = 100000;
+int shown_every(const DataSet& data) { return 1 + (data.rows.rows() - 1) / kMostFigures; }
+
+/// One of the models' lists of rows.
+struct RowList {
+  const std::vector<RowResidual>& residuals;
+  const std::vector<RowPlace>& places;
+};
+
+/// Adds those rows that are shown; `rejected` by row of the data set.
+void add_figures(const RowList& before, const RowList& after, bool check,
+                 const std::vector<char>& rejected, int every, std::vector<RowFigure>& rows) {
+  size_t shown = 0;
+  for (size_t i = 0; i < after.residuals.size(); ++i) {
+    const RowResidual &b = before.residuals[i], &a = after.residuals[i];
+    if (a.row % every != 0) continue;
+    const RowPlace &was = before.places[shown], &is = after.places[shown];
+    const bool both = a.lengths > 0 && a.angles > 0;
+    rows.push_back({a.row, a.set, check, rejected[a.row] != 0, b.size(), a.size(),
+                    both ? b.angle : 0, both ? a.angle : 0, is.at, was.way, is.way});
+    ++shown;
+  }
 }
 
 /// `put_aside` and `far` by row of the data set, of those that identify and of those that judge.
-std::vector<RowFigure> row_figures(const Judged& before, const Judged& after,
+std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, const Judged& after,
                                    const std::vector<char>& put_aside,
                                    const std::vector<char>& far) {
   std::vector<RowFigure> rows;
-  for (size_t i = 0; i < after.fit.size(); ++i)
-    rows.push_back(
-        row_figure(before.fit[i], after.fit[i], false, put_aside[after.fit[i].row] != 0));
-  for (size_t i = 0; i < after.check.size(); ++i)
-    rows.push_back(row_figure(before.check[i], after.check[i], true, far[after.check[i].row] != 0));
+  const int every = shown_every(data);
+  add_figures({before.fit, before.fit_places}, {after.fit, after.fit_places}, false, put_aside,
+              every, rows);
+  add_figures({before.check, before.check_places}, {after.check, after.check_places}, true, far,
+              every, rows);
   std::ranges::stable_sort(rows, {}, &RowFigure::row);
   return rows;
 }
@@ -109,6 +118,7 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   Judged judged;
   judged.state = fitted.state;
   judged.fit = fit_equations.residuals(fitted.state);
+  judged.fit_places = fit_equations.places(fitted.state, shown_every(data));
   judged.check_scale = fitted.noise.used;
   judged.aligned.assign(data.sets.size(), 0);
   const Equations align(robot, data, Use::align);
@@ -129,6 +139,7 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   }
   const Equations check(robot, data, Use::check);
   judged.check = check.residuals(judged.state);
+  judged.check_places = check.places(judged.state, shown_every(data));
   judged.open = fit_equations.open_rows();
   judged.open_check = check.open_rows();
   return judged;
@@ -146,7 +157,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
     far[after.check[i].row] = is_outlier(after.check[i], after);
     result.check_rows.push_back({after.check[i].size(), far[after.check[i].row] != 0});
   }
-  result.rows = row_figures(before, after, outlier, far);
+  result.rows = row_figures(data, before, after, outlier, far);
   result.fit = figures(fit, outlier);
   result.check = figures(check, far);
   for (size_t s = 0; s < data.sets.size(); ++s) {

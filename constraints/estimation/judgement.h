@@ -13,6 +13,8 @@ namespace selfcal {
 /// Residuals of one model (before or after) on every row that counts.
 struct Judged {
   std::vector<RowResidual> fit, check;
+  /// Of those of them that Residuals::rows shows.
+  std::vector<RowPlace> fit_places, check_places;
   std::vector<OpenRow> open, open_check;  ///< rows that gave no equation
   std::vector<Scale> check_scale;         ///< by set: the noise that a check row is compared with
   std::vector<char> aligned;  ///< by set: nuisance parameters were fitted to the check rows

@@ -23,26 +23,37 @@ double freedom_factor(double equations, double fitted) {
 constexpr double kFewFreedoms = 10;
 
 struct SetNoise {
-  std::vector<const RowResidual*> rows;
+  const RowNorm* norms = nullptr;  ///< of the set's items, in their order
+  const SetPlan* plan = nullptr;
+  const Observations* data = nullptr;
+  int lengths = 0, angles = 0;  ///< scalars of a row
   double equations = 0, fitted = 0;
+
+  size_t count() const { return plan->items.size(); }
+  int row(size_t i) const { return plan->items[i].row; }
+  /// Length of the part over the noise of its row.
+  double part(size_t i, bool angle) const {
+    return (angle ? norms[i].angle : norms[i].length) / data->factor(row(i));
+  }
 };
 
 double robust(const SetNoise& set, bool angle) {
-  std::vector<double> norms;
-  for (const RowResidual* r : set.rows) norms.push_back((angle ? r->angle : r->length) / r->factor);
-  const int count = angle ? set.rows.front()->angles : set.rows.front()->lengths;
-  if (count == 0) return 1;
-  return median(std::move(norms)) / chi_quantile(count, 0.5) *
+  const int scalars = angle ? set.angles : set.lengths;
+  if (scalars == 0) return 1;
+  std::vector<double> norms(set.count());
+  for (size_t i = 0; i < norms.size(); ++i) norms[i] = set.part(i, angle);
+  return median(std::move(norms)) / chi_quantile(scalars, 0.5) *
          freedom_factor(set.equations, set.fitted);
 }
 
 double root_mean_square(const SetNoise& set, const std::vector<char>& outlier, bool angle) {
   double sum = 0, count = 0, kept = 0;
-  for (const RowResidual* r : set.rows) {
-    if (outlier[r->row]) continue;
-    sum += std::pow((angle ? r->angle : r->length) / r->factor, 2);
-    count += angle ? r->angles : r->lengths;
-    kept += r->angles + r->lengths;
+  for (size_t i = 0; i < set.count(); ++i) {
+    if (outlier[set.row(i)]) continue;
+    const double part = set.part(i, angle);
+    sum += part * part;
+    count += angle ? set.angles : set.lengths;
+    kept += set.angles + set.lengths;
   }
   if (count == 0) return 1;
   return std::sqrt(sum / count) * freedom_factor(kept, set.fitted);
@@ -57,13 +68,14 @@ Scale at_least(Scale a, double length, double angle) {
 bool put_far_rows_aside(const SetNoise& set, const Scale& scale, const NoiseRule& rule,
                         std::vector<char>& outlier) {
   std::vector<std::pair<double, int>> far;
-  for (const RowResidual* r : set.rows) {
-    const double t = r->sigmas(scale);
-    if (t > chi_quantile(r->lengths + r->angles, rule.far_quantile)) far.emplace_back(-t, r->row);
+  const double most_sigmas = chi_quantile(set.lengths + set.angles, rule.far_quantile);
+  for (size_t i = 0; i < set.count(); ++i) {
+    const double t = std::hypot(set.part(i, false) / scale.length, set.part(i, true) / scale.angle);
+    if (t > most_sigmas) far.emplace_back(-t, set.row(i));
   }
   std::sort(far.begin(), far.end());
   // The share and two sigma of its own scatter: a small set may well have three false rows at 2 %.
-  const double share = rule.most_rejected * static_cast<double>(set.rows.size());
+  const double share = rule.most_rejected * static_cast<double>(set.count());
   const size_t most = static_cast<size_t>(share + 2 * std::sqrt(share));
   for (size_t i = 0; i < std::min(most, far.size()); ++i) outlier[far[i].second] = 1;
   return far.size() > most;
@@ -96,15 +108,22 @@ void pool(const std::vector<Set>& sets, const std::vector<SetNoise>& by_set,
 
 }  // namespace
 
-Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>& residuals,
+Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,
                      const NoiseRule& rule) {
   const std::vector<Set>& sets = equations.data().sets;
   std::vector<SetNoise> by_set(sets.size());
   double total = 0;
-  for (const RowResidual& r : residuals) {
-    by_set[r.set].rows.push_back(&r);
-    by_set[r.set].equations += r.lengths + r.angles;
-    total += r.lengths + r.angles;
+  const RowNorm* next = norms.data();
+  for (size_t s = 0; s < sets.size(); ++s) {
+    SetNoise& set = by_set[s];
+    set.norms = next;
+    set.plan = &equations.plan(static_cast<int>(s));
+    set.data = &equations.data().rows;
+    for (const Quantity quantity : sets[s].method->equations())
+      ++(quantity == Quantity::angle ? set.angles : set.lengths);
+    set.equations = static_cast<double>(set.count()) * (set.lengths + set.angles);
+    next += set.count();
+    total += set.equations;
   }
   Noise noise;
   noise.estimated.resize(sets.size());
@@ -118,7 +137,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>&
   };
   for (size_t s = 0; s < sets.size(); ++s) {
     SetNoise& set = by_set[s];
-    if (set.rows.empty()) continue;
+    if (set.count() == 0) continue;
     const double shared = std::max(rule.global_freedom - equations.nuisance_columns(), 0.0);
     set.fitted = shared * set.equations / total + equations.tangent_dimension(static_cast<int>(s)) +
                  equations.group_freedoms(static_cast<int>(s));

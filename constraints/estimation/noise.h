@@ -31,7 +31,7 @@ struct Noise {
 inline constexpr double kLeastNoise = 1e-9;
 
 /// Noise of every set with rows, and its rows that lie beyond it.
-Noise estimate_noise(const Equations& equations, const std::vector<RowResidual>& residuals,
+Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,
                      const NoiseRule& rule);
 
 /// 1 sigma of one length residual of `set` from the spread of immediate repeats alone; negative

@@ -123,6 +123,7 @@ class Information {
   /// The system of the rows of one set alone: what a motion of it would look like beside the rest.
   void add_place(int set) {
     Weighting alone{adjusted_.fitted.noise.used, adjusted_.fitted.noise.outlier};
+    alone.passed_over = true;
     const Observations& rows = equations_.data().rows;
     for (int row = 0; row < rows.rows(); ++row)
       if (rows.set[static_cast<size_t>(row)] != set) alone.outlier[static_cast<size_t>(row)] = 1;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
@@ -11,10 +12,16 @@
 namespace selfcal {
 namespace {
 
-/// L with L L^T = C for a symmetric C that may be singular.
+/// L with L L^T = C for a symmetric C that may be singular, without columns for what is exact.
 Eigen::MatrixXd root(const Eigen::MatrixXd& C) {
-  const Symmetric eigen = symmetric_eigen(C);
-  return eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index i = 0; i < C.cols(); ++i)
+    if (!C.col(i).isZero(0)) open.push_back(i);
+  if (open.empty()) return Eigen::MatrixXd::Zero(C.rows(), 0);
+  const Symmetric eigen = symmetric_eigen(C(open, open));
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(C.rows(), eigen.values.size());
+  L(open, Eigen::all) = eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+  return L;
 }
 
 /// Deviations of every pose for one sigma of each independent part of the posterior, and what a
@@ -42,12 +49,12 @@ Deviations deviations(const EndpointQuestion& question, const Eigen::MatrixXd& L
       block.q.row(lane) = q.row(std::min(first + lane, q.rows() - 1)).array();
     // A lane that does not close with the values found has no derivative, and adds nothing.
     const Closure closure = robot.locate(block, question.xi, Body::endpoint, X, &psi);
-    robot.locate(block, question.xi, Body::last_link, link, nullptr);
+    if (unseen > motions) robot.locate(block, question.xi, Body::last_link, link, nullptr);
+    const Eigen::MatrixXd moves = psi * L;
     for (int lane = 0; lane < block.count; ++lane) {
       if (!closure.closes(lane)) continue;
-      Eigen::MatrixXd J(6, psi.cols());
-      for (int c = 0; c < 6; ++c) J.row(c) = psi.row(c * kLanes + lane);
-      J = (J * L).eval();
+      Eigen::MatrixXd J(6, moves.cols());
+      for (int c = 0; c < 6; ++c) J.row(c) = moves.row(c * kLanes + lane);
       Eigen::Matrix<double, 3, 6> motion;
       motion << Eigen::Matrix3d::Identity(), -skew(X.p(lane));
       const Eigen::Index at = 3 * (first + lane);
@@ -63,11 +70,9 @@ Deviations deviations(const EndpointQuestion& question, const Eigen::MatrixXd& L
 
 /// Takes out of `D` whatever the rows cannot place, by least squares over the shifts of all poses.
 void align(Deviations& D) {
-  for (Eigen::Index k = 0; k < D.shift.cols(); ++k) {
-    const Eigen::VectorXd x = least_squares(D.unseen_shift, D.shift.col(k));
-    D.shift.col(k) -= D.unseen_shift * x;
-    D.turn.col(k) -= D.unseen_turn * x;
-  }
+  const Eigen::MatrixXd x = least_squares_of_all(D.unseen_shift, D.shift);
+  D.shift -= D.unseen_shift * x;
+  D.turn -= D.unseen_turn * x;
 }
 
 }  // namespace

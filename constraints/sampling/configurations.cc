@@ -220,9 +220,11 @@ class Sampler {
                           int previous, const std::vector<int>& held, ConfigurationBlock& block,
                           Locations& X) const {
     Locations before;
-    if (previous >= 0)
-      robot_.locate(block_of(data_.rows.q.row(previous).transpose()), xi_, method.body(), before,
-                    nullptr);
+    if (previous >= 0) {
+      const Location there = at(previous, method.body());
+      before.rotation.rowwise() = there.R.reshaped().transpose().array();
+      before.position.rowwise() = there.p.transpose().array();
+    }
     NewtonStep newton(robot_, data_, sampled_.truth, row, before, held);
     std::vector<int> reached = newton.reach(wanted, kEnough, block);
     X = newton.X();

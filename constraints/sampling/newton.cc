@@ -60,7 +60,7 @@ Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
   Eigen::MatrixXd GJ = Eigen::MatrixXd::Zero(miss.size(), J_.cols());
   for (Eigen::Index a = 0; a < miss.size(); ++a)
     for (Eigen::Index c = 0; c < 6; ++c)
-      GJ.row(a) += out_.G_now(lane, 6 * a + c) * J_.row(c * kLanes + lane);
+      GJ.row(a) += out_.G_now(lane, 6 * a + c) * J_.row(c * J_.rows() / 6 + lane);
   if (miss.size() > 1) return least_squares(GJ, miss);
   const double squared = GJ.squaredNorm();
   if (squared == 0) return Eigen::VectorXd::Zero(J_.cols());

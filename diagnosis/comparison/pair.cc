@@ -38,11 +38,12 @@ void Pair::fit_alone(const DataSet& part, const Options& options, const Progress
   const Fit fit = adjust(equations, options, progress).fitted;
   put_aside_.insert(put_aside_.end(), fit.noise.outlier.begin(), fit.noise.outlier.end());
   const std::vector<Scale> noise = pooled_noise(part, fit);
-  for (const RowResidual& r : fit.at.residuals) {
-    const auto s = static_cast<size_t>(same_set(both_.sets, part.sets[r.set]));
-    noise_[s].length += std::pow(noise[r.set].length, 2);
-    noise_[s].angle += std::pow(noise[r.set].angle, 2);
-    rows_[s] += 1;
+  for (size_t of = 0; of < fit.rows.size(); ++of) {
+    if (fit.rows[of] == 0) continue;
+    const auto s = static_cast<size_t>(same_set(both_.sets, part.sets[of]));
+    noise_[s].length += fit.rows[of] * std::pow(noise[of].length, 2);
+    noise_[s].angle += fit.rows[of] * std::pow(noise[of].angle, 2);
+    rows_[s] += fit.rows[of];
   }
 }
 

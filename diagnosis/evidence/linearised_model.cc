@@ -73,9 +73,10 @@ void LinearisedModel::bound_noise() {
                  std::max(noise_[s].angle, declared[s].angle)};
   }
   double sum = 0, rows = 0;
-  for (const RowResidual& row : adjusted_.fitted.at.residuals) {
-    sum += std::pow(declared[row.set].length / noise_[row.set].length, 2);
-    rows += 1;
+  for (size_t s = 0; s < noise_.size(); ++s) {
+    if (adjusted_.fitted.rows[s] == 0) continue;
+    sum += adjusted_.fitted.rows[s] * std::pow(declared[s].length / noise_[s].length, 2);
+    rows += adjusted_.fitted.rows[s];
   }
   least_ = rows > 0 ? sum / rows : 0;
 }
@@ -152,9 +153,9 @@ std::vector<Scale> LinearisedModel::noise_of_sets() const {
 double LinearisedModel::noise() const {
   double squares = 0;
   int rows = 0;
-  for (const RowResidual& r : adjusted_.fitted.at.residuals) {
-    squares += std::pow(scale_ * noise_[r.set].length, 2);
-    ++rows;
+  for (size_t s = 0; s < noise_.size(); ++s) {
+    squares += adjusted_.fitted.rows[s] * std::pow(scale_ * noise_[s].length, 2);
+    rows += adjusted_.fitted.rows[s];
   }
   return std::sqrt(squares / std::max(rows, 1));
 }

@@ -31,6 +31,10 @@ class LinearisedModel {
   const Candidates& candidates() const { return candidates_; }
   const std::vector<EffectParameter>& parameters() const { return parameters_; }
   const Adjusted& adjusted() const { return adjusted_; }
+  /// Of the rows as the calibrated geometry leaves them.
+  std::vector<RowResidual> residuals_of_rows() const {
+    return equations_->residuals(adjusted_.fitted.state);
+  }
   const Equations& equations() const { return *equations_; }
 
   /// The rows not put aside, with the noise `scale` times what the geometry's fit says.

@@ -28,10 +28,11 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
   std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
   const auto method = [&](size_t s) { return data.sets[s].method->name(); };
-  for (const RowResidual& r : fitted.at.residuals) {
-    auto& [squares, rows] = pooled[method(static_cast<size_t>(r.set))];
-    squares += std::pow(fitted.noise.estimated[r.set].length, 2);
-    rows += 1;
+  for (size_t s = 0; s < fitted.rows.size(); ++s) {
+    if (fitted.rows[s] == 0) continue;
+    auto& [squares, rows] = pooled[method(s)];
+    squares += fitted.rows[s] * std::pow(fitted.noise.estimated[s].length, 2);
+    rows += fitted.rows[s];
   }
   std::vector<Scale> noise = fitted.noise.estimated;
   for (size_t s = 0; s < noise.size(); ++s)

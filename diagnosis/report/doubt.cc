@@ -47,8 +47,8 @@ std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const double declared = data.sets[s].noise, found = noise[s].length;
     if (declared <= 0 || found <= kDiagnosis.report.beyond_sheet * declared) continue;
-    const double repeats = repeat_sigma(data, static_cast<int>(s),
-                                        view.adjusted().fitted.at.residuals, view.outlier());
+    const double repeats =
+        repeat_sigma(data, static_cast<int>(s), view.residuals_of_rows(), view.outlier());
     if (repeats > kDiagnosis.report.confirmed * found) continue;
     return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
            " once the robot is calibrated, and their files state a noise of " +

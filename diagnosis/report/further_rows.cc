@@ -173,11 +173,9 @@ class Further {
   Endpoint endpoint(const Eigen::VectorXd& q) const {
     Locations X;
     PsiBlock psi;
-    Eigen::MatrixXd lanes;
     robot_.locate(block_of(q), xi_, Body::endpoint, X, &psi);
-    robot_.joint_jacobian(block_of(q), xi_, Body::endpoint, psi, lanes);
-    Endpoint there{X.at(0), Eigen::MatrixXd(6, lanes.cols())};
-    for (int c = 0; c < 6; ++c) there.J.row(c) = lanes.row(c * kLanes);
+    Endpoint there{X.at(0), {}};
+    robot_.joint_jacobian(block_of(q), xi_, Body::endpoint, psi, there.J);
     return there;
   }
 

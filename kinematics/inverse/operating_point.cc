@@ -8,7 +8,7 @@ Location locate_at(const OperatingPoint& at, const Robot& robot, const Eigen::Ve
                    const Eigen::VectorXd& q) {
   const Location geometry = locate(robot, xi, q);
   ConfigurationBlock block = block_of(q);
-  block.conditions = conditions_at(at, robot, [&](int) { return geometry.R; });
+  block.conditions = conditions_at(at, robot, block.lanes(), [&](int) { return geometry.R; });
   Locations X;
   expects(robot.locate(block, xi, Body::endpoint, X, nullptr).closes(0), "the loops close");
   return X.at(0);

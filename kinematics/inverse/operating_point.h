@@ -13,18 +13,18 @@ struct OperatingPoint {
   double temperature = std::numeric_limits<double>::quiet_NaN();  ///< C; NaN: not known
 };
 
-/// The conditions of kLanes rows, of which `robot` turns the tool as `R(lane)` says; without rows
+/// The conditions of so many lanes, in which `robot` turns the tool as `R(lane)` says; without rows
 /// where nothing is known.
 template <class TurnOf>
-Conditions conditions_at(const OperatingPoint& at, const Robot& robot, const TurnOf& R) {
+Conditions conditions_at(const OperatingPoint& at, const Robot& robot, int lanes, const TurnOf& R) {
   Conditions conditions;
   if (at.temperature == at.temperature)
-    conditions.temperature = Eigen::VectorXd::Constant(kLanes, at.temperature);
+    conditions.temperature = Eigen::VectorXd::Constant(lanes, at.temperature);
   if (at.mass == 0) return conditions;
   const Eigen::Vector3d weight =
       at.mass * (robot.statics() ? robot.statics()->mechanics().gravity : Mechanics().gravity);
-  conditions.wrench.resize(kLanes, 6);
-  for (int lane = 0; lane < kLanes; ++lane) {
+  conditions.wrench.resize(lanes, 6);
+  for (int lane = 0; lane < lanes; ++lane) {
     const Eigen::Vector3d force = R(lane).transpose() * weight;
     conditions.wrench.row(lane) << force.transpose(), at.centre.cross(force).transpose();
   }

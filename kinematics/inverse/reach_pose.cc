@@ -69,7 +69,7 @@ class DampedSteps {
           proposed[std::min(static_cast<std::size_t>(lane), proposed.size() - 1)].transpose();
     // A load pulls as the tool is turned: where it is to be or, of one that cannot be had, was
     // last.
-    block.conditions = conditions_at(at_, robot_, [&](int lane) -> Eigen::Matrix3d {
+    block.conditions = conditions_at(at_, robot_, kLanes, [&](int lane) -> Eigen::Matrix3d {
       return whole_ || psi_.rows() == 0 ? wanted_.R : X_.R(lane);
     });
     closure_ = robot_.locate(block, xi_, Body::endpoint, X_, &psi_);

@@ -64,8 +64,8 @@ std::optional<ScrewChain> screw_chain(const Robot& robot, const Eigen::VectorXd&
   for (int j = 0; j < chain.joints; ++j) {
     Eigen::Vector3d v, w;
     for (int c = 0; c < 3; ++c) {
-      v[c] = J(c * kLanes, j);
-      w[c] = J((3 + c) * kLanes, j);
+      v[c] = J(c, j);
+      w[c] = J(3 + c, j);
     }
     Screw& screw = chain.screw[j];
     screw.turns = robot.joints()[static_cast<std::size_t>(j)].quantity == Quantity::angle;

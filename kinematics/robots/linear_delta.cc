@@ -76,8 +76,9 @@ class LinearDelta final : public Robot, public RobotText {
     const Eigen::Vector3d tool = body == Body::endpoint ? Eigen::Vector3d(R * xi.segment<3>(kTool))
                                                         : Eigen::Vector3d::Zero();
     const Eigen::Matrix3d turn = left_jacobian(tilt);
-    if (psi) psi->setZero(6 * kLanes, kParameters);
-    for (int lane = 0; lane < kLanes; ++lane) {
+    X.resize(block.lanes());
+    if (psi) psi->setZero(6 * block.lanes(), kParameters);
+    for (int lane = 0; lane < block.lanes(); ++lane) {
       X.rotation.row(lane) = R.reshaped().transpose().array();
       X.position.row(lane).setZero();
       if (body == Body::first_link) continue;
@@ -132,7 +133,7 @@ class LinearDelta final : public Robot, public RobotText {
       if (tool) all.col(kEffector + k).head<3>() = turn.col(k).cross(*tool);
     }
     if (tool) all.block<3, 3>(0, kTool) = R;
-    for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane) = all.row(c);
+    for (int c = 0; c < 6; ++c) psi.row(c * (psi.rows() / 6) + lane) = all.row(c);
   }
 
   Delta model_;

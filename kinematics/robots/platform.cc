@@ -95,9 +95,10 @@ Closure Platform::locate(const ConfigurationBlock& block, const Eigen::VectorXd&
                          Locations& X, PsiBlock* psi) const {
   expects(body < Body::first_passive || has_body(*this, body), "a body of the robot");
   Closure closure;
-  if (psi) psi->setZero(6 * kLanes, static_cast<Eigen::Index>(parameters().size()));
+  X.resize(block.lanes());
+  if (psi) psi->setZero(6 * block.lanes(), static_cast<Eigen::Index>(parameters().size()));
   ClosedChains before;
-  for (int lane = 0; lane < kLanes; ++lane) {
+  for (int lane = 0; lane < block.lanes(); ++lane) {
     X.rotation.row(lane) = Eigen::Matrix3d::Identity().reshaped().transpose().array();
     X.position.row(lane).setZero();
     if (body == Body::first_link) continue;
@@ -156,7 +157,7 @@ void Platform::differentiate(const ConfigurationBlock& block, const Eigen::Vecto
     all.block(0, k * m, 3, m) = base ? by[k].carrier : by[k].joint;
     all.bottomRows<3>() = link_turns(link_frame(base ? n : Eigen::Vector3d(R.transpose() * n)), dn);
   }
-  for (int c = 0; c < 6; ++c) psi.row(c * kLanes + lane) = all.row(c);
+  for (int c = 0; c < 6; ++c) psi.row(c * (psi.rows() / 6) + lane) = all.row(c);
 }
 
 /// Poses about home, by the readings that lead there, well away from singular places; the farther

@@ -4,17 +4,16 @@
 #include "kinematics/robots/serial.h"
 
 #include <cmath>
+#include <span>
 
 #include "kinematics/expects.h"
+#include "kinematics/kernels/kernels.h"
 #include "kinematics/robots/serial_chain.h"
 
 namespace selfcal {
 namespace {
 
-using serial::Axes;
 using serial::Frame;
-using serial::LanePose;
-using serial::LaneVector;
 using serial::Model;
 using serial::Motion;
 
@@ -55,16 +54,15 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
     expects(has_body(*this, body), "a body of the robot");
-    const int last = last_frame(body);
-    std::vector<Axes> axes(psi ? frame_count() : 0);
-    LanePose pose = serial::lane_world();
-    for (int f = 0, joint = 0; f <= last; ++f) {
-      const bool moves = model_.frames[f].motion != Motion::fixed;
-      const Lanes variable = moves ? joint_variable(block, xi, joint++) : Lanes::Zero(kLanes);
-      step(model_.frames[f], of_frame(xi, f), variable, pose, psi ? &axes[f] : nullptr);
+    const int frames = last_frame(body) + 1;
+    X.resize(block.lanes());
+    if (psi) psi->resize(6 * block.lanes(), xi.size());
+    serial::follow({std::span(model_.frames).first(static_cast<size_t>(frames)), first_, coupling_},
+                   block, xi, X, psi);
+    if (psi) {
+      psi->middleCols(first_[frames], first_.back() - first_[frames]).setZero();
+      fill_gears(block, *psi);
     }
-    store(pose, X);
-    if (psi) fill(axes, pose.p, block, xi, last, *psi);
     return {};
   }
 
@@ -116,45 +114,17 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
   Eigen::Ref<const Eigen::VectorXd> of_frame(const Eigen::VectorXd& xi, int f) const {
     return xi.segment(first_[f], model_.frames[f].fields());
   }
-  Lanes joint_variable(const ConfigurationBlock& block, const Eigen::VectorXd& xi, int k) const {
-    Lanes sum = Lanes::Zero(kLanes);
-    if (block.added.rows() > 0) sum = block.added.col(k);
-    for (int j = 0; j < joint_count(); ++j)
-      if (coupling_(k, j) != 0) sum += coupling_(k, j) * xi[gear_index(j)] * block.q.col(j);
-    return sum;
-  }
-
-  static void store(const LanePose& pose, Locations& X) {
-    const LaneVector* columns[] = {&pose.x, &pose.y, &pose.z};
-    for (int j = 0; j < 3; ++j) {
-      X.rotation.col(3 * j) = columns[j]->x;
-      X.rotation.col(3 * j + 1) = columns[j]->y;
-      X.rotation.col(3 * j + 2) = columns[j]->z;
-    }
-    X.position.col(0) = pose.p.x;
-    X.position.col(1) = pose.p.y;
-    X.position.col(2) = pose.p.z;
-  }
-
-  void fill(const std::vector<Axes>& axes, const LaneVector& end, const ConfigurationBlock& block,
-            const Eigen::VectorXd& xi, int last, PsiBlock& psi) const {
-    psi.resize(6 * kLanes, xi.size());
-    for (int f = 0; f < frame_count(); ++f) {
-      const Frame& frame = model_.frames[f];
-      if (f > last)
-        psi.middleCols(first_[f], frame.fields()).setZero();
-      else
-        fill_columns(frame, axes[f], end, first_[f], psi);
-    }
+  /// 11.17: the column of K_j is the base Jacobian times dq / dK_j.
+  void fill_gears(const ConfigurationBlock& block, PsiBlock& psi) const {
+    const auto lanes = static_cast<size_t>(block.lanes());
     for (int j = 0; j < joint_count(); ++j) {
-      // 11.17: the column of K_j is the base Jacobian times dq / dK_j.
-      auto gear = psi.col(gear_index(j)).reshaped(kLanes, 6).array();
-      gear.setZero();
-      for (int k = 0; k < joint_count(); ++k)
-        if (coupling_(k, j) != 0)
-          gear += coupling_(k, j) *
-                  (psi.col(variable_parameter(k)).reshaped(kLanes, 6).array().colwise() *
-                   block.q.col(j));
+      psi.col(gear_index(j)).setZero();
+      for (int k = 0; k < joint_count(); ++k) {
+        if (coupling_(k, j) == 0) continue;
+        const Lanes factor = coupling_(k, j) * block.q.col(j);
+        const kernels::LaneProduct product{factor.data(), psi.col(variable_parameter(k)).data()};
+        kernels::add_products(&product, 1, lanes, 6, lanes, psi.col(gear_index(j)).data(), lanes);
+      }
     }
   }
 

@@ -1,5 +1,5 @@
-// Frame after frame of a chain, for a block of configurations at once: where each is put and which
-// axes its parameters act about (11.3, 11.10 to 11.15).
+// The frames of a chain one after another, for a block of configurations at once: where the last
+// one is put and what its parameters do to it (11.3, 11.10 to 11.15).
 //
 // For a rotation parameter about axis a through O the column is [a x L; a], L from O to the body;
 // for a translation along a it is [a; 0]. beta turns about y of the frame before; alpha and d act
@@ -8,41 +8,24 @@
 // its rotation R_0 exp(phi), phi = (rx ry rz), turns by R_0 Jl(phi) dphi about its own origin.
 #pragma once
 
-#include <array>
+#include <span>
+#include <vector>
 
 #include "kinematics/robots/serial.h"
 
 namespace selfcal::serial {
 
-/// A vector a lane.
-struct LaneVector {
-  Lanes x, y, z;
+/// The first frames of a chain: parameters of frame f from first[f] on, behind the last those of
+/// the gears; joint variables are coupling diag(K) readings.
+struct Chain {
+  std::span<const Frame> frames;
+  const std::vector<int>& first;
+  const Eigen::MatrixXd& coupling;
 };
 
-/// Axes and origin of a frame in the world.
-struct LanePose {
-  LaneVector x, y, z, p;
-};
-
-/// What a frame's parameters act about, in the world; unit vectors but for whole poses that are
-/// turned from their maker's orientation.
-struct Axes {
-  std::array<LaneVector, 3> turn;   ///< of beta, alpha and theta; of rx, ry and rz
-  std::array<LaneVector, 3> shift;  ///< of x, y and z of a whole pose
-  LaneVector before, at;            ///< origins of the frame before and of z's foot (after d)
-};
-
-/// The world itself.
-LanePose lane_world();
-
-/// Goes from one frame to the next: `values` are its parameters, `variable` is added to theta or r.
-/// Keeps the axes unless `axes` is null.
-void step(const Frame& frame, const Eigen::Ref<const Eigen::VectorXd>& values,
-          const Lanes& variable, LanePose& pose, Axes* axes);
-
-/// Columns of Psi of the frame's parameters, the first of which is `first`; `end` is the body's
-/// origin.
-void fill_columns(const Frame& frame, const Axes& axes, const LaneVector& end, int first,
-                  PsiBlock& psi);
+/// Puts the last frame in the world with parameters `xi`. Unless `psi` is null, which has its size,
+/// writes the columns of the frames' parameters.
+void follow(const Chain& chain, const ConfigurationBlock& block, const Eigen::VectorXd& xi,
+            Locations& X, PsiBlock* psi);
 
 }  // namespace selfcal::serial

@@ -68,7 +68,7 @@ Eigen::Vector3d tip_of(const Robot& robot, const Eigen::VectorXd& xi, const Eige
     Eigen::MatrixXd all;
     robot.joint_jacobian(block_of(q), xi, Body::endpoint, psi, all);
     J->resize(3, q.size());
-    for (int c = 0; c < 3; ++c) J->row(c) = all.row(c * kLanes);
+    for (int c = 0; c < 3; ++c) J->row(c) = all.row(c);
   }
   return X.p(0);
 }

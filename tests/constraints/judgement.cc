@@ -32,6 +32,8 @@ struct Rows {
       nominal.check.push_back(row);
       row.length = after + i * kMicrometre / 50;
       calibrated.check.push_back(row);
+      nominal.check_places.emplace_back();
+      calibrated.check_places.emplace_back();
     }
   }
 

@@ -37,8 +37,8 @@ TEST(NoiseFactor, OfEveryRowIsThatOfTheSet) {
       (ours_R.transpose() * ours_R).isApprox(theirs_R.transpose() * theirs_R, kRelativeRounding));
   EXPECT_TRUE(factored.dense(state, narrow.scale, none)
                   .W.isApprox(plain.dense(state, wide.scale, none).W, kRelativeRounding));
-  const Noise ours = estimate_noise(factored, factored.residuals(state), {});
-  const Noise theirs = estimate_noise(plain, plain.residuals(state), {});
+  const Noise ours = estimate_noise(factored, factored.norms(state), {});
+  const Noise theirs = estimate_noise(plain, plain.norms(state), {});
   EXPECT_NEAR(3 * ours.estimated[0].length, theirs.estimated[0].length, 1e-12);
 }
 

@@ -74,6 +74,18 @@ TEST(Equations, WeighDownFarRowsAndLeaveOutThosePutAside) {
   expect_dense_system(made);
 }
 
+TEST(Equations, LoseNothingWhereOneOfTwoLinkedGroupsHasNoRowThatCounts) {
+  constexpr int kSockets = 3;  // of the case's sets
+  for (const int silent : {0, 1}) {
+    EquationsCase made(10);
+    made.weighting.soft_quantile = 1 - 1e-12;
+    for (int row = 0; row < made.data.rows.rows(); ++row)
+      if (made.data.rows.set[row] == kSockets && made.data.rows.group[row] == silent)
+        made.weighting.outlier[row] = 1;
+    expect_dense_system(made);
+  }
+}
+
 TEST(Equations, CostTheSquaresWithinTheQuantileAndLinesBeyond) {
   EquationsCase made(3);
   made.weighting.soft_quantile = 0.5;
@@ -95,7 +107,7 @@ TEST(Equations, CostTheSquaresWithinTheQuantileAndLinesBeyond) {
   ASSERT_EQ(beside, 2);
   EXPECT_NEAR(at.cost, cost + all.tail(beside).squaredNorm(), 1e-10 * at.cost);  // rounding
   EXPECT_EQ(at.equations, scalars + 2);
-  EXPECT_EQ(at.residuals.size(), equations.residuals(made.state).size());
+  EXPECT_EQ(at.norms.size(), equations.residuals(made.state).size());
 }
 
 TEST(Equations, StepGroupsToWhereTheDenseSystemPutsThem) {

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <numeric>
+
 #include "kinematics/corrected_robot.h"
 #include "tests/contracts/arm.h"
 #include "tests/contracts/path_case.h"
@@ -68,11 +70,15 @@ std::vector<RobotCase> robot_cases() {
 
 class FastPath : public testing::TestWithParam<RobotCase> {};
 
-void expect_same_residuals(const std::vector<RowResidual>& fast,
-                           const std::vector<RowResidual>& plain, bool places) {
-  ASSERT_EQ(fast.size(), plain.size());
+void expect_same_residuals(const Equations& equations, const State& state,
+                           const std::vector<RowNorm>& norms, const PlainSystem& plain) {
+  const std::vector<RowResidual> fast = equations.residuals(state);
+  const std::vector<RowPlace> places = equations.places(state);
+  ASSERT_EQ(fast.size(), plain.residuals.size());
+  ASSERT_EQ(norms.size(), plain.residuals.size());
+  ASSERT_EQ(places.size(), plain.residuals.size());
   for (size_t i = 0; i < fast.size(); ++i) {
-    const RowResidual &a = fast[i], &b = plain[i];
+    const RowResidual &a = fast[i], &b = plain.residuals[i];
     ASSERT_EQ(a.row, b.row);
     EXPECT_EQ(a.set, b.set);
     EXPECT_EQ(a.lengths, b.lengths);
@@ -80,11 +86,13 @@ void expect_same_residuals(const std::vector<RowResidual>& fast,
     EXPECT_EQ(a.factor, b.factor);
     EXPECT_NEAR(a.length, b.length, kRounding);
     EXPECT_NEAR(a.angle, b.angle, kRounding);
+    EXPECT_NEAR(norms[i].length, b.length, kRounding);
+    EXPECT_NEAR(norms[i].angle, b.angle, kRounding);
     for (size_t k = 0; k < static_cast<size_t>(a.lengths + a.angles); ++k)
       EXPECT_NEAR(a.scalars[k], b.scalars[k], kRounding);
-    if (!places) continue;
-    EXPECT_LT((a.at - b.at).norm(), kRounding);
-    EXPECT_LT((a.way - b.way).norm(), 1e-9 * (1 + b.way.norm()));  // of nearly dependent lengths
+    const RowPlace& is = plain.places[i];
+    EXPECT_LT((places[i].at - is.at).norm(), kRounding);
+    EXPECT_LT((places[i].way - is.way).norm(), 1e-9 * (1 + is.way.norm()));  // nearly dependent
   }
 }
 
@@ -105,12 +113,51 @@ TEST_P(FastPath, GivesWhatThePlainOneGives) {
                                        (fast.R.transpose() * fast.R - gram) *
                                        lengths.cwiseInverse().asDiagonal();
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), kRounding);
+    std::vector<int> all(static_cast<size_t>(global));
+    std::iota(all.begin(), all.end(), 0);
+    const NormalEquations summed = equations.normal_equations(made.state, made.weighting, all);
+    EXPECT_LT((lengths.cwiseInverse().asDiagonal() * (summed.H - gram) *
+               lengths.cwiseInverse().asDiagonal())
+                  .cwiseAbs()
+                  .maxCoeff(),
+              kRounding);
+    std::vector<int> some;  // half of the robot's parameters, and what the sets own
+    for (const int c : all)
+      if (c >= equations.robot_columns() || c % 2 == 1) some.push_back(c);
+    const NormalEquations fewer = equations.normal_equations(made.state, made.weighting, some);
+    std::vector<int> of_all = some;
+    of_all.push_back(global);
+    EXPECT_LT((fewer.H - summed.H(of_all, of_all)).cwiseAbs().maxCoeff(),
+              kRounding * summed.H.cwiseAbs().maxCoeff());
+    EXPECT_EQ(summed.cost, fast.cost);
     EXPECT_NEAR(fast.cost, plain.cost, kRounding * plain.cost);
     EXPECT_EQ(fast.equations, plain.equations);
-    expect_same_residuals(fast.residuals, plain.residuals, false);
-    expect_same_residuals(equations.residuals(made.state), plain.residuals, true);
+    expect_same_residuals(equations, made.state, fast.norms, plain);
   }
   EXPECT_GT(answered, 30);
+}
+
+TEST(FastPathParts, AddUpToTheWholeOfASetWithAndWithoutGroups) {
+  for (const char* sets : {"s: {method: position, frame: unknown, point: unknown}",
+                           "s: {method: position-constraint}"}) {
+    SCOPED_TRACE(sets);
+    const PathCase made(std::shared_ptr<const Robot>(six_axis_arm()), {"", sets}, 3000);
+    const Equations equations(*made.robot, made.data, Use::fit);
+    const Linearised fast = equations.linearise(made.state, made.weighting);
+    const PlainSystem plain = PlainPath(equations, made.state, made.weighting).system();
+    expect_same_residuals(equations, made.state, fast.norms, plain);
+    EXPECT_NEAR(fast.cost, plain.cost, 1e-11 * plain.cost);  // 3000 squares
+    std::vector<int> all(static_cast<size_t>(equations.columns()));
+    std::iota(all.begin(), all.end(), 0);
+    const NormalEquations summed = equations.normal_equations(made.state, made.weighting, all);
+    const Eigen::VectorXd lengths = summed.H.diagonal().cwiseSqrt().array() + 1;
+    EXPECT_LT((lengths.cwiseInverse().asDiagonal() * (fast.R.transpose() * fast.R - summed.H) *
+               lengths.cwiseInverse().asDiagonal())
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-11);
+    EXPECT_EQ(summed.cost, fast.cost);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, FastPath, testing::ValuesIn(robot_cases()), title_of_robot);

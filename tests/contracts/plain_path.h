@@ -18,7 +18,8 @@ struct PlainSystem {
   Eigen::MatrixXd W;
   double cost = 0;
   int equations = 0;
-  std::vector<RowResidual> residuals;  ///< with the places of Equations::residuals
+  std::vector<RowResidual> residuals;
+  std::vector<RowPlace> places;  ///< of the same rows
 
   /// [W | Delta Y]^T [W | Delta Y] once the groups' columns are eliminated.
   Eigen::MatrixXd gram(int global) const {
@@ -95,7 +96,8 @@ class PlainPath {
   }
 
   /// One row: its equations as rows of [W | Delta Y], neither weighed nor over sigma.
-  Eigen::MatrixXd row_of(int set, const SetPlan::Item& item, RowResidual& residual) const {
+  Eigen::MatrixXd row_of(int set, const SetPlan::Item& item, RowResidual& residual,
+                         RowPlace& place) const {
     const Set& s = data().sets[static_cast<size_t>(set)];
     const std::vector<Quantity> quantities = s.method->equations();
     const auto n = static_cast<Eigen::Index>(quantities.size());
@@ -147,12 +149,13 @@ class PlainPath {
       W.middleCols(groups_at(set) + g * data().rows.group[static_cast<size_t>(item.row)], g) =
           D_group;
     W.rightCols(1) = -r;
-    describe(set, item.row, quantities, r, G, now, residual);
+    describe(set, item.row, quantities, r, G, residual, place);
+    place.at = now.X.p(0);
     return W;
   }
 
   void describe(int set, int row, const std::vector<Quantity>& quantities, const Eigen::VectorXd& r,
-                const Eigen::MatrixXd& G, const Placed& now, RowResidual& residual) const {
+                const Eigen::MatrixXd& G, RowResidual& residual, RowPlace& place) const {
     residual.row = row;
     residual.set = set;
     residual.factor = data().rows.factor(row);
@@ -173,8 +176,7 @@ class PlainPath {
       lengths.conservativeResize(residual.lengths);
       lengths[residual.lengths - 1] = r[at];
     }
-    residual.at = now.X.p(0);
-    if (residual.lengths > 0) residual.way = -least_squares(to_lengths, lengths);
+    if (residual.lengths > 0) place.way = -least_squares(to_lengths, lengths);
   }
 
   Eigen::MatrixXd rows_of(int set, PlainSystem& made) const {
@@ -188,7 +190,7 @@ class PlainPath {
     std::vector<SetPlan::Item> kept;
     for (const SetPlan::Item& item : items) {
       RowResidual residual;
-      Eigen::MatrixXd rows = row_of(set, item, residual);
+      Eigen::MatrixXd rows = row_of(set, item, residual, made.places.emplace_back());
       made.residuals.push_back(residual);
       if (weighting_.outlier[static_cast<size_t>(item.row)]) continue;
       const double t = residual.sigmas(scale);

@@ -154,7 +154,7 @@ TEST(LegLoadByHand, IsInBalanceOnAPlatform) {
   robot->locate(block, values(*robot), Body::endpoint, X, &psi);
   Eigen::Matrix<double, 6, 6> T, J;
   for (int c = 0; c < 6; ++c)
-    for (int j = 0; j < 6; ++j) T(c, j) = psi(c * kLanes, robot->leg_parameter(j));
+    for (int j = 0; j < 6; ++j) T(c, j) = psi(c, robot->leg_parameter(j));
   // Pushes f along the legs' unit vectors n_j at the spherical joints, and the weight: none is
   // left.
   const Eigen::Matrix<double, 6, 1> weight = numbers({0, 0, -98.1, 0, 0, 0});

@@ -104,10 +104,9 @@ TEST(Compensation, HoldsAtTheLoadAndTheTemperatureThatAreGiven) {
     // The weight by hand, in the tool's axes where it really is.
     ConfigurationBlock block = block_of(command.q);
     const Eigen::Vector3d force = wanted.R.transpose() * Eigen::Vector3d(0, 0, -9.81 * at.mass);
-    block.conditions.wrench.resize(kLanes, 6);
-    for (int lane = 0; lane < kLanes; ++lane)
-      block.conditions.wrench.row(lane) << force.transpose(), at.centre.cross(force).transpose();
-    block.conditions.temperature = Eigen::VectorXd::Constant(kLanes, at.temperature);
+    block.conditions.wrench.resize(1, 6);
+    block.conditions.wrench << force.transpose(), at.centre.cross(force).transpose();
+    block.conditions.temperature = Eigen::VectorXd::Constant(1, at.temperature);
     Locations X;
     calibrated->locate(block, xi, Body::endpoint, X, nullptr);
     EXPECT_LT((X.p(0) - wanted.p).norm(), 1e-8);

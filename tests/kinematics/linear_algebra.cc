@@ -60,6 +60,20 @@ TEST(Eliminate, LeavesBelowTheTriangleTheSchurComplement) {
   EXPECT_LT((gram(B.bottomRightCorner(17, 5)) - schur).norm(), kMatrixRounding);
 }
 
+TEST(Eliminate, LosesNothingOfTheRestWhereAColumnFollowsFromThoseBeforeIt) {
+  std::mt19937_64 random(46);
+  Eigen::MatrixXd A = random_matrix(20, 8, random);
+  A.col(1) = 3 * A.col(0);
+  Eigen::MatrixXd B = A;
+  const std::vector<Eigen::Index> steps = eliminate(B, 3);
+  ASSERT_EQ(steps, (std::vector<Eigen::Index>{0, 2}));
+  EXPECT_TRUE(B.bottomLeftCorner(18, 3).isZero(0));
+  const Eigen::MatrixXd known = A(Eigen::all, steps), rest = A.rightCols(5);
+  const Eigen::MatrixXd left =
+      gram(rest) - rest.transpose() * known * gram(known).inverse() * known.transpose() * rest;
+  EXPECT_LT((gram(B.bottomRightCorner(18, 5)) - left).norm(), kMatrixRounding);
+}
+
 TEST(InverseOfTriangle, TimesTheTriangleIsTheIdentity) {
   std::mt19937_64 random(45);
   Eigen::MatrixXd R = random_matrix(6, 6, random).triangularView<Eigen::Upper>();

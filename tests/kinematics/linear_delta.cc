@@ -64,8 +64,7 @@ towers:
 
 TEST(LinearDelta, LeavesOnlyTheLanesOpenThatDoNotClose) {
   const auto robot = ideal();
-  ConfigurationBlock block = block_of(Eigen::Vector3d(-0.1, -0.1, -0.1));
-  block.count = kLanes;
+  ConfigurationBlock block{Eigen::ArrayXXd::Constant(kLanes, 3, -0.1), kLanes};
   block.q.row(7) << 0, -0.9, -0.4;
   Locations X;
   const Closure closure = robot->locate(block, values(*robot), Body::endpoint, X, nullptr);

@@ -177,8 +177,7 @@ Objective by_end_position(const Robot& nominal, Random& random) {
     PsiBlock psi;
     const ConfigurationBlock block = block_of(where.rows.q.row(i).transpose());
     if (!nominal.locate(block, xi, Body::endpoint, X, &psi).closes(0)) continue;
-    for (int c = 0; c < 3; ++c)
-      objective.weight += psi.row(c * kLanes).transpose() * psi.row(c * kLanes) / kWhere;
+    for (int c = 0; c < 3; ++c) objective.weight += psi.row(c).transpose() * psi.row(c) / kWhere;
   }
   objective.weight *= 1e12;  // um^2, for exchanges gain where they are seen
   return objective;

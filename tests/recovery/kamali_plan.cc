@@ -39,7 +39,7 @@ Eigen::VectorXd inverse(const Robot& robot, const Eigen::Matrix3d& R, const Eige
     if (error.norm() < 1e-10) break;
     robot.joint_jacobian(block_of(q), values(robot), Body::endpoint, psi, J);
     Eigen::MatrixXd J0(6, q.size());
-    for (int c = 0; c < 6; ++c) J0.row(c) = J.row(c * kLanes);
+    for (int c = 0; c < 6; ++c) J0.row(c) = J.row(c);
     const Eigen::VectorXd full = least_squares(J0, error);
     q += full * std::min(1.0, 0.5 / full.norm());
   }

@@ -40,7 +40,8 @@ class KdlRobot final : public Robot {
                  Locations& X, PsiBlock* psi) const override {
     const KDL::Chain chain = make_chain(xi, body);
     KDL::ChainFkSolverPos_recursive forward(chain);
-    for (int lane = 0; lane < kLanes; ++lane) {
+    X.resize(block.lanes());
+    for (int lane = 0; lane < block.lanes(); ++lane) {
       KDL::Frame pose;
       forward.JntToCart(readings(block.q, lane), pose);
       for (int i = 0; i < 3; ++i) {
@@ -48,7 +49,7 @@ class KdlRobot final : public Robot {
         for (int j = 0; j < 3; ++j) X.rotation(lane, 3 * j + i) = pose.M(i, j);
       }
     }
-    if (psi) psi->setZero(6 * kLanes, xi.size());
+    if (psi) psi->setZero(6 * block.lanes(), xi.size());
     return {};
   }
 
@@ -56,11 +57,11 @@ class KdlRobot final : public Robot {
                       const PsiBlock&, Eigen::MatrixXd& J) const override {
     const KDL::Chain chain = make_chain(xi, body);
     KDL::ChainJntToJacSolver solver(chain);
-    J.setZero(6 * kLanes, static_cast<Eigen::Index>(joints().size()));
-    for (int lane = 0; lane < kLanes; ++lane) {
+    J.setZero(6 * block.lanes(), static_cast<Eigen::Index>(joints().size()));
+    for (int lane = 0; lane < block.lanes(); ++lane) {
       KDL::Jacobian jacobian(static_cast<unsigned>(joints().size()));
       solver.JntToJac(readings(block.q, lane), jacobian);
-      for (int c = 0; c < 6; ++c) J.row(c * kLanes + lane) = jacobian.data.row(c);
+      for (int c = 0; c < 6; ++c) J.row(c * block.lanes() + lane) = jacobian.data.row(c);
     }
   }
 
