@@ -13,6 +13,7 @@
 
 #include "kinematics/block_memory.h"
 #include "kinematics/rotation.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
@@ -67,6 +68,8 @@ class CorrectedRobot final : public Robot, public RobotText {
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
   const Statics* statics() const override { return geometry_->statics(); }
+  const PointMasses* masses() const override { return geometry_->masses(); }
+  const std::vector<std::string>& links() const override { return geometry_->links(); }
   bool has_loops() const override { return geometry_->has_loops(); }
   std::optional<Location> home() const override { return geometry_->home(); }
   const std::vector<PassiveJoint>& passive_joints() const override {
@@ -189,6 +192,7 @@ class CorrectedRobot final : public Robot, public RobotText {
     at.torque.setConstant(n, unknown);
     for (int j = 0; at.mechanics && j < n; ++j)
       at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
+    if (const PointMasses* masses = geometry_->masses()) at.gravity = masses->gravity;
     at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
                                         : Eigen::VectorXd::Constant(n, unknown);
     at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;
@@ -229,15 +233,20 @@ class CorrectedRobot final : public Robot, public RobotText {
   /// By lane; lanes past the block's count share the last one's.
   std::vector<Deviation> deviations_of(const ConfigurationBlock& block, Body body) const {
     std::vector<Deviation> all;
-    const bool of_legs = std::any_of(effects_.begin(), effects_.end(),
-                                     [](const auto& effect) { return effect->of_legs(); });
+    const auto any = [&](auto asks) { return std::ranges::any_of(effects_, asks); };
+    const bool of_legs = any([](const auto& effect) { return effect->of_legs(); });
+    const bool of_torques =
+        !geometry_->statics() && any([](const auto& effect) { return effect->of_torques(); });
     PsiBlock psi;
-    if (of_legs) {
+    Eigen::MatrixXd work;
+    if (of_legs || of_torques) {
       ConfigurationBlock plain;
       plain.q = block.q;
       plain.count = block.count;
+      plain.start = block.start;
       Locations X;
       geometry_->locate(plain, values(*geometry_), Body::endpoint, X, &psi);
+      work = work_of_weights(*geometry_, plain, values(*geometry_));
     }
     for (int lane = 0; lane < block.lanes(); ++lane) {
       if (lane >= std::max(block.count, 1)) {
@@ -245,21 +254,37 @@ class CorrectedRobot final : public Robot, public RobotText {
         continue;
       }
       Circumstances at = circumstances(block, lane);
-      if (of_legs) see_legs(psi, lane, at);
+      if (of_legs) see_legs(psi, work, lane, at);
+      if (of_torques) see_torques(psi, work, lane, at);
       all.push_back(deviation(at, body));
     }
     return all;
   }
 
-  /// `psi` is that of the block's readings with the file's own values.
-  void see_legs(const PsiBlock& psi, int lane, Circumstances& at) const {
+  /// `psi` and `work` (of the weights, per parameter) are those of the block's readings with the
+  /// file's own values.
+  void see_legs(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
+                Circumstances& at) const {
     const auto n = static_cast<Eigen::Index>(joints().size());
     at.legs.resize(6, n);
-    for (Eigen::Index j = 0; j < n; ++j)
-      for (int c = 0; c < 6; ++c)
-        at.legs(c, j) =
-            psi(c * (psi.rows() / 6) + lane, geometry_->leg_parameter(static_cast<int>(j)));
+    at.leg_weights.resize(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const int length = geometry_->leg_parameter(static_cast<int>(j));
+      for (int c = 0; c < 6; ++c) at.legs(c, j) = psi(c * (psi.rows() / 6) + lane, length);
+      at.leg_weights[j] = work(lane, length);
+    }
     at.leg_lengths = geometry_->leg_lengths(values(*geometry_), at.q);
+  }
+
+  /// The same of the joints' torques, of a machine that is no chain.
+  void see_torques(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
+                   Circumstances& at) const {
+    Eigen::Matrix<double, 6, 1> wrench;
+    wrench << at.wrench.force, at.wrench.moment;
+    Eigen::RowVectorXd all = work.row(lane);
+    for (int c = 0; c < 6; ++c) all += wrench[c] * psi.row(c * (psi.rows() / 6) + lane);
+    for (Eigen::Index j = 0; j < at.torque.size(); ++j)
+      at.torque[j] = all.dot(geometry_->variable_change(values(*geometry_), static_cast<int>(j)));
   }
 
   /// `inner` is Psi of the geometry alone.

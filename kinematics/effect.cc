@@ -1,9 +1,11 @@
 // What every effect shares: made from its entry, written back to it.
 #include "kinematics/effect.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "kinematics/robot.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 
@@ -31,6 +33,8 @@ int Site::find(std::string_view set) const {
     if (sets[s].name == set) return static_cast<int>(s);
   return -1;
 }
+
+bool Site::touched() const { return std::ranges::any_of(sets, &SiteSet::touch); }
 
 double Site::mean_temperature() const {
   if (temperatures.empty()) return 20;
@@ -74,6 +78,12 @@ const Mechanics* EffectPlan::mechanics() const {
   if (const Statics* statics = robot.statics()) return &statics->mechanics();
   fields.fail("effect", "an effect without load or links: " + std::string(kNoStatics));
   return nullptr;
+}
+
+bool EffectPlan::torques() const {
+  if (robot.statics() || weighs(robot)) return true;
+  fields.fail("effect", "an effect without load: " + std::string(kNoStatics));
+  return false;
 }
 
 void EffectPlan::expect_place(std::string_view only) const {

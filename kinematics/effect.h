@@ -29,8 +29,11 @@ struct Circumstances {
   Eigen::VectorXd q;                     ///< readings (rad or m)
   /// Of the links, world, as the file has them; of a robot without statics the tool's alone.
   std::vector<Eigen::Isometry3d> poses;
-  Load wrench;                       ///< on the tool, world axes, at the tip; zero when not known
-  Eigen::VectorXd torque;            ///< by joint, of gravity and wrench (N m, N)
+  Load wrench;  ///< on the tool, world axes, at the tip; zero when not known
+  Eigen::Vector3d gravity{0, 0, -9.81};  ///< m/s^2, world
+  /// By joint, of gravity and wrench (N m, N); of a machine that is no chain only where an effect
+  /// asks (Effect::of_torques).
+  Eigen::VectorXd torque;
   Eigen::VectorXd velocity;          ///< by joint, just before the reading (rad/s, m/s)
   double temperature = 0, time = 0;  ///< C, s
   Eigen::Vector3d normal;            ///< outward, of the touched surface, world, unit
@@ -40,6 +43,7 @@ struct Circumstances {
   /// where the loops do not close.
   Eigen::MatrixXd legs;
   Eigen::VectorXd leg_lengths;
+  Eigen::VectorXd leg_weights;  ///< pull of all that the file says weighs, along each leg (N)
 };
 
 /// d(joint variables) and d(location of the tip) to each of the effect's parameters.
@@ -66,6 +70,7 @@ struct Site {
   bool velocities = false, speeds = false;  ///< rows carry dq; and it is more than a sign
 
   int find(std::string_view set) const;  ///< -1 when there is none
+  bool touched() const;                  ///< a flat surface, in some set
   double mean_temperature() const;       ///< 20 C without a record
 };
 
@@ -94,6 +99,8 @@ class Effect {
   virtual bool of_machine() const { return true; }
   /// Asks for Circumstances::legs.
   virtual bool of_legs() const { return false; }
+  /// Asks for Circumstances::torque.
+  virtual bool of_torques() const { return false; }
   /// What rows must have so that it can be seen: "temperatures that change".
   virtual std::string needs() const = 0;
   /// `into` is zero and of the right size.
@@ -112,7 +119,7 @@ class Effect {
   std::optional<bool> named_;
 };
 
-/// Why an effect of load or of links says nothing of a robot without statics.
+/// Why an effect of load or of links says nothing of a robot without either.
 inline constexpr std::string_view kNoStatics = "this kind of robot has no statics model";
 /// Why an effect of legs says nothing of other robots.
 inline constexpr std::string_view kNoLegs = "no legs carry this kind of robot";
@@ -133,6 +140,9 @@ struct EffectPlan {
   /// Masses and links, for an effect that cannot do without; null of a robot that has none,
   /// after noting a problem: the effect is not made.
   const Mechanics* mechanics() const;
+  /// What loads the joints is known: a chain's links, or what the file says weighs. Notes a problem
+  /// otherwise.
+  bool torques() const;
   /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
   void expect_place(std::string_view only) const;
 };

@@ -1,49 +1,11 @@
-// What every kind of robot shares: looking parameters up by name, making a robot from its file.
+// What every kind of robot shares: looking parameters up by name.
 #include "kinematics/robot.h"
 
 #include <numbers>
-#include <set>
-
-#include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 
-#define X(identifier, text) \
-  std::unique_ptr<Robot> make_##identifier(const Node& node, Problems& problems);
-#include "kinematics/robots.def"
-#undef X
-
 namespace {
-
-struct Kind {
-  std::string_view name;
-  std::unique_ptr<Robot> (*make)(const Node&, Problems&);
-};
-
-constexpr Kind kKinds[] = {
-#define X(identifier, text) {text, make_##identifier},
-#include "kinematics/robots.def"
-#undef X
-};
-
-/// The robot of a kind, and around it the effects that the file says it has.
-std::unique_ptr<Robot> with_effects_of(const Node& node, const Kind& kind, Problems& problems) {
-  const Node* effects = node.find("effects");
-  if (!effects) return kind.make(node, problems);
-  std::shared_ptr<const Robot> robot = kind.make(node.without({"effects"}), problems);
-  if (!robot) return nullptr;
-  if (effects->kind != Node::Kind::list) {
-    problems.add(effects->place, "effects: expected a list of effects");
-    return nullptr;
-  }
-  auto corrected = correct(std::move(robot), effects->items, {}, problems);
-  std::set<std::string> names;
-  for (size_t i = 0; corrected && i < corrected->parameters().size(); ++i)
-    if (!names.insert(corrected->parameters()[i].name).second)
-      problems.add(effects->place,
-                   "effects: " + corrected->parameters()[i].name + " is there twice");
-  return problems.any() ? nullptr : std::move(corrected);
-}
 
 bool matches(std::string_view text, std::string_view pattern) {
   if (pattern.empty()) return text.empty();
@@ -115,8 +77,31 @@ int passive_index(const Robot& robot, Body body) {
   return -1;
 }
 
+const std::vector<std::string>& Robot::links() const {
+  static const std::vector<std::string> none;
+  return none;
+}
+
 bool has_body(const Robot& robot, Body body) {
+  if (body >= Body::first_named) return body < link_body(static_cast<int>(robot.links().size()));
   return body < Body::first_passive || passive_index(robot, body) >= 0;
+}
+
+std::vector<NamedBody> named_bodies(const Robot& robot) {
+  std::vector<NamedBody> all = {{"endpoint", Body::endpoint},
+                                {"last_link", Body::last_link},
+                                {"first_link", Body::first_link}};
+  for (const PassiveJoint& joint : robot.passive_joints())
+    all.push_back({joint.name, body_behind(joint.chain, joint.kind)});
+  for (size_t k = 0; k < robot.links().size(); ++k)
+    all.push_back({robot.links()[k], link_body(static_cast<int>(k))});
+  return all;
+}
+
+std::optional<Body> find_body(const Robot& robot, std::string_view name) {
+  for (const NamedBody& each : named_bodies(robot))
+    if (each.name == name) return each.body;
+  return std::nullopt;
 }
 
 void Closure::leave_open(int lane, std::string reason) {
@@ -180,27 +165,6 @@ std::vector<int> match_parameters(const Robot& robot, std::string_view pattern) 
 int find_parameter(const Robot& robot, std::string_view name) {
   const std::vector<int> found = match_parameters(robot, name);
   return found.size() == 1 ? found.front() : -1;
-}
-
-std::unique_ptr<Robot> make_robot(const Node& node, Problems& problems) {
-  const Node* kind = node.find("kind");
-  if (!kind) {
-    problems.add(node.place, "robot: key 'kind' is missing");
-    return nullptr;
-  }
-  std::string known;
-  for (const Kind& each : kKinds) {
-    if (each.name == kind->text) return with_effects_of(node, each, problems);
-    known += (known.empty() ? "" : ", ") + std::string(each.name);
-  }
-  problems.add(kind->place, "robot: kind '" + kind->text + "' is unknown; known: " + known);
-  return nullptr;
-}
-
-std::vector<std::string_view> robot_kinds() {
-  std::vector<std::string_view> names;
-  for (const Kind& each : kKinds) names.push_back(each.name);
-  return names;
 }
 
 }  // namespace selfcal

@@ -21,6 +21,8 @@
 
 namespace selfcal {
 
+struct PointMasses;  // statics.h
+
 inline constexpr int kLanes = 32;
 
 /// Lanes x columns without the heap. The rows are counted at run time so that the compiler loops
@@ -41,6 +43,12 @@ struct Conditions {
   std::vector<int> set;               ///< of the data set
 };
 
+/// Location of a body in the world frame.
+struct Location {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< m
+};
+
 /// Joint readings of a block: kLanes x joints, or 1 x joints (rad or m). Lanes past `count` repeat
 /// the last one.
 struct ConfigurationBlock {
@@ -48,13 +56,12 @@ struct ConfigurationBlock {
   int count = 0;
   Eigen::ArrayXXd added = {};  ///< lanes x joints, to the joint variables; without rows: nothing
   Conditions conditions = {};
-  int lanes() const { return static_cast<int>(q.rows()); }
-};
+  /// About where the last link stands in the first lane, of a machine with loops: they are closed
+  /// from there. Nothing: from the robot's home. Where it belongs to another assembly mode than
+  /// home, no lane closes.
+  std::optional<Location> start = {};
 
-/// Location of a body in the world frame.
-struct Location {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< m
+  int lanes() const { return static_cast<int>(q.rows()); }
 };
 
 /// The same lane by lane.
@@ -90,8 +97,9 @@ static_assert(kLanes == 32, "a bit for each lane");
 /// The body whose location is asked for: the tool's frame, or the first or last moving link (whose
 /// location the parameters of frames behind it do not change). Of a machine with loops the last
 /// link is the platform, and the first its base: what turns with the machine as a whole. From
-/// first_passive on, the links behind passive joints (see body_behind).
-enum class Body : int { endpoint, last_link, first_link, first_passive };
+/// first_passive on, the links behind passive joints (see body_behind); from first_named on, those
+/// of Robot::links() (see link_body).
+enum class Body : int { endpoint, last_link, first_link, first_passive, first_named = 1 << 16 };
 
 /// The universal joint that a chain of a platform has in the base, the spherical one in the
 /// platform.
@@ -112,6 +120,14 @@ inline Body body_behind(int chain, PassiveKind kind) {
   return static_cast<Body>(static_cast<int>(Body::first_passive) + 2 * chain +
                            static_cast<int>(kind));
 }
+
+/// The body of Robot::links()[k].
+inline Body link_body(int k) { return static_cast<Body>(static_cast<int>(Body::first_named) + k); }
+
+struct NamedBody {
+  std::string name;
+  Body body = Body::endpoint;
+};
 
 struct Joint {
   std::string name;  ///< the frame that it moves
@@ -163,6 +179,8 @@ class Robot {
   virtual std::optional<Location> home() const { return std::nullopt; }
   /// Joints that a method may speak of; empty where the kind gives none.
   virtual const std::vector<PassiveJoint>& passive_joints() const;
+  /// Names of what moves between the base and the last link: an arm's frames, a delta's carriages.
+  virtual const std::vector<std::string>& links() const;
   /// Every passive joint is within its limit at readings `q`, by the maker's figures.
   virtual bool within_passive_limits(const Eigen::VectorXd&) const { return true; }
 
@@ -193,8 +211,10 @@ class Robot {
   virtual Eigen::VectorXd draw(const Eigen::MatrixX2d& span,
                                const std::function<double()>& uniform) const;
 
-  /// Masses and links; null where the kind has no model of them.
+  /// Masses and links of a chain; null of a machine that is none.
   virtual const Statics* statics() const { return nullptr; }
+  /// What weighs, of a machine of any structure; null where its file says nothing of it.
+  virtual const PointMasses* masses() const { return nullptr; }
   /// Where the tool points, in its own frame.
   virtual Eigen::Vector3d tool_axis() const { return Eigen::Vector3d::UnitZ(); }
 
@@ -213,6 +233,11 @@ int find_joint(const Robot& robot, std::string_view name);
 int passive_index(const Robot& robot, Body body);
 /// The robot can be asked for `body`.
 bool has_body(const Robot& robot, Body body);
+/// Every body that it can be asked for, by name: "endpoint", "last_link", "first_link", its passive
+/// joints and its links.
+std::vector<NamedBody> named_bodies(const Robot& robot);
+/// The one called `name`; nothing where there is none.
+std::optional<Body> find_body(const Robot& robot, std::string_view name);
 /// Every reading keeps `margin` (rad or m) from its joint's limits, and the passive joints keep
 /// theirs.
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin = 0);
@@ -238,10 +263,5 @@ int find_parameter(const Robot& robot, std::string_view name);
 /// Indices of all parameters whose name or FRAME.FIELD matches `pattern`, in which * stands for any
 /// text.
 std::vector<int> match_parameters(const Robot& robot, std::string_view pattern);
-
-/// The robot that `node` describes, by its `kind` (see robots.def). Null after a problem.
-std::unique_ptr<Robot> make_robot(const Node& node, Problems& problems);
-/// The kinds that make_robot knows.
-std::vector<std::string_view> robot_kinds();
 
 }  // namespace selfcal

@@ -3,6 +3,7 @@
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/make_robot.h"
 
 namespace selfcal {
 namespace {

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "diagnosis/constants.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
-
-/// 1 to `count`.
-std::vector<double> up_to(int count) {
-  std::vector<double> numbers(static_cast<size_t>(count));
-  std::iota(numbers.begin(), numbers.end(), 1.0);
-  return numbers;
-}
 
 bool spreads(const Eigen::VectorXd& column, double least) {
   double low = INFINITY, high = -INFINITY;
@@ -33,41 +26,62 @@ class Maker {
       : robot_(robot), data_(data), site_(site) {}
 
   Candidates run() {
-    for (const Joint& joint : robot_.joints()) {
-      of_joint(joint);
-      ++joint_;
-    }
-    joint_ = -1;
-    of_time();
-    of_tool();
-    of_touch();
-    of_devices();
+    for (size_t j = 0; j < robot_.joints().size(); ++j)
+      take_of({.joint = static_cast<int>(j), .name = robot_.joints()[j].name});
+    take_of({});
+    for (size_t s = 0; s < site_.sets.size(); ++s)
+      take_of({.set = static_cast<int>(s), .name = site_.sets[s].name});
     spread_priors();
     return std::move(all_);
   }
 
  private:
-  /// One shape of a cause; those `beside` it take up its errors. Where the robot or the site cannot
-  /// have it, that is told.
-  void add(std::string_view effect, const std::string& at, EffectShape shape = {},
-           std::vector<EffectShape> beside = {}) {
-    Candidate candidate{.effect = std::string(effect), .at = at, .joint = joint_};
+  /// What the effects suppose of one place.
+  void take_of(const EffectPlace& place) {
+    const DiagnosisConstants::Shapes& rules = kDiagnosis.shapes;
+    const Supposed asked{
+        .robot = robot_,
+        .site = site_,
+        .warms = warms(),
+        .normals = data_.rows.normal.rows() > 0,
+        .most_waves = rules.most_waves,
+        .profile = rules.profile,
+        .assumed = rules.assumed,
+        .moments = [this](int set) { return moments(set); },
+        .shows = [this, &rules](int set) { return rows_of(set) >= rules.fewest_rows; }};
+    const Suppositions supposed = suppose(asked, place);
+    all_.untestable.insert(all_.untestable.end(), supposed.untestable().begin(),
+                           supposed.untestable().end());
+    for (const Supposition& each : supposed.list()) {
+      if (each.together == 0) {
+        add(each, place.joint);
+        continue;
+      }
+      (each.profile ? all_.profiles : all_.list).push_back(together(each));
+    }
+  }
+
+  /// Where the robot or the site cannot have it, that is told.
+  void add(const Supposition& supposed, int joint) {
+    Candidate candidate{.effect = supposed.effect, .at = supposed.at, .joint = joint};
     const auto made = static_cast<std::ptrdiff_t>(all_.made.size());
     const int parameters = parameters_;
     Problems problems;
-    candidate.needs = take(candidate, shape, candidate.main, problems);
-    for (const EffectShape& each : beside) take(candidate, each, candidate.slack, problems);
+    candidate.needs = take(candidate, supposed.shape, candidate.main, problems);
+    for (const EffectShape& each : supposed.beside)
+      take(candidate, each, candidate.slack, problems);
     if (problems.any()) {
       all_.made.erase(all_.made.begin() + made, all_.made.end());
       parameters_ = parameters;
       const bool told = std::ranges::any_of(all_.untestable, [&](const Untestable& each) {
-        return each.effect == effect && each.at == at;
+        return each.effect == supposed.effect && each.at == supposed.at;
       });
-      if (!told) cannot(effect, at, problems.list.front());
+      if (!told) all_.untestable.push_back({supposed.effect, supposed.at, problems.list.front()});
       return;
     }
-    candidate.shape = std::move(shape);
-    candidate.beside = std::move(beside);
+    candidate.shape = supposed.shape;
+    candidate.beside = supposed.beside;
+    candidate.doubt = supposed.doubt;
     all_.list.push_back(std::move(candidate));
   }
 
@@ -81,139 +95,24 @@ class Maker {
     return effect->needs();
   }
 
-  void cannot(std::string_view effect, const std::string& at, const std::string& why) {
-    all_.untestable.push_back({std::string(effect), at, why});
-  }
-
-  void of_joint(const Joint& joint) {
-    const std::string& at = joint.name;
-    const Statics* statics = robot_.statics();
-    const bool masses = statics && statics->mechanics().masses_known();
-    const bool loads = statics && (statics->mechanics().gravity.norm() > 0 || site_.loads);
-    if (!statics)
-      for (const char* effect : {"joint_compliance", "link_compliance"})
-        cannot(effect, at, std::string(kNoStatics));
-    if (loads && (masses || site_.loads)) {
-      add("joint_compliance", at);
-      add("joint_compliance", at, {}, {{.lumps = true}});
-      if (statics->mechanics().masses_assumed) all_.list.back().doubt = kDiagnosis.shapes.assumed;
-      add("link_compliance", at);
-    } else if (loads) {
-      add("joint_compliance", at, {.lumps = true});
-      cannot("link_compliance", at, "the robot file gives no masses and the rows no loads");
+  /// The first waves of one joint as one shape.
+  Candidate together(const Supposition& supposed) const {
+    const auto first = std::ranges::find_if(all_.list, [&](const Candidate& each) {
+      return each.effect == supposed.effect && each.at == supposed.at;
+    });
+    Candidate sum{
+        .effect = first->effect, .at = first->at, .joint = first->joint, .needs = first->needs};
+    for (auto one = first; one != first + supposed.together; ++one) {
+      sum.main.insert(sum.main.end(), one->main.begin(), one->main.end());
+      sum.shape.waves.insert(sum.shape.waves.end(), one->shape.waves.begin(),
+                             one->shape.waves.end());
     }
-    of_leg(at);
-    of_waves(at);
-    if (site_.velocities)
-      add("backlash", at);
-    else
-      cannot("backlash", at, "the rows carry no dq: the side of approach is not known");
-    if (statics && (masses || site_.loads)) add("backlash", at, {.by = "load"});
-    for (const Joint& other : robot_.joints())
-      if (other.name != at) add("joint_coupling", at, {.from = other.name});
-    for (const double moment : moments(-1)) add("zero_shift", at, {.moment = moment});
-    if (moments(-1).empty()) cannot("zero_shift", at, "the rows carry no time");
-  }
-
-  void of_leg(const std::string& at) {
-    if (robot_.leg_parameter(0) < 0) return;
-    // What hangs on the tip is known as the rows' loads, or else by how it bends the legs alone.
-    add("leg_compliance", at, {.mass = site_.loads ? 0.0 : 1.0});
-    if (warms())
-      add("leg_thermal_growth", at);
-    else
-      cannot("leg_thermal_growth", at, "the rows carry no temperatures that change");
-    if (site_.loads)
-      add("joint_clearance", at);
-    else
-      cannot("joint_clearance", at, "the rows carry no loads: which end of its play is not known");
-  }
-
-  void of_waves(const std::string& at) {
-    const size_t first = all_.list.size();
-    for (int k = 1; k <= kDiagnosis.shapes.most_waves; ++k)
-      add("transmission_error", at, {.waves = {1.0 * k}});
-    all_.list.push_back(together(first, 2));
-    all_.profiles.push_back(together(first, kDiagnosis.shapes.profile));
-  }
-
-  /// The waves 1 to `count` of one joint as one shape; `first` is the one of a single wave.
-  Candidate together(size_t first, int count) const {
-    const Candidate& one = all_.list[first];
-    Candidate sum{.effect = one.effect, .at = one.at, .joint = one.joint, .needs = one.needs};
-    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
-      const std::vector<int>& nuisance = all_.list[first + i].main;
-      sum.main.insert(sum.main.end(), nuisance.begin(), nuisance.end());
-    }
-    sum.shape.waves = up_to(count);
     return sum;
-  }
-
-  void of_time() {
-    if (site_.end > site_.begin) {
-      const double span = site_.end - site_.begin;
-      add("base_drift", "base");
-      for (const double share : {0.15, 0.5}) add("base_drift", "base", {.settle = share * span});
-      for (const int most : {2, 4}) add("base_drift", "base", {.half_waves = up_to(most)});
-    } else {
-      cannot("base_drift", "base", "the rows carry no time");
-    }
-    if (!robot_.statics()) return cannot("thermal_expansion", "", std::string(kNoStatics));
-    if (!warms())
-      return cannot("thermal_expansion", "", "the rows carry no temperatures that change");
-    add("thermal_expansion", "");
-    for (const double share : {0.125, 0.25, 0.5, 1.0})
-      if (site_.end > site_.begin)
-        add("thermal_expansion", "", {.lag = share * (site_.end - site_.begin)});
-  }
-
-  void of_tool() {
-    const std::vector<double> at = moments(-1);
-    for (const double moment : at) add("tool_shift", "probe", {.moment = moment});
-    if (at.empty()) cannot("tool_shift", "probe", "the rows carry no time");
-    const Statics* statics = robot_.statics();
-    if (!statics) return cannot("tool_compliance", "probe", std::string(kNoStatics));
-    if (statics->mechanics().gravity.norm() > 0 || site_.loads)
-      add("tool_compliance", "probe");
-    else
-      cannot("tool_compliance", "probe", "without gravity the rows carry no loads");
-  }
-
-  /// Instruments that measure lengths, whose unit may be off or grow with the air's temperature.
-  void of_devices() {
-    for (size_t s = 0; s < site_.sets.size(); ++s) {
-      const SiteSet& set = site_.sets[s];
-      if (!set.lengths || rows_of(static_cast<int>(s)) < kDiagnosis.shapes.fewest_rows) continue;
-      add("scale_error", set.name);
-      if (warms()) add("scale_error", set.name, {.by = "temperature"});
-    }
   }
 
   bool warms() const {
     return data_.rows.temperature.size() > 0 &&
            spreads(data_.rows.temperature, kDiagnosis.shapes.warms);
-  }
-
-  void of_touch() {
-    const bool touches = std::any_of(site_.sets.begin(), site_.sets.end(),
-                                     [](const SiteSet& set) { return set.touch; });
-    if (!touches) return;
-    if (data_.rows.normal.rows() > 0)
-      add("probe_pretravel", "probe");
-    else
-      cannot("probe_pretravel", "probe", "the rows carry no normals");
-    if (site_.speeds && data_.rows.normal.rows() > 0)
-      add("trigger_latency", "probe");
-    else
-      cannot("trigger_latency", "probe", "the rows carry no approach velocities");
-    for (size_t s = 0; s < site_.sets.size(); ++s) {
-      if (!site_.sets[s].touch || rows_of(static_cast<int>(s)) < kDiagnosis.shapes.fewest_rows)
-        continue;
-      add("plane_form_error", site_.sets[s].name);
-      if (data_.rows.normal.rows() == 0) continue;
-      for (const double moment : moments(static_cast<int>(s)))
-        add("fixture_shift", site_.sets[s].name, {.moment = moment});
-    }
   }
 
   int rows_of(int set) const {
@@ -265,7 +164,6 @@ class Maker {
   const Site& site_;
   Candidates all_;
   int parameters_ = 0;
-  int joint_ = 0;  ///< whose candidates are made; -1 after the last one
 };
 
 }  // namespace

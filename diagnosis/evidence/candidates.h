@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
-#include "diagnosis/evidence/effect_shape.h"
 #include "kinematics/effect.h"
+#include "kinematics/effect_shape.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 
@@ -25,11 +26,6 @@ struct Candidate {
   int joint = -1;               ///< at which it acts; -1 elsewhere
   std::string needs = {};       ///< what rows must have so that it can be seen
   double log_prior = 0;         ///< of the place and the shape within the family
-};
-
-/// A cause that these rows cannot test at all.
-struct Untestable {
-  std::string effect, at, why;
 };
 
 struct Candidates {

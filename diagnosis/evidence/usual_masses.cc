@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "kinematics/expects.h"
+#include "kinematics/make_robot.h"
 #include "kinematics/robot_text.h"
 
 namespace selfcal {
@@ -43,7 +45,8 @@ std::shared_ptr<const Robot> with_mass_of_its_size(std::shared_ptr<const Robot> 
   node.set("payload", Node::of(kPayload * mass));
   Problems problems;
   std::shared_ptr<const Robot> heavy = make_robot(node, problems);
-  return heavy && heavy->statics()->mechanics().masses_known() ? heavy : robot;
+  expects(heavy != nullptr, problems.any() ? problems.list.front() : "a file with a mass is read");
+  return heavy->statics()->mechanics().masses_known() ? heavy : robot;
 }
 
 }  // namespace selfcal

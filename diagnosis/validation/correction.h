@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/evidence/effect_shape.h"
+#include "kinematics/effect_shape.h"
 
 namespace selfcal {
 

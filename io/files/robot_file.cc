@@ -4,6 +4,7 @@
 
 #include "io/files/file.h"
 #include "io/files/yaml.h"
+#include "kinematics/make_robot.h"
 
 namespace selfcal {
 

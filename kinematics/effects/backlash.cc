@@ -6,6 +6,8 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/statics.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -20,9 +22,10 @@ class Backlash final : public Effect {
     const std::string by = plan.fields.text("by", "motion");
     by_load_ = by == "load";
     if (!by_load_ && by != "motion") plan.fields.fail("by", "motion or load");
-    if (by_load_) plan.mechanics();
+    if (by_load_) plan.torques();
   }
 
+  bool of_torques() const override { return by_load_; }
   std::string needs() const override {
     return by_load_ ? "torques of both signs" : "dq of both signs";
   }
@@ -45,6 +48,17 @@ class Backlash final : public Effect {
 
 std::unique_ptr<Effect> make_backlash(const EffectPlan& plan) {
   return std::make_unique<Backlash>(plan, plan.joint());
+}
+
+void suppose_backlash(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  if (rows.site.velocities)
+    to.add(place.name);
+  else
+    to.cannot(place.name, "the rows carry no dq: the side of approach is not known");
+  const Statics* statics = rows.robot.statics();
+  if (statics ? statics->mechanics().masses_known() || rows.site.loads : weighs(rows.robot))
+    to.add(place.name, {.by = "load"});
 }
 
 }  // namespace selfcal

@@ -8,9 +8,11 @@
 // u the straight line above; the larger K, the smaller each is expected to be.
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -80,6 +82,19 @@ class BaseDrift final : public Effect {
 std::unique_ptr<Effect> make_base_drift(const EffectPlan& plan) {
   plan.expect_place("base");
   return std::make_unique<BaseDrift>(plan);
+}
+
+void suppose_base_drift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole()) return;
+  const double span = rows.site.end - rows.site.begin;
+  if (!(span > 0)) return to.cannot("base", "the rows carry no time");
+  to.add("base");
+  for (const double share : {0.15, 0.5}) to.add("base", {.settle = share * span});
+  for (const int most : {2, 4}) {
+    std::vector<double> half_waves(static_cast<size_t>(most));
+    std::iota(half_waves.begin(), half_waves.end(), 1.0);
+    to.add("base", {.half_waves = std::move(half_waves)});
+  }
 }
 
 }  // namespace selfcal

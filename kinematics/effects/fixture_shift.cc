@@ -2,8 +2,9 @@
 //   h = shift + tilt_u v - tilt_v u
 // further out along its outward normal, turned about its tangents u, v (SurfaceFrame) by tilt_u and
 // tilt_v. The contact compares with the plane after h is taken off along the normal. m, rad.
-#include "kinematics/effects/surface_frame.h"
+#include "kinematics/effects/shared/surface_frame.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -41,6 +42,12 @@ class FixtureShift final : public Effect {
 
 std::unique_ptr<Effect> make_fixture_shift(const EffectPlan& plan) {
   return std::make_unique<FixtureShift>(plan, plan.set());
+}
+
+void suppose_fixture_shift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.set < 0 || !rows.shows(place.set) || !rows.normals) return;
+  if (!rows.site.sets[static_cast<size_t>(place.set)].touch) return;
+  for (const double moment : rows.moments(place.set)) to.add(place.name, {.moment = moment});
 }
 
 }  // namespace selfcal

@@ -1,8 +1,10 @@
 // Clearance of a leg's passive joints: the load pulls it to one end of its play or pushes it to the
 // other,
-//   delta l = play / 2 sign(f),   f the pull of the wrench and of `mass` at the tip (leg_load.h)
+//   delta l = play / 2 sign(f),   f the pull of the wrench, of what weighs and of `mass` at the tip
+//   (leg_load.h)
 // play: m, of both joints of the leg together.
-#include "kinematics/effects/leg_load.h"
+#include "kinematics/effects/shared/leg_load.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -33,6 +35,14 @@ class JointClearance final : public Effect {
 
 std::unique_ptr<Effect> make_joint_clearance(const EffectPlan& plan) {
   return std::make_unique<JointClearance>(plan);
+}
+
+void suppose_joint_clearance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
+  if (rows.site.loads || weighs(rows.robot))
+    to.add(place.name);
+  else
+    to.cannot(place.name, "the rows carry no loads: which end of its play is not known");
 }
 
 }  // namespace selfcal

@@ -4,23 +4,28 @@
 // masses, or `lumps: true` asks for it, gravity's torque is made of free first moments instead:
 //   delta q_j = sum over carried links k of z_j . (x_k X_k + y_k Y_k) x g / |g|
 // X_k, Y_k the axes of link k: the least set that gives any chain of revolute joints its torque.
-// c: rad/(N m), m/N prismatic; x_k, y_k: rad.
+// The drives of a machine with loops (a delta's carriages) give way to the torque by virtual work
+// of what the file says weighs. c: rad/(N m), m/N prismatic; x_k, y_k: rad.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/statics.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
 
 class JointCompliance final : public Effect {
  public:
-  JointCompliance(const EffectPlan& plan, const Mechanics& mechanics, int joint) : joint_(joint) {
-    const bool turns = mechanics.links[mechanics.link_of(joint)].turns;
-    silent_ = !mechanics.masses_known();
-    lumps_ = plan.fields.flag("lumps", silent_ && !plan.site.loads);
+  /// `chain` is null of a machine that is no chain.
+  JointCompliance(const EffectPlan& plan, const Mechanics* chain, int joint) : joint_(joint) {
+    const bool turns = plan.robot.joints()[static_cast<size_t>(joint)].quantity == Quantity::angle;
+    silent_ = chain && !chain->masses_known();
+    if (chain) lumps_ = plan.fields.flag("lumps", silent_ && !plan.site.loads);
     if (!lumps_) {
       parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4, true}};
       return;
     }
+    const Mechanics& mechanics = *chain;
     for (int k = mechanics.link_of(joint); k < static_cast<int>(mechanics.links.size()); ++k) {
       if (!mechanics.links[k].turns) continue;
       carried_.push_back(k);
@@ -29,6 +34,7 @@ class JointCompliance final : public Effect {
     }
   }
 
+  bool of_torques() const override { return true; }
   std::string needs() const override { return "a load whose torque on the joint changes"; }
 
   void regressor(const Circumstances& at, Regressor& into) const override {
@@ -58,9 +64,30 @@ class JointCompliance final : public Effect {
 }  // namespace
 
 std::unique_ptr<Effect> make_joint_compliance(const EffectPlan& plan) {
-  const Mechanics* mechanics = plan.mechanics();
-  if (!mechanics) return nullptr;
-  return std::make_unique<JointCompliance>(plan, *mechanics, plan.joint());
+  if (!plan.torques()) return nullptr;
+  const Statics* statics = plan.robot.statics();
+  return std::make_unique<JointCompliance>(plan, statics ? &statics->mechanics() : nullptr,
+                                           plan.joint());
+}
+
+void suppose_joint_compliance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  const Statics* statics = rows.robot.statics();
+  if (!statics) {
+    if (rows.robot.leg_parameter(place.joint) == rows.robot.variable_parameter(place.joint))
+      to.cannot(place.name, "the joint is the leg itself: see leg_compliance");
+    else if (weighs(rows.robot))
+      to.add(place.name);
+    else
+      to.cannot(place.name, std::string(kNoStatics));
+    return;
+  }
+  const Mechanics& mechanics = statics->mechanics();
+  if (!(mechanics.gravity.norm() > 0) && !rows.site.loads) return;
+  if (!mechanics.masses_known() && !rows.site.loads) return to.add(place.name, {.lumps = true});
+  to.add(place.name);
+  to.add(place.name, {}, {{.lumps = true}});
+  if (mechanics.masses_assumed) to.last().doubt = rows.assumed;
 }
 
 }  // namespace selfcal

@@ -2,6 +2,7 @@
 // joints of one kind, else m/rad or rad/m.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -37,6 +38,12 @@ class JointCoupling final : public Effect {
 
 std::unique_ptr<Effect> make_joint_coupling(const EffectPlan& plan) {
   return std::make_unique<JointCoupling>(plan, plan.joint());
+}
+
+void suppose_joint_coupling(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  for (const Joint& other : rows.robot.joints())
+    if (other.name != place.name) to.add(place.name, {.from = other.name});
 }
 
 }  // namespace selfcal

@@ -1,14 +1,17 @@
 // Compliance of a leg: it gives way along itself by c times its load,
-//   delta l = c f,   f the pull of the wrench and of `mass` at the tip (leg_load.h)
-// c: m/N. Where nothing is said of the mass, 1 kg hangs there: c is then per kilogram of what does.
-#include "kinematics/effects/leg_load.h"
+//   delta l = c f,   f the pull of the wrench, of what weighs and of `mass` at the tip (leg_load.h)
+// c: m/N. Where neither the file nor the entry says what weighs, 1 kg hangs there: c is then per
+// kilogram of what does.
+#include "kinematics/effects/shared/leg_load.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
 
 class LegCompliance final : public Effect {
  public:
-  explicit LegCompliance(const EffectPlan& plan) : leg_(plan.leg()), mass_(leg_mass(plan, 1)) {
+  explicit LegCompliance(const EffectPlan& plan)
+      : leg_(plan.leg()), mass_(leg_mass(plan, weighs(plan.robot) ? 0 : 1)) {
     parameters_ = {{"c", "m/N", 1e-8, 5e-6, true}};
   }
 
@@ -30,6 +33,12 @@ class LegCompliance final : public Effect {
 
 std::unique_ptr<Effect> make_leg_compliance(const EffectPlan& plan) {
   return std::make_unique<LegCompliance>(plan);
+}
+
+void suppose_leg_compliance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
+  // What hangs on the tip is known as the rows' loads, or else by how it bends the legs alone.
+  to.add(place.name, {.mass = rows.site.loads || weighs(rows.robot) ? 0.0 : 1.0});
 }
 
 }  // namespace selfcal

@@ -4,6 +4,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -35,6 +36,14 @@ class LegThermalGrowth final : public Effect {
 
 std::unique_ptr<Effect> make_leg_thermal_growth(const EffectPlan& plan) {
   return std::make_unique<LegThermalGrowth>(plan);
+}
+
+void suppose_leg_thermal_growth(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
+  if (rows.warms)
+    to.add(place.name);
+  else
+    to.cannot(place.name, "the rows carry no temperatures that change");
 }
 
 }  // namespace selfcal

@@ -9,6 +9,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -52,6 +53,18 @@ std::unique_ptr<Effect> make_link_compliance(const EffectPlan& plan) {
   const Mechanics* mechanics = plan.mechanics();
   if (!mechanics) return nullptr;
   return std::make_unique<LinkCompliance>(*mechanics, plan.joint());
+}
+
+void suppose_link_compliance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  const Statics* statics = rows.robot.statics();
+  if (!statics) return to.cannot(place.name, std::string(kNoStatics));
+  const Mechanics& mechanics = statics->mechanics();
+  if (!(mechanics.gravity.norm() > 0) && !rows.site.loads) return;
+  if (mechanics.masses_known() || rows.site.loads)
+    to.add(place.name);
+  else
+    to.cannot(place.name, "the robot file gives no masses and the rows no loads");
 }
 
 }  // namespace selfcal

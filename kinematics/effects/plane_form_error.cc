@@ -2,8 +2,9 @@
 //   h = a u^2 + b u v + c v^2
 // u, v along two tangents from its middle (SurfaceFrame). The contact compares with the plane after
 // h is taken off along the normal. a, b, c: 1/m.
-#include "kinematics/effects/surface_frame.h"
+#include "kinematics/effects/shared/surface_frame.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -36,6 +37,11 @@ class PlaneFormError final : public Effect {
 
 std::unique_ptr<Effect> make_plane_form_error(const EffectPlan& plan) {
   return std::make_unique<PlaneFormError>(plan, plan.set());
+}
+
+void suppose_plane_form_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.set < 0 || !rows.shows(place.set)) return;
+  if (rows.site.sets[static_cast<size_t>(place.set)].touch) to.add(place.name);
 }
 
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -35,6 +36,14 @@ class ProbePretravel final : public Effect {
 std::unique_ptr<Effect> make_probe_pretravel(const EffectPlan& plan) {
   plan.expect_place("probe");
   return std::make_unique<ProbePretravel>();
+}
+
+void suppose_probe_pretravel(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole() || !rows.site.touched()) return;
+  if (rows.normals)
+    to.add("probe");
+  else
+    to.cannot("probe", "the rows carry no normals");
 }
 
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -53,6 +54,14 @@ class ScaleError final : public Effect {
 
 std::unique_ptr<Effect> make_scale_error(const EffectPlan& plan) {
   return std::make_unique<ScaleError>(plan, plan.set());
+}
+
+void suppose_scale_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  // An instrument's unit may be off, or grow with the air's temperature.
+  if (place.set < 0 || !rows.shows(place.set)) return;
+  if (!rows.site.sets[static_cast<size_t>(place.set)].lengths) return;
+  to.add(place.name);
+  if (rows.warms) to.add(place.name, {.by = "temperature"});
 }
 
 }  // namespace selfcal

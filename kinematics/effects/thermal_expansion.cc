@@ -9,6 +9,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -74,6 +75,16 @@ class ThermalExpansion final : public Effect {
 std::unique_ptr<Effect> make_thermal_expansion(const EffectPlan& plan) {
   plan.expect_place("");
   return std::make_unique<ThermalExpansion>(plan);
+}
+
+void suppose_thermal_expansion(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole()) return;
+  if (!rows.robot.statics()) return to.cannot("", std::string(kNoStatics));
+  if (!rows.warms) return to.cannot("", "the rows carry no temperatures that change");
+  to.add("");
+  const double span = rows.site.end - rows.site.begin;
+  for (const double share : {0.125, 0.25, 0.5, 1.0})
+    if (span > 0) to.add("", {.lag = share * span});
 }
 
 }  // namespace selfcal

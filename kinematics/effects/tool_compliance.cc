@@ -6,6 +6,7 @@
 // frames have no mass, `mass` (kg, 1 where nothing is said) hangs at the tip.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -62,6 +63,16 @@ std::unique_ptr<Effect> make_tool_compliance(const EffectPlan& plan) {
   const Mechanics* mechanics = plan.mechanics();
   if (!mechanics) return nullptr;
   return std::make_unique<ToolCompliance>(plan, *mechanics);
+}
+
+void suppose_tool_compliance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole()) return;
+  const Statics* statics = rows.robot.statics();
+  if (!statics) return to.cannot("probe", std::string(kNoStatics));
+  if (statics->mechanics().gravity.norm() > 0 || rows.site.loads)
+    to.add("probe");
+  else
+    to.cannot("probe", "without gravity the rows carry no loads");
 }
 
 }  // namespace selfcal

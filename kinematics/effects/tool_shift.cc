@@ -5,6 +5,7 @@
 // m, rad.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -36,6 +37,13 @@ class ToolShift final : public Effect {
 std::unique_ptr<Effect> make_tool_shift(const EffectPlan& plan) {
   plan.expect_place("probe");
   return std::make_unique<ToolShift>(plan);
+}
+
+void suppose_tool_shift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole()) return;
+  const std::vector<double> moments = rows.moments(-1);
+  for (const double moment : moments) to.add("probe", {.moment = moment});
+  if (moments.empty()) to.cannot("probe", "the rows carry no time");
 }
 
 }  // namespace selfcal

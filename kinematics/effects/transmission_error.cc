@@ -7,6 +7,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -45,6 +46,16 @@ class TransmissionError final : public Effect {
 
 std::unique_ptr<Effect> make_transmission_error(const EffectPlan& plan) {
   return std::make_unique<TransmissionError>(plan, plan.joint());
+}
+
+void suppose_transmission_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  for (int k = 1; k <= rows.most_waves; ++k) to.add(place.name, {.waves = {1.0 * k}});
+  to.add(place.name);
+  to.last().together = 2;
+  to.add(place.name);
+  to.last().together = rows.profile;
+  to.last().profile = true;
 }
 
 }  // namespace selfcal

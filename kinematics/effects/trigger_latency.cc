@@ -5,6 +5,7 @@
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -28,6 +29,14 @@ std::unique_ptr<Effect> make_trigger_latency(const EffectPlan& plan) {
   if (plan.site.velocities && !plan.site.speeds)
     plan.fields.fail("effect", "one that signs of dq tell: a latency needs velocities");
   return std::make_unique<TriggerLatency>();
+}
+
+void suppose_trigger_latency(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (!place.whole() || !rows.site.touched()) return;
+  if (rows.site.speeds && rows.normals)
+    to.add("probe");
+  else
+    to.cannot("probe", "the rows carry no approach velocities");
 }
 
 }  // namespace selfcal

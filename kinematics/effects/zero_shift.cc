@@ -2,6 +2,7 @@
 //   delta q = step for t >= moment.   step: rad (m prismatic).
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 namespace {
@@ -31,6 +32,13 @@ class ZeroShift final : public Effect {
 
 std::unique_ptr<Effect> make_zero_shift(const EffectPlan& plan) {
   return std::make_unique<ZeroShift>(plan, plan.joint());
+}
+
+void suppose_zero_shift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
+  if (place.joint < 0) return;
+  const std::vector<double> moments = rows.moments(-1);
+  for (const double moment : moments) to.add(place.name, {.moment = moment});
+  if (moments.empty()) to.cannot(place.name, "the rows carry no time");
 }
 
 }  // namespace selfcal

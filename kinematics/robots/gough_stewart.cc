@@ -10,12 +10,32 @@ namespace {
 
 using platform::Six;
 
+/// A cylinder turns with the leg's universal joint; a piston hangs on the platform, less its way
+/// back along the leg.
+std::optional<PointMasses> weights(const GoughStewart& model) {
+  std::optional<PointMasses> all = point_masses(model.masses);
+  const LoopMasses& m = model.masses;
+  for (int leg = 0; all && leg < kLegs; ++leg) {
+    const Body along = body_behind(leg, PassiveKind::universal);
+    const Eigen::Vector3d joint = model.nominal.segment<3>(index(leg, kPlatform));
+    const std::string cylinder = leg_name(leg) + ".cylinder", piston = leg_name(leg) + ".piston";
+    if (m.cylinder > 0)
+      all->points.push_back({cylinder, along, {0, 0, m.cylinder_com}, m.cylinder});
+    if (!(m.piston > 0)) continue;
+    all->points.push_back({piston, Body::last_link, joint, m.piston});
+    all->points.push_back({piston, along, {0, 0, m.piston_com}, -m.piston});
+    all->points.push_back({piston, along, Eigen::Vector3d::Zero(), m.piston});
+  }
+  return all;
+}
+
 class GoughStewartRobot final : public platform::Platform, public RobotText {
  public:
   GoughStewartRobot(GoughStewart model, std::string& problem)
       : model_(std::move(model)),
         parameters_(gough_stewart::parameters(model_)),
-        preference_(gough_stewart::preference(model_)) {
+        preference_(gough_stewart::preference(model_)),
+        weights_(weights(model_)) {
     for (size_t leg = 0; leg < kLegs; ++leg)
       joints_.push_back({leg_name(static_cast<int>(leg)), Quantity::length, model_.lower[leg],
                          model_.upper[leg]});
@@ -30,6 +50,7 @@ class GoughStewartRobot final : public platform::Platform, public RobotText {
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
   const RobotText& text() const override { return *this; }
+  const PointMasses* masses() const override { return weights_ ? &*weights_ : nullptr; }
   int variable_parameter(int joint) const override { return index(joint, kOffset); }
   int leg_parameter(int joint) const override { return variable_parameter(joint); }
   int chain_parameters() const override { return kFields; }
@@ -99,6 +120,7 @@ class GoughStewartRobot final : public platform::Platform, public RobotText {
   GoughStewart model_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
+  std::optional<PointMasses> weights_;
   std::vector<Joint> joints_;
 };
 

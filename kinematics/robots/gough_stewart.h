@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinematics/robots/figures.h"
+#include "kinematics/robots/loop_masses.h"
 #include "kinematics/robots/platform.h"
 
 namespace selfcal::gough_stewart {
@@ -28,6 +29,7 @@ struct GoughStewart : PartFigures {
   std::array<double, kLegs> lower{}, upper{};  ///< of the readings
   std::array<platform::Swing, kLegs> swing{};  ///< of the passive joints
   std::optional<platform::HomePose> home;      ///< from which the assembly mode is found
+  LoopMasses masses;                           ///< platform, cylinders and pistons of the legs
 };
 
 /// Reads a robot file of kind "gough-stewart"; the result is meaningless after a problem.

@@ -4,6 +4,15 @@
 namespace selfcal::gough_stewart {
 namespace {
 
+const std::vector<MassKey>& leg_masses() {
+  static const std::vector<MassKey> keys = {{"platform", &LoopMasses::platform},
+                                            {"cylinders", &LoopMasses::cylinder},
+                                            {"cylinder_com", &LoopMasses::cylinder_com, true},
+                                            {"pistons", &LoopMasses::piston},
+                                            {"piston_com", &LoopMasses::piston_com, true}};
+  return keys;
+}
+
 std::vector<Named> leg_figures(int leg) {
   static constexpr const char* kNames[kFields] = {"bx", "by", "bz", "px", "py", "pz", "offset"};
   std::vector<Named> list;
@@ -58,6 +67,7 @@ GoughStewart read(const Node& node, Problems& problems) {
   for (int leg = 0; leg < kLegs; ++leg)
     read_leg(legs->items[static_cast<size_t>(leg)], leg, problems, model);
   model.home = platform::read_home(fields, problems);
+  model.masses = read_masses(fields, leg_masses(), problems);
   fields.refuse_unknown();
   return model;
 }
@@ -70,6 +80,7 @@ Node write(const GoughStewart& model) {
   for (int leg = 0; leg < kLegs; ++leg) legs.items.push_back(write_leg(model, leg));
   node.set("legs", std::move(legs));
   if (model.home) node.set("home", platform::write_home(*model.home));
+  write_masses(model.masses, leg_masses(), node);
   return node;
 }
 

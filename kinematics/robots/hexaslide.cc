@@ -12,12 +12,29 @@ namespace {
 
 using platform::Six;
 
+/// Half of a link weighs on its carriage, half on the platform's joint.
+std::optional<PointMasses> weights(const Hexaslide& model) {
+  std::optional<PointMasses> all = point_masses(model.masses);
+  const double half = model.masses.rod / 2;
+  for (int i = 0; all && i < kChains; ++i) {
+    const double carried = model.masses.carriage + half;
+    if (carried > 0)
+      all->points.push_back({chain_name(i), body_behind(i, PassiveKind::universal),
+                             Eigen::Vector3d::Zero(), carried});
+    if (half > 0)
+      all->points.push_back(
+          {chain_name(i), Body::last_link, model.nominal.segment<3>(index(i, kJoint)), half});
+  }
+  return all;
+}
+
 class HexaslideRobot final : public platform::Platform, public RobotText {
  public:
   HexaslideRobot(Hexaslide model, std::string& problem)
       : model_(std::move(model)),
         parameters_(hexaslide::parameters(model_)),
-        preference_(hexaslide::preference(model_)) {
+        preference_(hexaslide::preference(model_)),
+        weights_(weights(model_)) {
     for (size_t i = 0; i < kChains; ++i) {
       // Where the file is silent, a rail is as long as its link.
       const bool silent = !(model_.lower[i] < model_.upper[i]);
@@ -36,6 +53,7 @@ class HexaslideRobot final : public platform::Platform, public RobotText {
   const std::vector<Parameter>& parameters() const override { return parameters_; }
   const std::vector<int>& preference() const override { return preference_; }
   const RobotText& text() const override { return *this; }
+  const PointMasses* masses() const override { return weights_ ? &*weights_ : nullptr; }
   /// A carriage's zero is the start of its rail, along it.
   int variable_parameter(int joint) const override {
     Eigen::Index most = 0;
@@ -130,6 +148,7 @@ class HexaslideRobot final : public platform::Platform, public RobotText {
   Hexaslide model_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
+  std::optional<PointMasses> weights_;
   std::vector<Joint> joints_;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinematics/robots/figures.h"
+#include "kinematics/robots/loop_masses.h"
 #include "kinematics/robots/platform.h"
 
 namespace selfcal::hexaslide {
@@ -35,6 +36,7 @@ struct Hexaslide : PartFigures {
   std::array<double, kChains> lower{}, upper{};  ///< of the readings; equal: none in the file
   std::array<platform::Swing, kChains> swing{};  ///< of the passive joints
   std::optional<platform::HomePose> home;        ///< from which the assembly mode is found
+  LoopMasses masses;                             ///< platform, carriages and links
 };
 
 /// Reads a robot file of kind "hexaslide"; the result is meaningless after a problem.

@@ -11,6 +11,13 @@ namespace {
 constexpr const char* kChainNames[kFields] = {"sx", "sy", "sz", "ax",    "ay",
                                               "px", "py", "pz", "length"};
 
+const std::vector<MassKey>& chain_masses() {
+  static const std::vector<MassKey> keys = {{"platform", &LoopMasses::platform},
+                                            {"carriages", &LoopMasses::carriage},
+                                            {"links", &LoopMasses::rod}};
+  return keys;
+}
+
 std::vector<Named> chain_figures(int chain) {
   std::vector<Named> list;
   for (int field = 0; field < kFields; ++field)
@@ -94,6 +101,7 @@ Hexaslide read(const Node& node, Problems& problems) {
   for (int chain = 0; chain < kChains; ++chain)
     read_chain(chains->items[static_cast<size_t>(chain)], chain, problems, model);
   model.home = platform::read_home(fields, problems);
+  model.masses = read_masses(fields, chain_masses(), problems);
   fields.refuse_unknown();
   return model;
 }
@@ -106,6 +114,7 @@ Node write(const Hexaslide& model) {
   for (int chain = 0; chain < kChains; ++chain) chains.items.push_back(write_chain(model, chain));
   node.set("chains", std::move(chains));
   if (model.home) node.set("home", platform::write_home(*model.home));
+  write_masses(model.masses, chain_masses(), node);
   return node;
 }
 

@@ -37,14 +37,31 @@ Eigen::Matrix<double, 3, kFields> tower_columns(const Eigen::VectorXd& xi, const
   return g * b;
 }
 
+/// Half of a tower's rods weighs on its carriage, half on the effector.
+std::optional<PointMasses> weights(const Delta& model) {
+  std::optional<PointMasses> all = point_masses(model.masses);
+  const double half = model.masses.rod / 2;
+  for (int t = 0; all && t < kTowers; ++t) {
+    const double carried = model.masses.carriage + half;
+    if (carried > 0)
+      all->points.push_back({tower_name(t), link_body(t), Eigen::Vector3d::Zero(), carried});
+    if (half > 0)
+      all->points.push_back({tower_name(t), Body::last_link, Eigen::Vector3d::Zero(), half});
+  }
+  return all;
+}
+
 class LinearDelta final : public Robot, public RobotText {
  public:
   explicit LinearDelta(Delta model)
       : model_(std::move(model)),
         parameters_(linear_delta::parameters(model_)),
-        preference_(linear_delta::preference(model_)) {
-    for (int t = 0; t < kTowers; ++t)
+        preference_(linear_delta::preference(model_)),
+        weights_(weights(model_)) {
+    for (int t = 0; t < kTowers; ++t) {
       joints_.push_back({tower_name(t), Quantity::length, model_.lower[t], model_.upper[t]});
+      carriages_.push_back(tower_name(t));
+    }
   }
 
   std::string_view kind() const override { return "linear-delta"; }
@@ -55,6 +72,8 @@ class LinearDelta final : public Robot, public RobotText {
   const RobotText& text() const override { return *this; }
   std::vector<std::string> remarks() const override { return linear_delta::remarks(model_); }
   bool has_loops() const override { return true; }
+  const std::vector<std::string>& links() const override { return carriages_; }
+  const PointMasses* masses() const override { return weights_ ? &*weights_ : nullptr; }
   int variable_parameter(int joint) const override { return index(joint, kEndstop); }
   int leg_parameter(int joint) const override { return index(joint, kRod); }
   Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd&) const override {
@@ -77,6 +96,7 @@ class LinearDelta final : public Robot, public RobotText {
                                                         : Eigen::Vector3d::Zero();
     const Eigen::Matrix3d turn = left_jacobian(tilt);
     X.resize(block.lanes());
+    bool astray = false;
     if (psi) psi->setZero(6 * block.lanes(), kParameters);
     for (int lane = 0; lane < block.lanes(); ++lane) {
       X.rotation.row(lane) = R.reshaped().transpose().array();
@@ -88,6 +108,19 @@ class LinearDelta final : public Robot, public RobotText {
       const ClosedLoops at = close(xi, towers, q, added);
       if (!at.open.empty()) {
         closure.leave_open(lane, at.open);
+        continue;
+      }
+      if (lane == 0 && block.start)
+        astray = !((block.start->p - at.carriage.col(0)).dot(at.down) > 0);
+      if (astray) {
+        closure.leave_open(lane,
+                           "no position of the effector: the start is of another assembly mode, "
+                           "above the carriages");
+        continue;
+      }
+      if (body >= Body::first_named) {
+        place_carriage(xi, at, q, static_cast<int>(body) - static_cast<int>(Body::first_named),
+                       lane, X, psi);
         continue;
       }
       X.position.row(lane) = (at.p + tool).transpose().array();
@@ -118,6 +151,27 @@ class LinearDelta final : public Robot, public RobotText {
   }
 
  private:
+  /// The carriage of tower `t`, which stands as its tower does.
+  static void place_carriage(const Eigen::VectorXd& xi, const ClosedLoops& at,
+                             const Eigen::Vector3d& q, int t, int lane, Locations& X,
+                             PsiBlock* psi) {
+    const Eigen::Vector3d tilt = tilt_of(xi, index(t, kTiltX)), u = at.towers[t].u;
+    X.rotation.row(lane) = exp_rotation(tilt).reshaped().transpose().array();
+    X.position.row(lane) = at.carriage.col(t).transpose().array();
+    if (!psi) return;
+    const double radius = xi[index(t, kRadius)], angle = xi[index(t, kAngle)];
+    const Eigen::Matrix3d turn = left_jacobian(tilt);
+    Eigen::Matrix<double, 6, kFields> by = Eigen::Matrix<double, 6, kFields>::Zero();
+    by.col(kRadius).head<3>() << std::cos(angle), std::sin(angle), 0;
+    by.col(kAngle).head<3>() << -radius * std::sin(angle), radius * std::cos(angle), 0;
+    by.col(kEndstop).head<3>() = u;
+    by.col(kScale).head<3>() = q[t] * u;
+    for (int k = 0; k < 2; ++k)
+      by.col(kTiltX + k) << at.height[t] * turn.col(k).cross(u), turn.col(k);
+    for (int c = 0; c < 6; ++c)
+      psi->row(c * (psi->rows() / 6) + lane).segment<kFields>(index(t, 0)) = by.row(c);
+  }
+
   /// `tool`: from the effector's joints to the body, world; null where the body is the effector.
   static void fill(const Eigen::VectorXd& xi, const ClosedLoops& at, const Eigen::Vector3d& q,
                    const Eigen::Matrix3d& R, const Eigen::Matrix3d& turn,
@@ -139,7 +193,9 @@ class LinearDelta final : public Robot, public RobotText {
   Delta model_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
+  std::optional<PointMasses> weights_;
   std::vector<Joint> joints_;
+  std::vector<std::string> carriages_;
 };
 
 /// Evenly over the disc in which the rods stand steeply enough, then over the heights that the

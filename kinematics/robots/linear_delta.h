@@ -14,6 +14,7 @@
 
 #include "kinematics/robot.h"
 #include "kinematics/robots/figures.h"
+#include "kinematics/robots/loop_masses.h"
 
 namespace selfcal::linear_delta {
 
@@ -31,6 +32,7 @@ struct Delta : PartFigures {
 
   std::string name;
   std::array<double, kTowers> lower{}, upper{};  ///< of the readings; equal: none
+  LoopMasses masses;                             ///< effector, carriages and rods
 };
 
 /// Reads a robot file of kind "linear-delta"; the result is meaningless after a problem.
@@ -60,6 +62,7 @@ struct ClosedLoops {
   Eigen::Vector3d height;    ///< s_i
   Eigen::Matrix3d carriage;  ///< column i is c_i
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Vector3d down = Eigen::Vector3d::Zero();  ///< unit, across the carriages' plane, to p
   std::string open;  ///< why there is no p, then zero; empty where it closes
 };
 

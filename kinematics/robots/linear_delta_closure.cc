@@ -56,6 +56,7 @@ void meet(const Eigen::Vector3d& rod, ClosedLoops& at) {
   }
   Eigen::Vector3d ez = ex.cross(ey);
   if (ez.z() > 0) ez = -ez;
+  at.down = ez;
   at.p = c1 + x * ex + y * ey + std::sqrt(h2) * ez;
 }
 

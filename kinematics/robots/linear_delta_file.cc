@@ -6,6 +6,13 @@
 namespace selfcal::linear_delta {
 namespace {
 
+const std::vector<MassKey>& tower_masses() {
+  static const std::vector<MassKey> keys = {{"effector", &LoopMasses::platform},
+                                            {"carriages", &LoopMasses::carriage},
+                                            {"rods", &LoopMasses::rod}};
+  return keys;
+}
+
 std::vector<Named> tower_names(int t) {
   return {{"radius", index(t, kRadius)}, {"angle", index(t, kAngle)},
           {"rod", index(t, kRod)},       {"endstop", index(t, kEndstop)},
@@ -116,6 +123,7 @@ Delta read(const Node& node, Problems& problems) {
     read_tower(towers->items[static_cast<size_t>(t)], t, problems, model);
   if (const Node* effector = fields.node("effector")) read_effector(*effector, problems, model);
   if (const Node* tool = fields.node("tool")) read_tool(fields, *tool, problems, model);
+  model.masses = read_masses(fields, tower_masses(), problems);
   fields.refuse_unknown();
   return model;
 }
@@ -134,6 +142,7 @@ Node write(const Delta& model) {
     node.set("tool", write_named(model, tool_names()));
   else if (const Eigen::VectorXd tool = model.value.segment<3>(kTool); !tool.isZero(0))
     node.set("tool", Node::of(tool));
+  write_masses(model.masses, tower_masses(), node);
   return node;
 }
 

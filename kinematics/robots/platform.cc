@@ -98,12 +98,22 @@ Closure Platform::locate(const ConfigurationBlock& block, const Eigen::VectorXd&
   X.resize(block.lanes());
   if (psi) psi->setZero(6 * block.lanes(), static_cast<Eigen::Index>(parameters().size()));
   ClosedChains before;
+  bool astray = false;
+  if (block.start && body != Body::first_link) {
+    before.X = *block.start;
+    astray = !belongs(chains(xi, row_of(block.q, 0), row_of(block.added, 0)), *block.start, mode_);
+  }
   for (int lane = 0; lane < block.lanes(); ++lane) {
     X.rotation.row(lane) = Eigen::Matrix3d::Identity().reshaped().transpose().array();
     X.position.row(lane).setZero();
     if (body == Body::first_link) continue;
+    if (astray) {
+      closure.leave_open(lane,
+                         "no location of the platform: the start is of another assembly mode");
+      continue;
+    }
     const Chains of = chains(xi, row_of(block.q, lane), row_of(block.added, lane));
-    const ClosedChains at = closed(block, xi, lane, lane > 0 ? &before : nullptr);
+    const ClosedChains at = closed(block, xi, lane, lane > 0 || block.start ? &before : nullptr);
     before = at;
     if (!at.open.empty()) {
       closure.leave_open(lane, at.open);

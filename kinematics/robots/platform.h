@@ -58,6 +58,9 @@ ClosedChains at_pose(const Chains& chains, const Location& X);
 /// do, and steps go straight.
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode);
 
+/// `start` is on the mode's side of the singular places, and not turned over.
+bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mode);
+
 /// A pose to look for the home from: turned so that the chains are short, above the base (below
 /// with a negative `side`) by what the mean length leaves.
 Location pose_between(const Chains& chains, double side);

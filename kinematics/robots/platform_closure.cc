@@ -81,6 +81,11 @@ ClosedChains at_pose(const Chains& chains, const Location& X) {
   return at;
 }
 
+bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mode) {
+  return at_pose(chains, start).volume * mode.volume > 0 &&
+         log_rotation(start.R * mode.home.R.transpose()).norm() <= kFarthestTurn;
+}
+
 namespace {
 
 ClosedChains newton(const Chains& chains, const Location& start, const AssemblyMode* mode) {

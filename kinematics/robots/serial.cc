@@ -9,6 +9,7 @@
 #include "kinematics/expects.h"
 #include "kinematics/kernels/kernels.h"
 #include "kinematics/robots/serial_chain.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
@@ -23,6 +24,15 @@ Eigen::VectorXd figures(const Frame& frame) {
   return (Eigen::VectorXd(6) << frame.nominal.head<3>(), frame.rpy_nominal).finished();
 }
 
+/// Centres of mass of a chain's links.
+PointMasses weights(const Mechanics& mechanics) {
+  PointMasses all{mechanics.gravity, {}};
+  for (size_t k = 0; k < mechanics.links.size(); ++k)
+    if (const Link& link = mechanics.links[k]; link.mass > 0.0)
+      all.points.push_back({link.frame, link_body(static_cast<int>(k)), link.com, *link.mass});
+  return all;
+}
+
 class SerialRobot final : public Robot, public Statics, public RobotText {
  public:
   explicit SerialRobot(Model model)
@@ -31,7 +41,9 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
         first_(serial::first_parameters(model_)),
         parameters_(serial::parameters(model_)),
         preference_(serial::preference(model_)),
-        mechanics_(serial::mechanics(model_)) {
+        mechanics_(serial::mechanics(model_)),
+        weights_(weights(mechanics_)) {
+    for (const Frame& frame : model_.frames) links_.push_back(frame.name);
     for (const int f : moving_) {
       const Frame& frame = model_.frames[f];
       joints_.push_back({frame.name,
@@ -75,7 +87,9 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
           J.col(j) += coupling_(k, j) * xi[gear_index(j)] * psi.col(variable_parameter(k));
   }
 
+  const std::vector<std::string>& links() const override { return links_; }
   const Statics* statics() const override { return this; }
+  const PointMasses* masses() const override { return &weights_; }
   const Mechanics& mechanics() const override { return mechanics_; }
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::VectorXd& q) const override {
     return serial::frame_poses(model_, q);
@@ -108,6 +122,8 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
   int joint_count() const { return static_cast<int>(moving_.size()); }
   int last_frame(Body body) const {
     if (body == Body::endpoint) return frame_count() - 1;
+    if (body >= Body::first_named)
+      return static_cast<int>(body) - static_cast<int>(Body::first_named);
     return body == Body::last_link ? moving_.back() : moving_.front();
   }
   int gear_index(int joint) const { return first_.back() + joint; }
@@ -133,6 +149,8 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
   Mechanics mechanics_;
+  PointMasses weights_;
+  std::vector<std::string> links_;
   std::vector<Joint> joints_;
   Eigen::MatrixXd coupling_;
 };

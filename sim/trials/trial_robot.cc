@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "kinematics/make_robot.h"
 #include "sim/trials/trial_world.h"
 
 namespace selfcal {

@@ -6,6 +6,7 @@
 #include "constraints/planning/detmax.h"
 #include "kinematics/expects.h"
 #include "kinematics/inverse/compensation_stream.h"
+#include "kinematics/make_robot.h"
 #include "tests/bench/tasks.h"
 
 namespace selfcal::bench {

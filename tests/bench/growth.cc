@@ -5,6 +5,7 @@
 #include "constraints/estimation/identification.h"
 #include "constraints/sampling/configurations.h"
 #include "kinematics/expects.h"
+#include "kinematics/make_robot.h"
 #include "tests/bench/tasks.h"
 
 namespace selfcal::bench {

@@ -8,6 +8,7 @@
 #include "constraints/estimation/identification.h"
 #include "constraints/identifiability/excitation.h"
 #include "constraints/sampling/configurations.h"
+#include "kinematics/make_robot.h"
 #include "tests/contracts/method_case.h"
 
 namespace selfcal {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "kinematics/corrected_robot.h"
+#include "kinematics/make_robot.h"
 #include "tests/contracts/arm.h"
 #include "tests/contracts/path_case.h"
 #include "tests/kinematics/kind_examples.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "diagnosis/findings.h"
+#include "kinematics/make_robot.h"
 #include "kinematics/rotation.h"
 #include "tests/diagnosis/two_sessions.h"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "io/files/yaml.h"
+#include "kinematics/make_robot.h"
 
 namespace selfcal {
 namespace {

@@ -65,6 +65,29 @@ TEST(JointClearanceByHand, GoesToTheSideThatTheLoadPullsTo) {
   expect_near(moved(kDelta, heavy, loaded(0, 0, 10)).p, 22.222e-6, 0, 8.333e-6);
 }
 
+const char* const kDeltaWeighs = "masses: {effector: 0.3, carriages: 0.2, rods: 0.12}\n";
+
+TEST(JointComplianceByHand, LetsACarriageSinkUnderItsShareOfADelta) {
+  // 0.2 kg, half of its rods and a third of the effector with the other halves: 0.2 + 0.06 + 0.16
+  // kg, 4.1202 N, 41.202 um of 1e-5 m/N. When carriage 1 sinks by s, -0.6 dx - 0.8 (dz + s) = 0 and
+  // 0.6 dx = 1.6 dz: dx = -s / 1.125, dz = -s / 3.
+  const char* const soft = "[{effect: joint_compliance, at: tower1, c: 1.0e-5}]";
+  expect_near(moved(std::string(kDelta) + kDeltaWeighs, soft, level()).p, -36.624e-6, 0, -13.734e-6,
+              1e-8);
+}
+
+TEST(BacklashByHand, LiesWhereTheWeightOfADeltaPutsIt) {
+  const char* const loose = "[{effect: backlash, at: tower1, by: load, play: 9.0e-5}]";
+  expect_near(moved(std::string(kDelta) + kDeltaWeighs, loose, level()).p, -40e-6, 0, -15e-6, 1e-8);
+}
+
+TEST(LegComplianceByHand, StretchesARodByWhatTheFileSaysHangsOnIt) {
+  // The effector and three half rods, 0.48 kg: 4.7088 N / 2.4 = 1.962 N, 19.62 um.
+  const Moved hung = moved(std::string(kDelta) + kDeltaWeighs,
+                           "[{effect: leg_compliance, at: tower1, c: 1.0e-5}]", level());
+  expect_near(hung.p, -21.8e-6, 0, -8.175e-6);
+}
+
 /// Joints on circles of 0.6 cos 40 and 0.3 m, pairs 20 degrees apart in the base and 100 in the
 /// platform: chain i leads from base to platform over 0.3 m across, so that one of 0.5 m rises, or
 /// hangs, by 0.4 m. Together they turn nothing and shift nothing to a side; a change of all by dl
@@ -125,6 +148,26 @@ TEST(LegComplianceByHand, LetsAPlatformSinkOnItsLegsAndFromItsLinks) {
   const Moved hangs = moved(hanging(), of_all("chain", soft), of_six(-48));
   expect_near(hangs.p, 0, 0, -125e-6, 2e-7);
   EXPECT_LT(hangs.turn.norm(), 1e-12);
+}
+
+TEST(LegComplianceByHand, LetsAPlatformSinkUnderItselfAndItsLegs) {
+  // All legs longer by dl: the platform rises by 1.25 dl, their directions by 0.9 dl, so that a
+  // piston's centre rises by 1.25 - 0.1 x 0.9 = 1.16 and a cylinder's by 0.2 x 0.9 = 0.18. In each
+  // leg 9.81 (3 x 1.25 / 6 + 1.16 + 2 x 0.18) = 21.04245 N, 210.4245 um, 263.0306 um of height.
+  const Moved stands = moved(standing() +
+                                 "masses: {platform: 3, cylinders: 2, cylinder_com: 0.2, pistons: "
+                                 "1, piston_com: 0.1}\n",
+                             of_all("leg", "effect: leg_compliance, c: 1.0e-5"), of_six(0));
+  expect_near(stands.p, 0, 0, -263.0306e-6, 1e-9);
+  // Half of each link and the platform hang on the links: 9.81 x 6 / 6 / 0.8 = 12.2625 N.
+  const std::string weighs = "masses: {platform: 3, carriages: 2, links: 1}\n";
+  const Moved hangs =
+      moved(hanging() + weighs, of_all("chain", "effect: leg_compliance, c: 1.0e-5"), of_six(0));
+  expect_near(hangs.p, 0, 0, -153.28125e-6, 1e-9);
+  // A carriage carries itself, its link and a sixth of the platform: 9.81 x 3.5 = 34.335 N.
+  const Moved sags =
+      moved(hanging() + weighs, of_all("chain", "effect: joint_compliance, c: 1.0e-5"), of_six(0));
+  expect_near(sags.p, 0, 0, -343.35e-6, 1e-9);
 }
 
 TEST(LegThermalGrowthByHand, RaisesAPlatformOnItsLegsAndLowersItOnItsLinks) {

@@ -21,6 +21,7 @@ struct EffectCase {
   const char* title;
   const char* entry;
   const char* kind = "serial";
+  bool heavy = false;  ///< of a machine with loops: its file says what it weighs
 };
 
 inline std::vector<EffectCase> effect_cases() {
@@ -56,6 +57,10 @@ inline std::vector<EffectCase> effect_cases() {
        "linear-delta"},
       {"JointClearance", "effect: joint_clearance, at: JOINT", "gough-stewart"},
       {"JointClearanceUnderAWeight", "effect: joint_clearance, at: JOINT, mass: 4", "hexaslide"},
+      {"LegComplianceOfAHeavyPlatform", "effect: leg_compliance, at: JOINT", "gough-stewart", true},
+      {"JointComplianceOfADelta", "effect: joint_compliance, at: JOINT", "linear-delta", true},
+      {"JointComplianceOfAHexaSlide", "effect: joint_compliance, at: JOINT", "hexaslide", true},
+      {"BacklashByLoadOfADelta", "effect: backlash, at: JOINT, by: load", "linear-delta", true},
   };
 }
 
@@ -137,7 +142,8 @@ inline ConfigurationBlock closing_block(const Robot& robot, std::mt19937_64& ran
 
 inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& random) {
   const bool legs = std::string(each.kind) != "serial";
-  EffectInstance made{legs ? robot_of(kind_examples().at(each.kind)) : heavy_robot(random),
+  const std::string weight = each.heavy ? kind_masses().at(each.kind) : "";
+  EffectInstance made{legs ? robot_of(kind_examples().at(each.kind) + weight) : heavy_robot(random),
                       random_site(random),
                       {},
                       {},

@@ -1,6 +1,7 @@
 // Effects in a robot file: there and back, what they say of themselves, what is refused at which
 // line.
 #include "io/files/robot_file.h"
+#include "kinematics/make_robot.h"
 #include "tests/effects/effect_case.h"
 
 namespace selfcal {

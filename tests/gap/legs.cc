@@ -18,7 +18,8 @@ struct LegCase {
   const char* title;
   const char* kind;
   const char* effect;
-  const char* entry;  ///< empty: nothing is the matter
+  const char* entry;   ///< empty: nothing is the matter
+  bool heavy = false;  ///< its file says what it weighs
 };
 
 /// Rows of a tracker on the tool, 20 um a coordinate: loads and temperatures of all kinds, on a
@@ -70,7 +71,8 @@ class LegCauses : public testing::TestWithParam<LegCase> {};
 
 TEST_P(LegCauses, AreNamedWithTheirLeg) {
   const LegCase& each = GetParam();
-  const std::shared_ptr<const Robot> robot = robot_of(kind_examples().at(each.kind));
+  const std::shared_ptr<const Robot> robot = robot_of(
+      kind_examples().at(each.kind) + (each.heavy ? kind_masses().at(each.kind) : std::string()));
   const Diagnosis diagnosis = diagnose(robot, tracked(robot, each.entry));
   ASSERT_EQ(diagnosis.problem, "");
   std::string words = diagnosis.verdict.effect;
@@ -111,7 +113,13 @@ INSTANTIATE_TEST_SUITE_P(
                             "effect: leg_thermal_growth, at: tower2, alpha: 3.0e-5"},
                     LegCase{"DeltaLoose", "linear-delta", "joint_clearance",
                             "effect: joint_clearance, at: tower2, play: 1.0e-4"},
-                    LegCase{"DeltaSound", "linear-delta", "none", ""}),
+                    LegCase{"DeltaSound", "linear-delta", "none", ""},
+                    LegCase{"DeltaDriveSoft", "linear-delta", "joint_compliance",
+                            "effect: joint_compliance, at: tower2, c: 1.5e-6", true},
+                    LegCase{"SliderDriveSoft", "hexaslide", "joint_compliance",
+                            "effect: joint_compliance, at: chain2, c: 1.5e-6", true},
+                    LegCase{"HeavyDeltaSoft", "linear-delta", "leg_compliance",
+                            "effect: leg_compliance, at: tower2, c: 1.5e-6", true}),
     [](const auto& made) { return std::string(made.param.title); });
 
 /// An effect that a leg may have, of a size drawn evenly by its logarithm.

@@ -52,4 +52,18 @@ chains:
   return examples;
 }
 
+/// What the file of each says of its weight; to be added to the example.
+inline const std::map<std::string_view, std::string>& kind_masses() {
+  static const std::map<std::string_view, std::string> masses = {
+      {"serial", "mass: 40\npayload: 5\n"},
+      {"linear-delta",
+       "gravity: [0.3, 0, -9.8]\n"
+       "masses: {effector: 0.2, com: [0, 0.01, -0.02], carriages: 0.15, rods: 0.06}\n"},
+      {"gough-stewart",
+       "masses: {platform: 15, com: [0.01, 0, 0.05], cylinders: 4, cylinder_com: 0.2, pistons: 2, "
+       "piston_com: 0.15}\n"},
+      {"hexaslide", "masses: {platform: 8, com: [0, 0.01, -0.03], carriages: 2, links: 1}\n"}};
+  return masses;
+}
+
 }  // namespace selfcal

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "kinematics/corrected_robot.h"
+#include "kinematics/make_robot.h"
 #include "kinematics/rotation.h"
+#include "kinematics/statics.h"
 #include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
 
@@ -20,14 +23,6 @@ constexpr double kKindStep = 1e-6;
 // 1e-16 m / step, times 3: 3e-10.
 constexpr double kKindTolerance = 1e-7;
 
-/// Every body that a robot can be asked for.
-std::vector<Body> bodies(const Robot& robot) {
-  std::vector<Body> all = {Body::endpoint, Body::last_link, Body::first_link};
-  for (const PassiveJoint& joint : robot.passive_joints())
-    all.push_back(body_behind(joint.chain, joint.kind));
-  return all;
-}
-
 std::vector<std::string> kinds() {
   const std::vector<std::string_view> all = robot_kinds();
   return {all.begin(), all.end()};
@@ -38,7 +33,7 @@ class RobotKind : public testing::TestWithParam<std::string> {
   void SetUp() override {
     const auto found = kind_examples().find(GetParam());
     ASSERT_NE(found, kind_examples().end()) << "give an example of it in kind_examples.h";
-    robot_ = robot_of(found->second);
+    robot_ = robot_of(found->second + kind_masses().at(GetParam()));
     ASSERT_TRUE(robot_);
     block_ = drawn(1);
     xi_ = values(*robot_);
@@ -94,7 +89,7 @@ TEST_P(RobotKind, DrawsConfigurationsWithinItsLimitsAtWhichItsLoopsClose) {
 }
 
 TEST_P(RobotKind, HasForEveryParameterTheColumnThatDifferencesGive) {
-  for (const Body body : bodies(*robot_)) {
+  for (const auto& [name, body] : named_bodies(*robot_)) {
     Locations X;
     PsiBlock psi;
     robot_->locate(block_, xi_, body, X, &psi);
@@ -107,13 +102,13 @@ TEST_P(RobotKind, HasForEveryParameterTheColumnThatDifferencesGive) {
       const Eigen::VectorXd column =
           kind_difference(located(block_, plus, body), located(block_, minus, body));
       EXPECT_LT((psi.col(p) - column).cwiseAbs().maxCoeff(), kKindTolerance)
-          << robot_->parameters()[p].name << " of body " << static_cast<int>(body);
+          << robot_->parameters()[p].name << " of " << name;
     }
   }
 }
 
 TEST_P(RobotKind, HasForEveryReadingTheColumnThatDifferencesGive) {
-  for (const Body body : bodies(*robot_)) {
+  for (const auto& [name, body] : named_bodies(*robot_)) {
     Locations X;
     PsiBlock psi;
     Eigen::MatrixXd J;
@@ -127,8 +122,114 @@ TEST_P(RobotKind, HasForEveryReadingTheColumnThatDifferencesGive) {
       const Eigen::VectorXd column =
           kind_difference(located(plus, xi_, body), located(minus, xi_, body));
       EXPECT_LT((J.col(j) - column).cwiseAbs().maxCoeff(), kKindTolerance)
-          << robot_->joints()[j].name << " of body " << static_cast<int>(body);
+          << robot_->joints()[j].name << " of " << name;
     }
+  }
+}
+
+TEST_P(RobotKind, FindsEveryBodyByItsName) {
+  std::set<std::string> names;
+  for (const auto& [name, body] : named_bodies(*robot_)) {
+    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_EQ(find_body(*robot_, name), body) << name;
+    EXPECT_TRUE(has_body(*robot_, body)) << name;
+  }
+  EXPECT_GE(names.size(), 6u);  // every kind has some beside endpoint, last and first link
+  EXPECT_EQ(find_body(*robot_, "nowhere"), std::nullopt);
+}
+
+TEST_P(RobotKind, MovesAPointOfABodyWithIt) {
+  const Eigen::Vector3d at(0.1, -0.2, 0.3);
+  for (const auto& [name, body] : named_bodies(*robot_)) {
+    const auto place = [&](const Eigen::VectorXd& xi, PsiBlock* psi) {
+      Locations X;
+      EXPECT_TRUE(locate_point(*robot_, block_, xi, body, at, X, psi).closes());
+      return X;
+    };
+    PsiBlock psi;
+    const Locations origin = located(block_, xi_, body), there = place(xi_, &psi);
+    for (int lane = 0; lane < kLanes; ++lane)
+      EXPECT_LT((origin.p(lane) + origin.R(lane) * at - there.p(lane)).norm(), 1e-15) << name;
+    for (Eigen::Index p = 0; p < xi_.size(); ++p) {
+      Eigen::VectorXd plus = xi_, minus = xi_;
+      plus[p] += kKindStep;
+      minus[p] -= kKindStep;
+      const Eigen::VectorXd column = kind_difference(place(plus, nullptr), place(minus, nullptr));
+      EXPECT_LT((psi.col(p) - column).cwiseAbs().maxCoeff(), kKindTolerance)
+          << robot_->parameters()[p].name << " of " << name;
+    }
+  }
+}
+
+/// Height that what weighs has lost, times its weight (N m), by lane.
+Eigen::VectorXd work_done(const Robot& robot, const ConfigurationBlock& block,
+                          const Eigen::VectorXd& xi) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(kLanes);
+  for (const PointMass& each : robot.masses()->points) {
+    Locations X;
+    locate_point(robot, block, xi, each.body, each.at, X, nullptr);
+    for (int lane = 0; lane < kLanes; ++lane)
+      work[lane] += each.mass * robot.masses()->gravity.dot(X.p(lane));
+  }
+  return work;
+}
+
+TEST_P(RobotKind, LoadsItsJointsByAllThatItsFileSaysWeighs) {
+  ASSERT_TRUE(weighs(*robot_));
+  const Eigen::MatrixXd work = work_of_weights(*robot_, block_, xi_);
+  for (size_t j = 0; j < robot_->joints().size(); ++j) {
+    ConfigurationBlock plus = block_, minus = block_;
+    plus.added.setZero(kLanes, block_.q.cols());
+    minus.added.setZero(kLanes, block_.q.cols());
+    plus.added.col(static_cast<Eigen::Index>(j)) += kKindStep;
+    minus.added.col(static_cast<Eigen::Index>(j)) -= kKindStep;
+    const Eigen::VectorXd by_difference =
+        (work_done(*robot_, plus, xi_) - work_done(*robot_, minus, xi_)) / (2 * kKindStep);
+    const Eigen::VectorXd torque = work * robot_->variable_change(xi_, static_cast<int>(j));
+    EXPECT_GT(torque.cwiseAbs().maxCoeff(), 0.1) << robot_->joints()[j].name;  // N, N m
+    // The tolerance of Psi, times the weight of some 30 kg.
+    EXPECT_LT((torque - by_difference).cwiseAbs().maxCoeff(), 300 * kKindTolerance)
+        << robot_->joints()[j].name;
+    if (!robot_->statics()) continue;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Eigen::VectorXd q = block_.q.row(lane).matrix().transpose();
+      EXPECT_NEAR(torque[lane],
+                  joint_torque(robot_->statics()->mechanics(), robot_->statics()->link_poses(q), {},
+                               static_cast<int>(j)),
+                  1e-12 * work.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST_P(RobotKind, ClosesItsLoopsFromAGivenStart) {
+  const Locations there = located(block_, xi_, Body::last_link);
+  ConfigurationBlock given = block_;
+  given.start = there.at(0);
+  given.start->p.z() -= 1e-3;
+  const Locations again = located(given, xi_, Body::last_link);
+  // Newton's steps end at 1e-13 of a chain of a metre, of legs that stand steeply.
+  EXPECT_LT((again.position - there.position).abs().maxCoeff(), 1e-11);
+}
+
+TEST_P(RobotKind, LeavesItsLoopsOpenFromAStartOfAnotherAssemblyMode) {
+  if (!robot_->has_loops()) return;
+  ConfigurationBlock given = block_;
+  given.start = located(block_, xi_, Body::last_link).at(0);
+  // The other side of the carriages, or of the base.
+  given.start->p.z() += 2;
+  if (given.start->p.z() > 1.5 && robot_->home() && robot_->home()->p.z() > 0)
+    given.start->p.z() = -given.start->p.z() + 1;
+  Problems problems;
+  const std::shared_ptr<const Robot> robot = std::move(robot_);
+  const auto corrected = correct(robot,
+                                 {parsed("{effect: zero_shift, at: " + robot->joints()[0].name +
+                                         ", moment: 1, step: 1.0e-4}")},
+                                 {}, problems);
+  for (const Robot* each : {robot.get(), static_cast<const Robot*>(corrected.get())}) {
+    Locations X;
+    const Closure closure = each->locate(given, values(*each), Body::endpoint, X, nullptr);
+    EXPECT_EQ(closure.open, ~0U);
+    EXPECT_THAT(closure.why.front(), testing::HasSubstr("the start is of another assembly mode"));
   }
 }
 
@@ -211,8 +312,13 @@ TEST_P(RobotKind, HasEveryEffectOrSaysWhyNot) {
       entry.set("waves", Node::of(std::vector<double>{1}));
     Problems problems;
     const auto made = make_effect(entry, *robot_, {}, problems);
-    const bool asks_for_statics = std::string(effect) != "transmission_error";
-    EXPECT_EQ(made != nullptr, robot_->statics() || !asks_for_statics) << effect;
+    const bool asks_for_links = std::string(effect) == "link_compliance";
+    EXPECT_EQ(made != nullptr, robot_->statics() || !asks_for_links) << effect;
+    Problems of_weightless;
+    const auto weightless = robot_of(kind_examples().at(GetParam()));
+    EXPECT_EQ(make_effect(entry, *weightless, {}, of_weightless) != nullptr,
+              robot_->statics() || std::string(effect) == "transmission_error")
+        << effect;
     if (!made) {
       EXPECT_THAT(problems.list.front(), testing::HasSubstr(std::string(kNoStatics)));
     }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "kinematics/make_robot.h"
 #include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
 

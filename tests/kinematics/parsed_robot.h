@@ -6,6 +6,7 @@
 #include <string>
 
 #include "io/files/yaml.h"
+#include "kinematics/make_robot.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {

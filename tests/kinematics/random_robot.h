@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/make_robot.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "kinematics/make_robot.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/kinematics/random_robot.h"
 

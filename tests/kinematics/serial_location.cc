@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "kinematics/make_robot.h"
 #include "kinematics/robots/serial.h"
 #include "tests/kinematics/random_robot.h"
 

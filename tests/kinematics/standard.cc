@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinematics/make_robot.h"
 #include "kinematics/rotation.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/kinematics/random_robot.h"

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "kinematics/make_robot.h"
 #include "kinematics/rotation.h"
 #include "tests/kinematics/parsed_robot.h"
 #include "tests/kinematics/random_robot.h"

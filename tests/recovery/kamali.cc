@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "io/files/robot_file.h"
+#include "kinematics/make_robot.h"
 #include "tests/recovery/kamali_plan.h"
 
 namespace selfcal::recovery {

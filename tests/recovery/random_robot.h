@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "kinematics/make_robot.h"
 #include "kinematics/robot.h"
 
 namespace selfcal::recovery {

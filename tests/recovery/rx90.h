@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/yaml.h"
+#include "kinematics/make_robot.h"
 #include "tests/recovery/session.h"
 
 namespace selfcal::recovery {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "constraints/estimation/identification.h"
+#include "kinematics/make_robot.h"
 #include "tests/sim/simulated_robot.h"
 
 namespace selfcal {

@@ -11,6 +11,7 @@
 #include "io/models/delta_firmware.h"
 #include "io/models/ur_kinematics.h"
 #include "kinematics/inverse/controller_fit.h"
+#include "kinematics/make_robot.h"
 
 namespace selfcal {
 namespace {

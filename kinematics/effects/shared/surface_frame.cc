@@ -1,4 +1,4 @@
-#include "kinematics/effects/surface_frame.h"
+#include "kinematics/effects/shared/surface_frame.h"
 
 namespace selfcal {
 

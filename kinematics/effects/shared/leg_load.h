@@ -1,10 +1,12 @@
 // What a leg bears: with T the twist of the tip per length of the leg and W the force and moment on
 // the tip, the legs hold it in balance where sum f dl + W . dX = 0 for every motion, f the push of
-// a leg along itself. So f = -T . W, positive in compression.
+// a leg along itself. So f = -T . W, positive in compression. What the file says weighs (platform,
+// links, carriages) adds its own work per length of the leg.
 #pragma once
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 
@@ -15,12 +17,12 @@ inline double leg_mass(const EffectPlan& plan, double standard) {
   return mass;
 }
 
-/// Pull on leg `j` along itself (N, negative in compression) by the row's wrench and by `mass` at
-/// the tip, gravity along the world's -z.
+/// Pull on leg `j` along itself (N, negative in compression) by the row's wrench, by what weighs
+/// and by `mass` more at the tip.
 inline double leg_pull(const Circumstances& at, int j, double mass) {
-  constexpr double kGravity = 9.81;  // m/s^2
-  const Eigen::Vector3d force = at.wrench.force - mass * kGravity * Eigen::Vector3d::UnitZ();
-  return at.legs.col(j).head<3>().dot(force) + at.legs.col(j).tail<3>().dot(at.wrench.moment);
+  const Eigen::Vector3d force = at.wrench.force + mass * at.gravity;
+  return at.legs.col(j).head<3>().dot(force) + at.legs.col(j).tail<3>().dot(at.wrench.moment) +
+         at.leg_weights[j];
 }
 
 }  // namespace selfcal

@@ -1,4 +1,4 @@
-#include "diagnosis/evidence/effect_shape.h"
+#include "kinematics/effect_shape.h"
 
 namespace selfcal {
 
