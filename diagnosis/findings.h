@@ -11,6 +11,7 @@
 #include "constraints/methods/observations.h"
 #include "constraints/solution.h"
 #include "diagnosis/evidence/search.h"
+#include "diagnosis/options.h"
 #include "diagnosis/validation/correction.h"
 #include "diagnosis/validation/gap.h"
 
@@ -20,20 +21,6 @@ namespace selfcal {
 struct PossibleRows {
   Observations rows;              ///< of the data set's sets
   std::vector<std::string> what;  ///< by row, in a few words: "in another posture"
-};
-
-struct DiagnosisOptions {
-  SearchRule search;
-  /// A cause is named when `none` is less probable than the first of these, and noise looks as much
-  /// like a cause less often than the second.
-  double name_below_none = 0.1, name_below_p = 0.025;
-  int resamples = 199;  ///< of the null distribution
-  int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
-  double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
-  unsigned long long seed = 1;
-  /// Of these the further rows are chosen; null: of what the robot could do on paper.
-  std::shared_ptr<const PossibleRows> possible = {};
-  int most_further = 20;  ///< of them at most
 };
 
 struct NamedValue {

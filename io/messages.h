@@ -71,6 +71,13 @@ struct HealthMessage {
   std::vector<std::pair<std::string, std::string>> values;  ///< the unit stands in the key
 };
 
+/// All lines of health of one moment.
+struct HealthReport {
+  std::int64_t unix_ms = 0;
+  std::string hardware_id;
+  std::vector<HealthMessage> lines;
+};
+
 struct CommandMessage {
   std::string id;    ///< chosen by the sender, repeated in the reply
   std::string verb;  ///< "start", "abort": one of those that the service takes

@@ -120,6 +120,13 @@ struct MotionRequest {
   double speed = 1;       ///< largest joint speed (rad/s or m/s)
 };
 
+/// What a robot is asked: a move, or to stop.
+struct RobotRequest {
+  bool stop = false;
+  std::string why;     ///< of a stop
+  MotionRequest move;  ///< of a move
+};
+
 struct MotionReply {
   enum class Outcome : std::uint8_t { accepted, done, stopped, refused };
   std::uint64_t id = 0;

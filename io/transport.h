@@ -2,13 +2,10 @@
 // in, and the robot's end of a transport, for a robot that is played.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "io/dds/participant.h"
-#include "io/dds/time_mapping.h"
 #include "io/ports.h"
 #include "io/wakeup.h"
 
@@ -16,20 +13,23 @@ namespace selfcal {
 
 /// Whose clock stamps what comes in. Only stamps of one clock say where the joints were at an edge.
 enum class StampedBy : std::uint8_t {
-  sender,  ///< the robot's, in every message; TimeMapping brings it to ours
+  sender,  ///< the robot's, in every message; its transport brings it to ours
   kernel,  ///< this computer's: CLOCK_MONOTONIC, taken as the frame or the edge comes in
 };
 
-/// What a port is opened with; all of it outlives the port.
+/// What the transports over DDS are opened with beside the rest: io/dds/context.h, which no other
+/// transport includes.
+struct DdsContext;
+
+/// What a port is opened with; the wakeup outlives the port.
 struct PortContext {
-  const DdsParticipant& participant;
+  const DdsContext& dds;
   Wakeup& wakeup;
-  std::shared_ptr<TimeMapping> mapping = std::make_shared<TimeMapping>();  ///< of the one sender
 };
 
 /// What a robot's end of a transport is opened with.
 struct RobotContext {
-  const DdsParticipant& participant;
+  const DdsContext& dds;
   Wakeup& wakeup;
   std::string trigger_pull;  ///< gpio-sim's file that drives the trigger line, or empty
 };

@@ -1,7 +1,8 @@
 // What keeps a row from being exact: noise, false triggers, compliance, encoder steps.
 #pragma once
 
-#include "sim/data_set_maker.h"
+#include "sim/scenario.h"
+#include "sim/simulated.h"
 #include "sim/true_robot.h"
 
 namespace selfcal {

@@ -1,7 +1,8 @@
 // Stages of making rows: exact configurations, their repeats, and which of them are to judge.
 #pragma once
 
-#include "sim/data_set_maker.h"
+#include "sim/scenario.h"
+#include "sim/simulated.h"
 
 namespace selfcal {
 

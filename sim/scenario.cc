@@ -1,8 +1,6 @@
 // The scenario as a whole; the entries of its sets are read in scenario_set.cc.
 #include "sim/scenario.h"
 
-#include "sim/scenario_fields.h"
-
 namespace selfcal {
 namespace {
 
@@ -38,16 +36,6 @@ void read_set_scenarios(Fields& fields, Scenario& scenario, Problems& problems) 
 }
 
 }  // namespace
-
-std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems) {
-  std::vector<NamedNumber> list;
-  const Node* node = fields.node(key);
-  if (!node) return list;
-  Fields inner(*node, fields.what() + " " + std::string(key), problems);
-  for (std::size_t i = 0; i < node->keys.size(); ++i)
-    list.push_back({node->keys[i], inner.number(node->keys[i]), node->items[i].place});
-  return list;
-}
 
 Scenario read_scenario(const Node& node, Problems& problems) {
   Fields fields(node, "scenario", problems);

@@ -54,15 +54,9 @@
 #include "kinematics/by_part.h"
 #include "kinematics/description.h"
 #include "sim/machine_scenario.h"
+#include "sim/scenario_fields.h"
 
 namespace selfcal {
-
-/// `name: value` of a mapping, with its place for messages.
-struct NamedNumber {
-  std::string name;
-  double value = 0;
-  Place place;
-};
 
 struct Errors {
   ByPart sigma;
@@ -94,6 +88,9 @@ struct SetScenario {
   std::vector<std::string> locked;    ///< names of joints
   std::optional<Place> locked_place;  ///< where they are named
 };
+
+/// Reads one entry of `sets`.
+SetScenario read_set_scenario(const std::string& name, const Node& node, Problems& problems);
 
 struct Scenario {
   std::string robot;

@@ -5,10 +5,16 @@
 #include <string_view>
 #include <vector>
 
-#include "constraints/sampling/cell_geometry.h"
-#include "sim/scenario.h"
+#include "kinematics/description.h"
 
 namespace selfcal {
+
+/// `name: value` of a mapping, with its place for messages.
+struct NamedNumber {
+  std::string name;
+  double value = 0;
+  Place place;
+};
 
 /// The entries of a mapping of numbers; empty when missing.
 std::vector<NamedNumber> named_numbers(Fields& fields, std::string_view key, Problems& problems);
@@ -22,8 +28,5 @@ T read_whole(const Node& node, const std::string& what, Problems& problems, Fill
   fields.refuse_unknown();
   return result;
 }
-
-/// Reads one entry of `sets`.
-SetScenario read_set_scenario(const std::string& name, const Node& node, Problems& problems);
 
 }  // namespace selfcal

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "constraints/sampling/cell_geometry.h"
-#include "sim/scenario_fields.h"
+#include "sim/scenario.h"
 
 namespace selfcal {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/commands/subcommand.h"
 #include "app/commands/support/signals.h"
 #include "app/service/config.h"
-#include "io/dds/time_mapping.h"
+#include "io/dds/context.h"
 #include "io/files/yaml.h"
 #include "io/triggers.h"
 
@@ -50,18 +50,19 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
   if (!service) return tl::unexpected(service.error());
   auto action = TrajectoryAction::open(*participant, arguments.action, config.joint_names, wakeup);
   if (!action) return tl::unexpected(action.error());
-  auto encoders = config.encoders->open({*participant, wakeup});
+  const DdsContext dds{*participant};
+  auto encoders = config.encoders->open({dds, wakeup});
   if (!encoders) return tl::unexpected(encoders.error());
   std::unique_ptr<TouchRelay> touch;
   std::unique_ptr<LineRelay> line;
   std::string from = "not its own";
   if (!arguments.touch.empty() || !arguments.line.empty()) {
-    auto trigger = config.trigger->open_sender({*participant, wakeup, {}});
+    auto trigger = config.trigger->open_sender({dds, wakeup, {}});
     if (!trigger) return tl::unexpected(trigger.error());
     if (!arguments.line.empty()) {
       const auto kind = line_kind(arguments.line, config.id);
       if (!kind) return tl::unexpected(kind.error());
-      auto edges = (*kind)->open({*participant, wakeup});
+      auto edges = (*kind)->open({dds, wakeup});
       if (!edges) return tl::unexpected(edges.error());
       line = std::make_unique<LineRelay>(*std::move(edges), *std::move(trigger));
       from = "from " + (*kind)->source();

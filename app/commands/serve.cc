@@ -18,6 +18,7 @@
 #include "app/service/pose_answers.h"
 #include "app/service/service.h"
 #include "io/clock.h"
+#include "io/dds/context.h"
 #include "io/dds/messenger.h"
 #include "io/dds/motion.h"
 #include "io/dds/names.h"
@@ -73,10 +74,10 @@ struct RobotPorts {
   static Result<RobotPorts> open(const DdsParticipant& participant, const Config& config,
                                  Wakeup& wakeup, Wakeup& trigger_wakeup) {
     RobotPorts ports;
-    const auto mapping = std::make_shared<TimeMapping>();
-    auto encoders = config.encoders->open({participant, wakeup, mapping});
+    const DdsContext dds{participant};
+    auto encoders = config.encoders->open({dds, wakeup});
     if (!encoders) return tl::unexpected(encoders.error());
-    auto trigger = config.trigger->open({participant, trigger_wakeup, mapping});
+    auto trigger = config.trigger->open({dds, trigger_wakeup});
     if (!trigger) return tl::unexpected(trigger.error());
     auto motion = DdsMotion::open(participant, config.id, wakeup);
     if (!motion) return tl::unexpected(motion.error());

@@ -1,6 +1,7 @@
 #include "app/web/cell_view.h"
 
 #include "app/report/page/robot_picture.h"
+#include "io/dds/context.h"
 #include "io/files/json_parts.h"
 #include "io/files/robot_file.h"
 
@@ -23,7 +24,8 @@ Result<std::unique_ptr<CellView>> CellView::open(const std::string& config,
   std::unique_ptr<CellView> view(new CellView(*std::move(loaded)));
   // A bus would have to be shared with the service; what the robot sends over DDS is for everybody.
   if (view->config_.encoders->stamped_by() == StampedBy::sender) {
-    auto encoders = view->config_.encoders->open({participant, wakeup});
+    const DdsContext dds{participant};
+    auto encoders = view->config_.encoders->open({dds, wakeup});
     if (!encoders) return tl::unexpected(encoders.error());
     view->encoders_ = *std::move(encoders);
   }

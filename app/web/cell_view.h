@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/service/config.h"
+#include "io/dds/participant.h"
 
 namespace selfcal {
 

@@ -9,7 +9,7 @@
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/rows.h"
 #include "diagnosis/evidence/usual_masses.h"
-#include "diagnosis/findings.h"
+#include "diagnosis/options.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"

@@ -16,21 +16,9 @@
 
 #include "diagnosis/evidence/candidates.h"
 #include "diagnosis/evidence/marginal_likelihood.h"
+#include "diagnosis/options.h"
 
 namespace selfcal {
-
-/// Prior odds, and how far the search goes.
-struct SearchRule {
-  double family_odds = 0.10;  ///< of one family against its absence
-  double unknown_odds = 0.4;  ///< of structure that no known effect explains
-  double another = 0.25;      ///< factor on the odds of each cause after the first
-  double same_family = 0.3;   ///< odds that a cause acts at one more place
-  int extended_singles = 14, extended_pairs = 14;
-  int most_structures = 4;  ///< kept for pairs and triples
-  /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
-  /// its noise from what its own best cause leaves.
-  bool noise_is_known = false;
-};
 
 /// One hypothesis: candidates (ascending) and a structure (0: none).
 struct Hypothesis {

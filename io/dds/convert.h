@@ -9,8 +9,6 @@
 
 #include <selfcal_messages/types.h>
 
-#include "io/dds/clients/monitor.h"
-#include "io/dds/robot_side.h"
 #include "io/messages.h"
 #include "io/ports.h"
 

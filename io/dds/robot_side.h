@@ -17,13 +17,6 @@ struct DdsRobotConfig {
   std::string temperature = "temperature";  ///< name in ROS
 };
 
-/// What a robot is asked: a move, or to stop.
-struct RobotRequest {
-  bool stop = false;
-  std::string why;     ///< of a stop
-  MotionRequest move;  ///< of a move
-};
-
 class DdsRobotSide {
  public:
   /// `wakeup` hears of requests and of services that come and go.

@@ -6,6 +6,7 @@
 
 #include "io/dds/encoders.h"
 
+#include "io/dds/context.h"
 #include "io/dds/senders.h"
 #include "io/encoders.h"
 
@@ -19,10 +20,11 @@ class DdsEncoderKind final : public EncoderKind {
   StampedBy stamped_by() const override { return StampedBy::sender; }
   std::string source() const override { return "topic " + config_.topic; }
   Result<std::unique_ptr<EncoderSource>> open(const PortContext& context) const override {
-    return DdsEncoders::open(context.participant, config_, context.mapping);
+    return DdsEncoders::open(context.dds.participant, config_, context.dds.mapping);
   }
   Result<std::unique_ptr<JointSender>> open_sender(const RobotContext& context) const override {
-    return DdsJointSender::open(context.participant, config_.topic, config_.joints, context.wakeup);
+    return DdsJointSender::open(context.dds.participant, config_.topic, config_.joints,
+                                context.wakeup);
   }
 
  private:

@@ -3,6 +3,7 @@
 //   key              default             range  meaning
 //   topic            selfcal/ID/trigger         selfcal_msgs/StampedBool
 
+#include "io/dds/context.h"
 #include "io/dds/names.h"
 #include "io/dds/senders.h"
 #include "io/dds/trigger.h"
@@ -18,10 +19,10 @@ class DdsTriggerKind final : public TriggerKind {
   StampedBy stamped_by() const override { return StampedBy::sender; }
   std::string source() const override { return "topic " + config_.topic; }
   Result<std::unique_ptr<TouchTrigger>> open(const PortContext& context) const override {
-    return DdsTrigger::open(context.participant, config_, context.mapping, context.wakeup);
+    return DdsTrigger::open(context.dds.participant, config_, context.dds.mapping, context.wakeup);
   }
   Result<std::unique_ptr<TriggerSender>> open_sender(const RobotContext& context) const override {
-    return DdsTriggerSender::open(context.participant, config_.topic, context.wakeup);
+    return DdsTriggerSender::open(context.dds.participant, config_.topic, context.wakeup);
   }
 
  private:

@@ -1,5 +1,5 @@
 // What a simulated robot sends is true at the moment at which it is sent.
-#include "app/report/paced_output.h"
+#include "app/commands/support/paced_output.h"
 
 #include <gtest/gtest.h>
 

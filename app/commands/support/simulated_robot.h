@@ -23,8 +23,8 @@ std::string machine_truth(const Machine& machine);
 bool paced(const Config& config);
 
 /// Plays the machine at the pace of the clock until told to stop. Where it is paced, every edge it
-/// drove then goes to the file `touches` with the truth of its moment (app/report/paced_output.h),
-/// unless that is empty.
+/// drove then goes to the file `touches` with the truth of its moment
+/// (app/commands/support/paced_output.h), unless that is empty.
 Result<void> play(Machine& machine, const Config& config, const std::string& touches);
 
 }  // namespace selfcal

@@ -10,13 +10,6 @@
 
 namespace selfcal {
 
-/// All lines of health of one moment.
-struct HealthReport {
-  std::int64_t unix_ms = 0;
-  std::string hardware_id;
-  std::vector<HealthMessage> lines;
-};
-
 class DdsMonitor {
  public:
   /// Watches the service of `robot`; its last status and result come at once. `wakeup` hears of

@@ -1,4 +1,4 @@
-#include "app/report/paced_output.h"
+#include "app/commands/support/paced_output.h"
 
 #include <algorithm>
 #include <cstdio>

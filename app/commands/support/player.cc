@@ -4,10 +4,11 @@
 
 #include <cstdio>
 
+#include "app/commands/support/paced_output.h"
 #include "app/commands/support/signals.h"
 #include "app/commands/support/simulated_robot.h"
-#include "app/report/paced_output.h"
 #include "io/clock.h"
+#include "io/dds/context.h"
 #include "io/dds/robot_side.h"
 #include "io/files/file.h"
 
@@ -24,7 +25,8 @@ struct RobotEnds {
 
   static Result<RobotEnds> open(const DdsParticipant& participant, const Config& config,
                                 const Machine& machine, Wakeup& wakeup) {
-    const RobotContext context{participant, wakeup, machine.settings().trigger_pull};
+    const DdsContext robot{participant};
+    const RobotContext context{robot, wakeup, machine.settings().trigger_pull};
     auto dds = DdsRobotSide::open(
         participant, {.robot = config.id, .temperature = config.temperature_topic}, wakeup);
     if (!dds) return tl::unexpected(dds.error());

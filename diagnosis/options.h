@@ -1,0 +1,39 @@
+// What a diagnosis is asked for; what it takes for granted is in constants.h.
+#pragma once
+
+#include <memory>
+
+#include "constraints/estimation/options.h"
+
+namespace selfcal {
+
+struct PossibleRows;
+
+/// Prior odds, and how far the search goes.
+struct SearchRule {
+  double family_odds = 0.10;  ///< of one family against its absence
+  double unknown_odds = 0.4;  ///< of structure that no known effect explains
+  double another = 0.25;      ///< factor on the odds of each cause after the first
+  double same_family = 0.3;   ///< odds that a cause acts at one more place
+  int extended_singles = 14, extended_pairs = 14;
+  int most_structures = 4;  ///< kept for pairs and triples
+  /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
+  /// its noise from what its own best cause leaves.
+  bool noise_is_known = false;
+};
+
+struct DiagnosisOptions {
+  SearchRule search;
+  /// A cause is named when `none` is less probable than the first of these, and noise looks as much
+  /// like a cause less often than the second.
+  double name_below_none = 0.1, name_below_p = 0.025;
+  int resamples = 199;  ///< of the null distribution
+  int practice = 30;    ///< simulated sessions that calibrate probabilities; 0: none
+  double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
+  unsigned long long seed = 1;
+  /// Of these the further rows are chosen; null: of what the robot could do on paper.
+  std::shared_ptr<const PossibleRows> possible = {};
+  int most_further = 20;  ///< of them at most
+};
+
+}  // namespace selfcal
