@@ -1,8 +1,9 @@
 # bash completion for selfcal
 _selfcal() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]-} words
-  if [[ $prev == --method ]]; then
-    words=$("${COMP_WORDS[0]}" identifiable --help 2>/dev/null | sed -n 's/^ *--method .*{\(.*\)}.*/\1/p')
+  if [[ $prev == --method || $prev == --effects ]]; then
+    [[ $prev == --method ]] && command=identifiable || command=identify
+    words=$("${COMP_WORDS[0]}" $command --help 2>/dev/null | sed -n "s/^ *$prev .*{\(.*\)}.*/\1/p")
     words=${words//,/ }
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
     return

@@ -169,8 +169,13 @@ void add_identify(CLI::App& app, int& status) {
   command->add_option("--fix", arguments->options.fix,
                       "Parameters held at the model's value (theta2, j2.theta, d*)");
   command->add_option("--free", arguments->options.free, "Parameters freed (K3, K*)");
-  command->add_option("--effects", arguments->effects,
-                      "Effects identified with it: EFFECT or EFFECT@PLACE (joint_compliance@j2)");
+  std::string known;
+  for (const std::string_view effect : effect_names())
+    known += (known.empty() ? "" : ",") + std::string(effect);
+  command
+      ->add_option("--effects", arguments->effects,
+                   "Effects identified with it: EFFECT or EFFECT@PLACE (joint_compliance@j2)")
+      ->type_name("TEXT:{" + known + "}");
   command->add_option("--out", arguments->out,
                       "Folder for report.html, result.json and calibrated.robot.yaml");
   command->add_flag("--json", arguments->json, "Print result.json alone on standard output");

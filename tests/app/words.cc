@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "io/encoders.h"
+#include "io/triggers.h"
 #include "kinematics/effect.h"
+#include "kinematics/make_robot.h"
 #include "tests/app/cell.h"
 #include "tests/support/text.h"
 
@@ -120,15 +123,43 @@ TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
     EXPECT_TRUE(has_word(block(manual, ".SS selfcal identify"), effect)) << effect;
 }
 
-TEST(Words, CompletionOffersEveryMethodOfTheProgram) {
-  const Ran ran =
-      run_in_bash("source " SELFCAL_SOURCE_DIR "/app/selfcal.bash; COMP_WORDS=(" SELFCAL_BINARY
-                  " identifiable --method \"\"); COMP_CWORD=3; _selfcal;"
-                  " echo \"${COMPREPLY[@]}\"");
+/// What the completion offers behind `option` of `command`.
+std::string completed(const std::string& command, const std::string& option) {
+  return run_in_bash("source " SELFCAL_SOURCE_DIR "/app/selfcal.bash; COMP_WORDS=(" SELFCAL_BINARY
+                     " " +
+                     command + " " + option +
+                     " \"\"); COMP_CWORD=3; _selfcal;"
+                     " echo \"${COMPREPLY[@]}\"")
+      .out;
+}
+
+std::string in_one_line(const std::vector<std::string_view>& names) {
   std::string all;
-  for (const std::string_view method : method_names())
-    all += (all.empty() ? "" : " ") + std::string(method);
-  EXPECT_EQ(ran.out, all + "\n");
+  for (const std::string_view name : names) all += (all.empty() ? "" : " ") + std::string(name);
+  return all + "\n";
+}
+
+TEST(Words, CompletionOffersEveryMethodAndEffectOfTheProgram) {
+  EXPECT_EQ(completed("identifiable", "--method"), in_one_line(method_names()));
+  EXPECT_EQ(completed("identify", "--effects"), in_one_line(effect_names()));
+}
+
+/// The paragraph of `key` in `text`.
+std::string paragraph(const std::string& text, const std::string& key) {
+  const size_t begin = text.find("\n.B " + key + "\n");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find("\n.TP\n", begin) - begin);
+}
+
+TEST(Words, ThePagesNameEveryKindOfRobotEncoderAndTrigger) {
+  const std::string robots = page("app/selfcal-data.5");
+  for (const std::string_view kind : robot_kinds())
+    EXPECT_TRUE(has_word(paragraph(block(robots, ".SH ROBOT:"), "kind"), kind)) << kind;
+  const std::string configurations = page("app/selfcal-config.5");
+  for (const std::string_view kind : encoder_kinds())
+    EXPECT_TRUE(has_word(paragraph(block(configurations, ".SS encoders"), "kind"), kind)) << kind;
+  for (const std::string_view kind : trigger_kinds())
+    EXPECT_TRUE(has_word(paragraph(block(configurations, ".SS trigger"), "kind"), kind)) << kind;
 }
 
 TEST(Words, ThePageOfFilesNamesEveryMethodAndEffect) {
