@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -93,7 +94,8 @@ std::shared_ptr<const Robot> on_site(std::shared_ptr<const Robot> robot, const D
     if (!effect->of_machine() && site.find(effect->at()) < 0) site.sets.push_back({effect->at()});
   Problems problems;
   std::shared_ptr<const Robot> there = correct(robot, entries, site, problems);
-  return there ? there : robot;
+  expects(there != nullptr, problems.any() ? problems.list.front() : "effects fit their rows");
+  return there;
 }
 
 }  // namespace selfcal

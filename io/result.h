@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "kinematics/description.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 
@@ -31,6 +32,7 @@ inline tl::unexpected<Failure> bad_input(std::string what) {
 
 /// The first of the problems, of which there must be one.
 inline tl::unexpected<Failure> bad_input(const Problems& problems) {
+  expects(problems.any(), "what is refused has a problem");
   return bad_input(problems.list.front());
 }
 

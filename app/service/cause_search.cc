@@ -9,6 +9,7 @@
 #include "constraints/site.h"
 #include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -190,7 +191,7 @@ std::optional<CorrectedModel> corrected_model(const Robot& active, const DataSet
   Problems problems;
   const std::shared_ptr<const Robot> robot =
       correct(geometry_of(diagnosis.model), entries_of(named), site_of(active, data), problems);
-  if (!robot) return std::nullopt;
+  expects(robot != nullptr, "what was named is effects that the robot can have");
   Options options;
   for (const Parameter& each : robot->parameters())
     if (each.part == Part::effect) options.free.push_back(each.name);

@@ -1,5 +1,7 @@
 #include "io/can/bits.h"
 
+#include "kinematics/expects.h"
+
 namespace selfcal {
 namespace {
 
@@ -25,6 +27,7 @@ BitField byte_field(int offset, int length, bool big_endian, bool is_signed) {
 int bytes_of(const BitField& field) { return place(field, field.bits - 1) / 8 + 1; }
 
 std::int64_t get_bits(const BitField& field, std::span<const std::uint8_t> payload) {
+  expects(bytes_of(field) <= static_cast<int>(payload.size()), "the payload holds the field");
   std::uint64_t value = 0;
   for (int i = 0; i < field.bits; ++i) {
     const int bit = place(field, i);
@@ -37,6 +40,7 @@ std::int64_t get_bits(const BitField& field, std::span<const std::uint8_t> paylo
 }
 
 void put_bits(const BitField& field, std::int64_t value, std::span<std::uint8_t> payload) {
+  expects(bytes_of(field) <= static_cast<int>(payload.size()), "the payload holds the field");
   const auto bits = static_cast<std::uint64_t>(value);
   for (int i = 0; i < field.bits; ++i) {
     const int bit = place(field, i);

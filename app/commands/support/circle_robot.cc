@@ -5,6 +5,7 @@
 
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -52,6 +53,7 @@ std::string nominal_text(const CircleRobot& start, const Solution& solution) {
   Problems problems;
   serial::Model model =
       serial::read(start.robot->text().describe(solution.values).without({"effects"}), problems);
+  expects(!problems.any(), "a robot's own text is read again");
   set_tolerances(model, -1);
   for (serial::Frame& frame : model.frames) {
     frame.nominal = frame.value;
