@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "app/service/collector.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr Nanoseconds kStopAgain = kSecond / 10;  // until the robot stands
-constexpr double kBeyond = 0.02;                  // rad or m past its limits that a joint may stand
+constexpr double kBeyond = 0.02;  // of its unit, past its limits, that a joint may stand
 constexpr const char* kChatters = "the trigger chatters: a loose wire, or no bias?";
 
 /// `what`, and why if that is known.
@@ -71,9 +72,10 @@ std::string Collector::missing() const {
 /// A joint that reads what it cannot: its zero or its turns are wrong.
 std::string Collector::beyond_limits() const {
   const Eigen::VectorXd q = *senses_.q();
+  const Eigen::ArrayXd units = units_of_readings(*c_.config.robot);
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const Joint& joint = c_.config.robot->joints()[j];
-    if (!joint.allows(q[j], -kBeyond))
+    if (!joint.allows(q[j], -kBeyond * units[j]))
       return joint.name + " reads " + format_number(std::round(1e3 * q[j]) / 1e3) +
              ", beyond its limits: are its zero, its sign and its turns right?";
   }

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <optional>
 
+#include "kinematics/size.h"
+
 namespace selfcal {
 namespace {
 
 constexpr int kDraws = 12;            // of directions, for each way that is asked for
 constexpr int kSecants = 4;           // until the start is as far out as it shall be
-constexpr double kMostTurn = 0.6;     // rad or m, that a joint moves on the way in
+constexpr double kMostTurn = 0.6;     // of a joint's unit, that it moves on the way in
 constexpr double kMostAside = 2.5;    // times the clearance, that the tip moves along the surface
 constexpr double kNearHeight = 0.02;  // of the wanted height
 
@@ -27,7 +29,8 @@ class ApproachFinder {
   std::optional<Eigen::VectorXd> at_height(const Eigen::VectorXd& direction, double height) const {
     double a = 0, b = height * slope(direction), at_a = 0;
     for (int i = 0; i < kSecants; ++i) {
-      if (!(std::abs(b) * direction.cwiseAbs().maxCoeff() < kMostTurn)) return std::nullopt;
+      if (!(std::abs(b) * (direction.array().abs() / units_).maxCoeff() < kMostTurn))
+        return std::nullopt;
       const double at_b = height_of(touch_.touch + b * direction);
       if (std::abs(at_b - height) < kNearHeight * std::abs(height))
         return touch_.touch + b * direction;
@@ -56,6 +59,7 @@ class ApproachFinder {
   }
 
   const Robot& robot_;
+  const Eigen::ArrayXd units_ = units_of_readings(robot_);
   const Eigen::VectorXd& xi_;
   const TouchTarget& target_;
   const PlannedTouch& touch_;

@@ -10,6 +10,7 @@
 #include "constraints/sampling/configurations.h"
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kPayload = 5;    ///< kg, where the robot's masses are not know
 constexpr double kOfMass = 0.05;  ///< payload over the robot's mass
 constexpr double kFaster = 3;
 constexpr int kPostures = 6;       ///< found for one place, of which the farthest is taken
-constexpr double kAnother = 0.5;   ///< that a joint moves at least in another posture (rad, m)
+constexpr double kAnother = 0.5;   ///< of its unit, that a joint moves at least in another posture
 constexpr int kFewestReached = 3;  ///< rows that are worth a step
 
 /// Rows of `data` that spread over the fit rows, evenly.
@@ -197,7 +198,7 @@ class Further {
     double farthest = kAnother;
     for (Eigen::Index row = 0; row < found.rows.q.rows(); ++row) {
       const Eigen::VectorXd other = found.rows.q.row(row).transpose();
-      const double far = (other - q).cwiseAbs().maxCoeff();
+      const double far = ((other - q).array().abs() / units_of_readings(robot_)).maxCoeff();
       if (far < farthest) continue;
       farthest = far;
       best = other;

@@ -6,11 +6,12 @@
 
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kFarFromNominal = 0.3;  // rad or m that a correction may move a joint
+constexpr double kFarFromNominal = 0.3;  // of a joint's unit, that a correction may move it
 constexpr double kTwins = 1e-6;          // rad or m between two commands that are one
 constexpr unsigned kStartsSeed = 1;      // the same poses give the same commands
 
@@ -133,7 +134,8 @@ Command Compensation::corrected(const Location& wanted, const ReachedPose& nomin
   command.iterations = found.steps;
   command.error = found.error;
   command.error_angle = found.error_angle;
-  if (!found.there || apart(found.q, nominal.q) > kFarFromNominal) {
+  const Eigen::ArrayXd moved = (found.q - nominal.q).array().abs() / units_of_readings(*nominal_);
+  if (!found.there || moved.maxCoeff() > kFarFromNominal) {
     command.status = nominal.there ? Reach::singular : Reach::out_of_reach;
   } else if (!within_limits(*nominal_, found.q)) {
     command.status = Reach::limit;
