@@ -70,61 +70,61 @@ std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& befo
 
 }  // namespace
 
-AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
-                                  const Solution& candidate, const Solution& unchanged) {
-  AcceptanceDecision ruling;
-  ruling.answer = candidate.verdict.answer;
-  ruling.p_value = candidate.verdict.p_value;
-  ruling.endpoint_sigma = candidate.workspace.rms;
-  ruling.rejected = rows_put_aside(candidate);
-  ruling.identified = parameters_identified(candidate);
-  std::tie(ruling.check_before, ruling.check_after) =
+AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& active,
+                                    const Solution& candidate, const Solution& unchanged) {
+  AcceptanceDecision decided;
+  decided.answer = candidate.verdict.answer;
+  decided.p_value = candidate.verdict.p_value;
+  decided.endpoint_sigma = candidate.workspace.rms;
+  decided.rejected = rows_put_aside(candidate);
+  decided.identified = parameters_identified(candidate);
+  std::tie(decided.check_before, decided.check_after) =
       rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
   if (candidate.verdict.answer != Answer::improved) {
-    ruling.why = candidate.verdict.why;
-    return ruling;
+    decided.why = candidate.verdict.why;
+    return decided;
   }
   const char* const unit_of_rows = candidate.residual.check.angle_alone ? "mrad" : "mm";
-  if (!(ruling.check_after < (1 - accept.margin) * ruling.check_before)) {
-    ruling.why =
+  if (!(decided.check_after < (1 - accept.margin) * decided.check_before)) {
+    decided.why =
         sentence("the active parameters explain the check rows as well: %.4g %s against %.4g",
-                 1e3 * ruling.check_before, unit_of_rows, 1e3 * ruling.check_after);
-    return ruling;
+                 1e3 * decided.check_before, unit_of_rows, 1e3 * decided.check_after);
+    return decided;
   }
   const auto [limit, sigma] = largest_changes(accept.largest_change, active, candidate);
   if (limit.parameter) {
     const double most = accept.largest_change.of(limit.parameter->parameter);
     if (std::abs(limit.change) > most) {
-      ruling.why =
+      decided.why =
           sentence("%s changes by %.4g m%s, more than the limit of %.4g: look at the robot first",
                    limit.parameter->parameter.name.c_str(), 1e3 * limit.change,
                    std::string(unit(limit.parameter->parameter.quantity)).c_str(), 1e3 * most);
-      return ruling;
+      return decided;
     }
   }
-  ruling.acceptable = true;
-  ruling.why = sentence("check residual %.4g to %.4g %s", 1e3 * ruling.check_before,
-                        1e3 * ruling.check_after, unit_of_rows);
+  decided.acceptable = true;
+  decided.why = sentence("check residual %.4g to %.4g %s", 1e3 * decided.check_before,
+                         1e3 * decided.check_after, unit_of_rows);
   if (sigma.parameter)
-    ruling.why += sentence("; surest change: %s by %.3g m%s (%.0f sigma)",
-                           sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
-                           std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
-                           std::abs(sigma.change) / sigma.parameter->sigma);
+    decided.why += sentence("; surest change: %s by %.3g m%s (%.0f sigma)",
+                            sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
+                            std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
+                            std::abs(sigma.change) / sigma.parameter->sigma);
   for (const std::string& set : candidate.locks_put_aside) {
-    ruling.asks = true;
-    ruling.why += "; not applied by itself: the lock of set " + set + " slipped again and again";
+    decided.asks = true;
+    decided.why += "; not applied by itself: the lock of set " + set + " slipped again and again";
   }
-  return ruling;
+  return decided;
 }
 
-FitRuling rule_on_fit(const Solution& solution, const std::vector<Set>& sets) {
-  FitRuling ruling;
+FitDecision decide_on_fit(const Solution& solution, const std::vector<Set>& sets) {
+  FitDecision decided;
   const LackOfFit& fit = solution.uncertainty.lack_of_fit;
   double ratio = 0;
   const char* against = "repeats";
   if (fit.p_value >= 0 && fit.repeat_freedoms >= kFewestFreedoms) {
     ratio = fit.F;
-    ruling.p_value = fit.p_value;
+    decided.p_value = fit.p_value;
   } else {
     against = "data sheets";
     double rows = 0;
@@ -136,17 +136,17 @@ FitRuling rule_on_fit(const Solution& solution, const std::vector<Set>& sets) {
     }
     const double freedoms = solution.uncertainty.freedoms;
     if (rows == 0 || freedoms < kFewestFreedoms) {
-      ruling.why = "nothing says how large the noise is";
-      return ruling;
+      decided.why = "nothing says how large the noise is";
+      return decided;
     }
     ratio /= rows;
-    ruling.p_value = chi_square_exceeds(ratio * freedoms, freedoms);
+    decided.p_value = chi_square_exceeds(ratio * freedoms, freedoms);
   }
-  ruling.noise = ruling.p_value >= kLeastFitP || ratio < kLeastExcess;
-  ruling.why = sentence("what is left is %.3g times the noise that the %s tell (p = %.2g): %s",
-                        std::sqrt(ratio), against, ruling.p_value,
-                        ruling.noise ? "noise" : "something unmodelled is at work");
-  return ruling;
+  decided.noise = decided.p_value >= kLeastFitP || ratio < kLeastExcess;
+  decided.why = sentence("what is left is %.3g times the noise that the %s tell (p = %.2g): %s",
+                         std::sqrt(ratio), against, decided.p_value,
+                         decided.noise ? "noise" : "something unmodelled is at work");
+  return decided;
 }
 
 std::uint32_t parameters_identified(const Solution& solution) {
@@ -158,26 +158,26 @@ std::uint32_t rows_put_aside(const Solution& solution) {
   return static_cast<std::uint32_t>(std::ranges::count(solution.rejected, false, &Outlier::check));
 }
 
-CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p) {
-  CheckRuling ruling;
+CheckDecision decide_on_check(const Solution& then, const Solution& now, double least_p) {
+  CheckDecision decided;
   const Figures& before = then.residual.check;
   const Figures& after = now.residual.check;
-  ruling.check_after = after.rms_after;
-  ruling.check_before = before.rms_without_rejected;
-  if (before.rows == 0 || after.rows == 0 || !(ruling.check_before > 0) ||
-      !std::isfinite(ruling.check_after)) {
-    ruling.why = "nothing to compare with";
-    return ruling;
+  decided.check_after = after.rms_after;
+  decided.check_before = before.rms_without_rejected;
+  if (before.rows == 0 || after.rows == 0 || !(decided.check_before > 0) ||
+      !std::isfinite(decided.check_after)) {
+    decided.why = "nothing to compare with";
+    return decided;
   }
-  ruling.p_value =
-      f_exceeds(std::pow(ruling.check_after / ruling.check_before, 2), after.rows, before.rows);
-  ruling.explained = ruling.p_value >= least_p;
-  ruling.why =
+  decided.p_value =
+      f_exceeds(std::pow(decided.check_after / decided.check_before, 2), after.rows, before.rows);
+  decided.explained = decided.p_value >= least_p;
+  decided.why =
       sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s", after.rows,
-               1e3 * ruling.check_after, 1e3 * ruling.check_before, ruling.p_value,
-               ruling.explained ? "the active model explains them"
-                                : "the active model does not explain them");
-  return ruling;
+               1e3 * decided.check_after, 1e3 * decided.check_before, decided.p_value,
+               decided.explained ? "the active model explains them"
+                                 : "the active model does not explain them");
+  return decided;
 }
 
 }  // namespace selfcal

@@ -23,11 +23,11 @@ struct AcceptanceDecision : ResultFigures {
 /// acceptable when its verdict is improved, its check residual (rows that either finds beyond the
 /// noise left out of both) is better by the margin, and no parameter changes by more than its
 /// limit.
-AcceptanceDecision rule_on_result(const Acceptance& accept, const Robot& active,
-                                  const Solution& candidate, const Solution& unchanged);
+AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& active,
+                                    const Solution& candidate, const Solution& unchanged);
 
 /// Whether what a calibration leaves is noise.
-struct FitRuling {
+struct FitDecision {
   bool noise = true;
   double p_value = 1;
   std::string why;
@@ -35,7 +35,7 @@ struct FitRuling {
 
 /// The squares that are left are compared with those of immediate repeats (F test) or, without
 /// repeats, with the data sheets of the sets that have one (chi square).
-FitRuling rule_on_fit(const Solution& solution, const std::vector<Set>& sets);
+FitDecision decide_on_fit(const Solution& solution, const std::vector<Set>& sets);
 
 /// Parameters that the rows determine.
 std::uint32_t parameters_identified(const Solution& solution);
@@ -45,7 +45,7 @@ std::uint32_t rows_put_aside(const Solution& solution);
 
 /// Whether the active model explains the touches of a quick check: check_after is their rms,
 /// check_before that of the rows that judged the session behind the active parameters (m).
-struct CheckRuling : ResultFigures {
+struct CheckDecision : ResultFigures {
   bool explained = false;
   std::string why;
 };
@@ -54,6 +54,6 @@ struct CheckRuling : ResultFigures {
 /// as check rows; both with every parameter of the robot held. The mean squares of the new touches
 /// and of the session's check rows have the same expectation as long as nothing has changed: their
 /// ratio is compared with F.
-CheckRuling rule_on_check(const Solution& then, const Solution& now, double least_p);
+CheckDecision decide_on_check(const Solution& then, const Solution& now, double least_p);
 
 }  // namespace selfcal

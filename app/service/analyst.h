@@ -39,7 +39,7 @@ class Analyst {
   std::optional<Computation::Progress> progress() const;
 
   /// Of the parameters that are active.
-  const std::optional<CheckRuling>& last_check() const { return last_check_; }
+  const std::optional<CheckDecision>& last_check() const { return last_check_; }
   void forget_check() { last_check_.reset(); }
 
  private:
@@ -73,7 +73,7 @@ class Analyst {
   std::function<void(const std::string& failure)> when_computed_;
   std::shared_ptr<DataSet> data_, base_;
   std::shared_ptr<Solution> solution_, unchanged_;
-  std::optional<CheckRuling> last_check_;
+  std::optional<CheckDecision> last_check_;
 };
 
 }  // namespace selfcal

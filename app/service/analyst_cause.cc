@@ -150,15 +150,15 @@ ResultRecord Analyst::result_of_cause(const CauseFindings& found) const {
   result.why = diagnosis.why;
   nlohmann::ordered_json json = to_json(diagnosis);
   if (const auto& corrected = found.corrected) {
-    AcceptanceDecision ruling =
-        rule_on_result(c_.config.accept, *c_.models.active(), corrected->solution, found.unchanged);
-    ruling.asks = ruling.asks || !diagnosis.verdict.confounded_with.empty();
-    result.identified = ruling.identified;
-    result.endpoint_sigma = ruling.endpoint_sigma;
-    result.why += "; corrected model: " + ruling.why;
-    if (ruling.acceptable) {
-      result.decision = ruling.asks || !c_.config.accept.automatic ? ResultDecision::candidate
-                                                                   : ResultDecision::applying;
+    AcceptanceDecision decided = decide_on_result(c_.config.accept, *c_.models.active(),
+                                                  corrected->solution, found.unchanged);
+    decided.asks = decided.asks || !diagnosis.verdict.confounded_with.empty();
+    result.identified = decided.identified;
+    result.endpoint_sigma = decided.endpoint_sigma;
+    result.why += "; corrected model: " + decided.why;
+    if (decided.acceptable) {
+      result.decision = decided.asks || !c_.config.accept.automatic ? ResultDecision::candidate
+                                                                    : ResultDecision::applying;
       result.robot_text = corrected->robot_text;
     }
     json["corrected"] = to_json(corrected->solution, c_.config.robot->name(), c_.models.hash());

@@ -46,35 +46,35 @@ ResultRecord Analyst::result_of_failure(const std::string& why) const {
 }
 
 ResultRecord Analyst::result_of_check() {
-  last_check_ = rule_on_check(*solution_, *unchanged_, c_.config.schedule.check_p);
-  const CheckRuling& ruling = *last_check_;
-  ResultRecord result = new_result(ruling);
+  last_check_ = decide_on_check(*solution_, *unchanged_, c_.config.schedule.check_p);
+  const CheckDecision& decided = *last_check_;
+  ResultRecord result = new_result(decided);
   result.touches -= static_cast<std::uint32_t>(std::ranges::count(data_->rows.check, 0));
-  result.answer = ruling.explained ? ResultAnswer::explained : ResultAnswer::not_explained;
+  result.answer = decided.explained ? ResultAnswer::explained : ResultAnswer::not_explained;
   result.decision = ResultDecision::none;
-  result.why = ruling.why;
+  result.why = decided.why;
   return result;
 }
 
 ResultRecord Analyst::result_of_candidate() const {
-  const AcceptanceDecision ruling =
-      rule_on_result(c_.config.accept, *c_.models.active(), *solution_, *unchanged_);
-  ResultRecord result = new_result(ruling);
-  result.answer = stored_answer(ruling.answer);
-  result.decision = !ruling.acceptable                           ? ResultDecision::rejected
-                    : ruling.asks || !c_.config.accept.automatic ? ResultDecision::candidate
-                                                                 : ResultDecision::applying;
-  result.why = ruling.why;
+  const AcceptanceDecision decided =
+      decide_on_result(c_.config.accept, *c_.models.active(), *solution_, *unchanged_);
+  ResultRecord result = new_result(decided);
+  result.answer = stored_answer(decided.answer);
+  result.decision = !decided.acceptable                           ? ResultDecision::rejected
+                    : decided.asks || !c_.config.accept.automatic ? ResultDecision::candidate
+                                                                  : ResultDecision::applying;
+  result.why = decided.why;
   result.json = to_json(*solution_, c_.config.robot->name(), c_.models.hash()).dump();
   result.robot_text = robot_text(*c_.models.active(), solution_->values);
   return result;
 }
 
 bool Analyst::more_than_noise() const {
-  const FitRuling ruling = rule_on_fit(*solution_, data_->sets);
-  if (ruling.noise) return false;
+  const FitDecision decided = decide_on_fit(*solution_, data_->sets);
+  if (decided.noise) return false;
   c_.tell("warning",
-          "session " + std::to_string(collector_.session().record.id) + ": " + ruling.why);
+          "session " + std::to_string(collector_.session().record.id) + ": " + decided.why);
   return c_.config.causes.automatic;
 }
 

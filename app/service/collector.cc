@@ -2,18 +2,20 @@
 #include <cmath>
 
 #include "app/service/collector.h"
+#include "kinematics/expects.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kNearPath = 0.05;  // rad or m
+constexpr double kNearPath = 0.05;  // of a joint's unit
 
-/// Distance from a straight joint path, largest joint.
-double off_path(const Eigen::VectorXd& q, const StepRecord& step) {
+/// Distance from a straight joint path in units of the joints' readings, largest joint.
+double off_path(const Robot& robot, const Eigen::VectorXd& q, const StepRecord& step) {
   const Eigen::VectorXd from = vector_of(step.start), way = vector_of(step.end) - from;
   const double length = way.squaredNorm();
   const double s = length > 0 ? std::clamp((q - from).dot(way) / length, 0.0, 1.0) : 0.0;
-  return (q - from - s * way).cwiseAbs().maxCoeff();
+  return ((q - from - s * way).array().abs() / units_of_readings(robot)).maxCoeff();
 }
 
 }  // namespace
@@ -94,10 +96,10 @@ void Collector::announce_plan() {
     // Whatever lock an earlier life has left engaged is released before anything moves.
     event.release = event.lock != 0 || (last && lock_of(last->index) != 0);
     // It was in the middle of this very touch: the way back is the way out.
-    const bool in_it = !event.release && off_path(*here, step) < kNearPath;
+    const bool in_it = !event.release && off_path(*c_.models.active(), *here, step) < kNearPath;
     if (in_it) {
       event.via_home = false;
-    } else if (!event.release && last && off_path(*here, *last) < kNearPath) {
+    } else if (!event.release && last && off_path(*c_.models.active(), *here, *last) < kNearPath) {
       // The last touch was stored, and the robot is not out of it yet.
       event.back_off = true;
       reached_ = last->start;
@@ -137,17 +139,21 @@ const TouchRecord* Collector::read() { return c_.situation.engaged ? read_visit(
 
 /// The readings at rest, with the edge that confirmed the lock.
 const TouchRecord* Collector::read_visit() {
+  expects(senses_.closing().has_value() && !senses_.samples().empty(),
+          "a lock is confirmed at rest");
   TouchRecord visit;
   visit.step = c_.situation.step;
   visit.edge = senses_.closing()->time;
   visit.before = visit.after = senses_.samples().last();
-  const TouchRuling ruling = rule_on_visit(*c_.models.active(), reading_of(visit, meaning_));
-  visit.outcome = ruling.outcome;
-  visit.why = ruling.why;
+  const TouchDecision decided = decide_on_visit(*c_.models.active(), reading_of(visit, meaning_));
+  visit.outcome = decided.outcome;
+  visit.why = decided.why;
   return keep(std::move(visit));
 }
 
 const TouchRecord* Collector::read_touch() {
+  expects(senses_.closing().has_value(), "a touch is read behind its edge");
+  expects(c_.situation.step < static_cast<int>(session_.plan.size()), "a touch is of the plan");
   const Nanoseconds edge = senses_.closing()->time;
   if (!senses_.closing()->timed)
     return outlier("the trigger's edge got lost, and with it the moment of the touch");
@@ -158,11 +164,11 @@ const TouchRecord* Collector::read_touch() {
   touch.edge = edge;
   std::tie(touch.before, touch.after) = *around;
   const Reading reading = reading_of(touch, meaning_);
-  const TouchRuling ruling =
-      rule_on_touch(*c_.models.active(), session_, meaning_, session_.plan[touch.step], reading,
-                    c_.config.plan.search, c_.config.touch.tolerance);
-  touch.outcome = ruling.outcome;
-  touch.why = ruling.why;
+  const TouchDecision decided =
+      decide_on_touch(*c_.models.active(), session_, meaning_, session_.plan[touch.step], reading,
+                      c_.config.plan.search, c_.config.touch.tolerance);
+  touch.outcome = decided.outcome;
+  touch.why = decided.why;
   return keep(std::move(touch));
 }
 

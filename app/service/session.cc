@@ -347,9 +347,9 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   return data;
 }
 
-TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
-                          const StepRecord& step, const Reading& reading, double search,
-                          double tolerance) {
+TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
+                              const StepRecord& step, const Reading& reading, double search,
+                              double tolerance) {
   if (const std::string why = robot.has_loops() ? cannot_stand(robot, reading.q) : ""; !why.empty())
     return {TouchOutcome::outlier, why};
   const int set = set_index(meaning, step.set);
@@ -370,9 +370,9 @@ TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Deco
   return {};
 }
 
-TouchRuling rule_on_visit(const Robot& robot, const Reading& reading) {
+TouchDecision decide_on_visit(const Robot& robot, const Reading& reading) {
   const std::string why = cannot_stand(robot, reading.q);
-  return why.empty() ? TouchRuling{} : TouchRuling{TouchOutcome::outlier, why};
+  return why.empty() ? TouchDecision{} : TouchDecision{TouchOutcome::outlier, why};
 }
 
 Session lately(const Session& session, std::size_t step) {

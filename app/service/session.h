@@ -75,16 +75,16 @@ DataSet joined(const DataSet& base, const DataSet& check);
 
 /// How a touch is judged before it is stored: a machine with loops must be able to stand at the
 /// readings, and the end position lie near the surface, and near that of the touches before.
-struct TouchRuling {
+struct TouchDecision {
   TouchOutcome outcome = TouchOutcome::taken;
   std::string why;
 };
-TouchRuling rule_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
-                          const StepRecord& step, const Reading& reading, double search,
-                          double tolerance);
+TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
+                              const StepRecord& step, const Reading& reading, double search,
+                              double tolerance);
 
 /// Readings under a lock: legs within their lengths, and the loop closes in its assembly mode.
-TouchRuling rule_on_visit(const Robot& robot, const Reading& reading);
+TouchDecision decide_on_visit(const Robot& robot, const Reading& reading);
 
 /// Endpoint at readings `q`, at which the robot's loops must close, with its own values (m, world).
 Eigen::Vector3d endpoint(const Robot& robot, const Eigen::VectorXd& q);

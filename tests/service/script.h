@@ -117,7 +117,7 @@ struct Script {
     event.step = next;
     return on(event);
   }
-  Script& decided(Event::Decision decision, const std::string& why = "the ruling") {
+  Script& decided(Event::Decision decision, const std::string& why = "the decision") {
     Event event;
     event.what = Event::What::decided;
     event.decision = decision;

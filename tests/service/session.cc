@@ -75,7 +75,7 @@ TEST(NextStep, WantsAllRepeatsAgainAfterATouchThatDiffers) {
   EXPECT_EQ(good_touches(session, 0).size(), 2u);
 }
 
-// --------------------------------------------------------------------------- rulings
+// --------------------------------------------------------------------------- decisions
 
 /// Joint 1 so far that the endpoint is moved by about `way` along the outward direction.
 Reading reading_out_by(const Robot& robot, const std::vector<double>& touch, double way) {
@@ -96,8 +96,8 @@ TEST(RuleOnTouch, PutsAsideATouchLongBeforeTheSurface) {
   const Session session = session_of(1);
   const StepRecord& step = session.plan[0];
   const auto rule = [&](double way) {
-    return rule_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
-                         0.01, 1e-4);
+    return decide_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
+                           0.01, 1e-4);
   };
   EXPECT_EQ(rule(0.0099).outcome, TouchOutcome::taken);
   EXPECT_EQ(rule(0.012).outcome, TouchOutcome::outlier);
@@ -111,8 +111,8 @@ TEST(RuleOnTouch, FindsATouchThatDiffersFromTheOneBefore) {
   session.touches = {touch_of(0)};
   const StepRecord& step = session.plan[0];
   const auto rule = [&](double way) {
-    return rule_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
-                         0.01, 1e-4);
+    return decide_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
+                           0.01, 1e-4);
   };
   EXPECT_EQ(rule(0.9e-4).outcome, TouchOutcome::taken);
   EXPECT_EQ(rule(-0.9e-4).outcome, TouchOutcome::taken);

@@ -29,23 +29,23 @@ Reading legs(std::initializer_list<double> lengths) {
 }
 
 TEST(RuleOnVisit, TakesLegsThatMeetWithinTheirRanges) {
-  EXPECT_EQ(rule_on_visit(*lock_config().robot, legs({0.8, 0.8, 0.8, 0.8, 0.8, 0.8})).outcome,
+  EXPECT_EQ(decide_on_visit(*lock_config().robot, legs({0.8, 0.8, 0.8, 0.8, 0.8, 0.8})).outcome,
             TouchOutcome::taken);
 }
 
 TEST(RuleOnVisit, PutsALegOutOfItsRangeAsideByName) {
-  const TouchRuling ruling =
-      rule_on_visit(*lock_config().robot, legs({0.8, 0.8, 1.2, 0.8, 0.8, 0.8}));
-  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
-  EXPECT_THAT(ruling.why, HasSubstr("leg3 reads 1.2, out of its range"));
+  const TouchDecision decided =
+      decide_on_visit(*lock_config().robot, legs({0.8, 0.8, 1.2, 0.8, 0.8, 0.8}));
+  EXPECT_EQ(decided.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(decided.why, HasSubstr("leg3 reads 1.2, out of its range"));
 }
 
 TEST(RuleOnVisit, PutsLegsThatDoNotMeetAside) {
   // Neighbours on one end of the platform half a metre apart in length: it has no such position.
-  const TouchRuling ruling =
-      rule_on_visit(*lock_config().robot, legs({0.56, 1.14, 0.56, 1.14, 0.56, 1.14}));
-  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
-  EXPECT_THAT(ruling.why, HasSubstr("the assembly mode is lost"));
+  const TouchDecision decided =
+      decide_on_visit(*lock_config().robot, legs({0.56, 1.14, 0.56, 1.14, 0.56, 1.14}));
+  EXPECT_EQ(decided.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(decided.why, HasSubstr("the assembly mode is lost"));
 }
 
 /// Touches of a plane above the platform by its probe.
@@ -69,9 +69,9 @@ struct ProbedPlatform {
     step.touch.assign(6, 0.9);
     session.plan = {step};
   }
-  TouchRuling rule(std::initializer_list<double> lengths) const {
-    return rule_on_touch(*config.robot, session, meaning, session.plan[0], legs(lengths), 0.012,
-                         1e-4);
+  TouchDecision rule(std::initializer_list<double> lengths) const {
+    return decide_on_touch(*config.robot, session, meaning, session.plan[0], legs(lengths), 0.012,
+                           1e-4);
   }
 };
 
@@ -80,16 +80,16 @@ TEST(RuleOnTouchOfAPlatform, TakesItWhereItsLegsMeet) {
 }
 
 TEST(RuleOnTouchOfAPlatform, NamesALegOutOfItsRange) {
-  const TouchRuling ruling = ProbedPlatform().rule({0.9, 0.9, 1.2000001, 0.9, 0.9, 0.9});
-  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
-  EXPECT_EQ(ruling.why, "leg3 reads 1.2, out of its range");
+  const TouchDecision decided = ProbedPlatform().rule({0.9, 0.9, 1.2000001, 0.9, 0.9, 0.9});
+  EXPECT_EQ(decided.outcome, TouchOutcome::outlier);
+  EXPECT_EQ(decided.why, "leg3 reads 1.2, out of its range");
 }
 
 TEST(RuleOnTouchOfAPlatform, NamesALostAssemblyModeAndNoPlaceOfTheEndpoint) {
   // The platform's origin, where no location is, lies far before the plane.
-  const TouchRuling ruling = ProbedPlatform().rule({0.56, 1.14, 0.56, 1.14, 0.56, 1.14});
-  EXPECT_EQ(ruling.outcome, TouchOutcome::outlier);
-  EXPECT_THAT(ruling.why, HasSubstr("the assembly mode is lost: no location of the platform"));
+  const TouchDecision decided = ProbedPlatform().rule({0.56, 1.14, 0.56, 1.14, 0.56, 1.14});
+  EXPECT_EQ(decided.outcome, TouchOutcome::outlier);
+  EXPECT_THAT(decided.why, HasSubstr("the assembly mode is lost: no location of the platform"));
 }
 
 TEST(RowsOfAPlatform, AddNoNoiseForASpeedThatNobodyKnows) {

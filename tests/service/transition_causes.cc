@@ -15,7 +15,7 @@ Event decided_with_more(Decision decision) {
   Event event;
   event.what = What::decided;
   event.decision = decision;
-  event.why = "the ruling";
+  event.why = "the decision";
   event.cause = true;
   return event;
 }

@@ -32,19 +32,19 @@ struct Case {
       return each.parameter.part == part && each.parameter.quantity == quantity;
     });
   }
-  AcceptanceDecision rule() const { return rule_on_result(accept, rx90(), candidate, unchanged); }
+  AcceptanceDecision rule() const { return decide_on_result(accept, rx90(), candidate, unchanged); }
 };
 
 TEST(AcceptanceDecision, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   Case good;
   good.find(Part::link, Quantity::length).value += 1e-3;
-  const AcceptanceDecision ruling = good.rule();
-  EXPECT_TRUE(ruling.acceptable);
-  EXPECT_EQ(ruling.answer, Answer::improved);
-  EXPECT_EQ(ruling.check_before, 2e-4);
-  EXPECT_EQ(ruling.check_after, 1e-4);
-  EXPECT_THAT(ruling.why, HasSubstr("check residual 0.2 to 0.1 mm"));
-  EXPECT_THAT(ruling.why, HasSubstr("(100 sigma)"));
+  const AcceptanceDecision decided = good.rule();
+  EXPECT_TRUE(decided.acceptable);
+  EXPECT_EQ(decided.answer, Answer::improved);
+  EXPECT_EQ(decided.check_before, 2e-4);
+  EXPECT_EQ(decided.check_after, 1e-4);
+  EXPECT_THAT(decided.why, HasSubstr("check residual 0.2 to 0.1 mm"));
+  EXPECT_THAT(decided.why, HasSubstr("(100 sigma)"));
 }
 
 /// A set of 100 rows whose data sheet says 20 um, and what was found.
@@ -65,28 +65,29 @@ std::vector<Set> sheet_of(double noise) {
   return sets;
 }
 
-TEST(FitRuling, ComparesWhatIsLeftWithDataSheets) {
-  EXPECT_TRUE(rule_on_fit(left_of(21e-6, 80), sheet_of(20e-6)).noise);
-  const FitRuling more = rule_on_fit(left_of(28e-6, 80), sheet_of(20e-6));  // twice the squares
+TEST(FitDecision, ComparesWhatIsLeftWithDataSheets) {
+  EXPECT_TRUE(decide_on_fit(left_of(21e-6, 80), sheet_of(20e-6)).noise);
+  const FitDecision more = decide_on_fit(left_of(28e-6, 80), sheet_of(20e-6));  // twice the squares
   EXPECT_FALSE(more.noise);
   EXPECT_LT(more.p_value, 1e-3);
   EXPECT_THAT(more.why, HasSubstr("1.4 times the noise that the data sheets tell"));
-  EXPECT_TRUE(rule_on_fit(left_of(28e-6, 9), sheet_of(20e-6)).noise) << "too few freedoms to tell";
+  EXPECT_TRUE(decide_on_fit(left_of(28e-6, 9), sheet_of(20e-6)).noise)
+      << "too few freedoms to tell";
 }
 
-TEST(FitRuling, BelievesRepeatsRatherThanDataSheets) {
+TEST(FitDecision, BelievesRepeatsRatherThanDataSheets) {
   Solution solution = left_of(20e-6, 80);
   solution.uncertainty.lack_of_fit = {4.0, 1e-6, 60, 40};
-  EXPECT_FALSE(rule_on_fit(solution, sheet_of(20e-6)).noise);
+  EXPECT_FALSE(decide_on_fit(solution, sheet_of(20e-6)).noise);
   solution = left_of(100e-6, 80);
   solution.uncertainty.lack_of_fit = {1.05, 0.4, 60, 40};
-  EXPECT_TRUE(rule_on_fit(solution, sheet_of(20e-6)).noise);
+  EXPECT_TRUE(decide_on_fit(solution, sheet_of(20e-6)).noise);
 }
 
-TEST(FitRuling, SaysNothingWhereNobodySaysHowLargeTheNoiseIs) {
-  const FitRuling ruling = rule_on_fit(left_of(1e-3, 80), sheet_of(0));
-  EXPECT_TRUE(ruling.noise);
-  EXPECT_THAT(ruling.why, HasSubstr("nothing says"));
+TEST(FitDecision, SaysNothingWhereNobodySaysHowLargeTheNoiseIs) {
+  const FitDecision decided = decide_on_fit(left_of(1e-3, 80), sheet_of(0));
+  EXPECT_TRUE(decided.noise);
+  EXPECT_THAT(decided.why, HasSubstr("nothing says"));
 }
 
 TEST(AcceptanceDecision, RefusesWhatTheVerdictDoesNotCallImproved) {
@@ -114,9 +115,9 @@ TEST(AcceptanceDecision, ComparesTheSameRowsBeforeAndAfter) {
   Case one;
   one.unchanged.residual.check_rows = {{2e-4, false}, {9e-3, true}, {2e-4, false}};
   one.candidate.residual.check_rows = {{1e-4, false}, {1e-4, false}, {8e-3, true}};
-  const AcceptanceDecision ruling = one.rule();
-  EXPECT_DOUBLE_EQ(ruling.check_before, 2e-4) << "without what either rejects";
-  EXPECT_DOUBLE_EQ(ruling.check_after, 1e-4);
+  const AcceptanceDecision decided = one.rule();
+  EXPECT_DOUBLE_EQ(decided.check_before, 2e-4) << "without what either rejects";
+  EXPECT_DOUBLE_EQ(decided.check_after, 1e-4);
 }
 
 TEST(AcceptanceDecision, HasALimitOfItsOwnForEachPartOfTheMachine) {
@@ -172,27 +173,27 @@ Solution check_of(int rows, double rms) {
   return solution;
 }
 
-TEST(CheckRuling, ExplainsWhatIsAsGoodAsItWas) {
-  const CheckRuling ruling = rule_on_check(check_of(80, 2e-5), check_of(12, 2e-5), 0.01);
-  EXPECT_TRUE(ruling.explained);
-  EXPECT_NEAR(ruling.p_value, 0.47, 0.03);  // the median of F(12, 80) is 0.953, below 1
-  EXPECT_THAT(ruling.why, HasSubstr("the active model explains them"));
+TEST(CheckDecision, ExplainsWhatIsAsGoodAsItWas) {
+  const CheckDecision decided = decide_on_check(check_of(80, 2e-5), check_of(12, 2e-5), 0.01);
+  EXPECT_TRUE(decided.explained);
+  EXPECT_NEAR(decided.p_value, 0.47, 0.03);  // the median of F(12, 80) is 0.953, below 1
+  EXPECT_THAT(decided.why, HasSubstr("the active model explains them"));
 }
 
-TEST(CheckRuling, DoesNotExplainWhatHasBecomeWorse) {
+TEST(CheckDecision, DoesNotExplainWhatHasBecomeWorse) {
   // F(12, 80) exceeds 2.415 with 1 % (tables of the F distribution).
-  EXPECT_TRUE(rule_on_check(check_of(80, 1), check_of(12, std::sqrt(2.40)), 0.01).explained);
-  EXPECT_FALSE(rule_on_check(check_of(80, 1), check_of(12, std::sqrt(2.43)), 0.01).explained);
-  EXPECT_TRUE(rule_on_check(check_of(80, 1), check_of(12, 0.1), 0.01).explained);
+  EXPECT_TRUE(decide_on_check(check_of(80, 1), check_of(12, std::sqrt(2.40)), 0.01).explained);
+  EXPECT_FALSE(decide_on_check(check_of(80, 1), check_of(12, std::sqrt(2.43)), 0.01).explained);
+  EXPECT_TRUE(decide_on_check(check_of(80, 1), check_of(12, 0.1), 0.01).explained);
 }
 
-TEST(CheckRuling, ExplainsNothingWithoutRowsToCompare) {
-  EXPECT_FALSE(rule_on_check(check_of(0, 0), check_of(12, 1e-5), 0.01).explained);
-  EXPECT_FALSE(rule_on_check(check_of(80, 1e-5), check_of(0, 0), 0.01).explained);
-  EXPECT_EQ(rule_on_check({}, {}, 0.01).why, "nothing to compare with");
+TEST(CheckDecision, ExplainsNothingWithoutRowsToCompare) {
+  EXPECT_FALSE(decide_on_check(check_of(0, 0), check_of(12, 1e-5), 0.01).explained);
+  EXPECT_FALSE(decide_on_check(check_of(80, 1e-5), check_of(0, 0), 0.01).explained);
+  EXPECT_EQ(decide_on_check({}, {}, 0.01).why, "nothing to compare with");
 }
 
-TEST(CheckRuling, RaisesAFalseAlarmAsRarelyAsItIsAskedTo) {
+TEST(CheckDecision, RaisesAFalseAlarmAsRarelyAsItIsAskedTo) {
   // Rows as the service has them: planes fitted to the fit rows of a session, its check rows and
   // the new touches judged by them; the robot held, nothing changed but the noise.
   const Simulated simulated = made(
@@ -235,14 +236,14 @@ TEST(CheckRuling, RaisesAFalseAlarmAsRarelyAsItIsAskedTo) {
     };
     const Solution now = identify(rx90(), only(0, kNew), held);
     const Solution then = identify(rx90(), only(kNew, check.size()), held);
-    alarms += !rule_on_check(then, now, kP).explained;
+    alarms += !decide_on_check(then, now, kP).explained;
   }
   // Binomial: 3 sigma of 60 trials at 0.2 are 9.3; the trials share rows, which narrows it.
   const double sigma = std::sqrt(kTrials * kP * (1 - kP));
   EXPECT_NEAR(alarms, kTrials * kP, 3 * sigma);
 }
 
-TEST(CheckRuling, RaisesAFalseAlarmAtTheRateAskedForOverManyGaussianChecks) {
+TEST(CheckDecision, RaisesAFalseAlarmAtTheRateAskedForOverManyGaussianChecks) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   const auto rms = [&](int rows) {
@@ -254,7 +255,7 @@ TEST(CheckRuling, RaisesAFalseAlarmAtTheRateAskedForOverManyGaussianChecks) {
   constexpr double kP = 0.01;
   int alarms = 0;
   for (int i = 0; i < kTrials; ++i)
-    alarms += !rule_on_check(check_of(80, rms(80)), check_of(24, rms(24)), kP).explained;
+    alarms += !decide_on_check(check_of(80, rms(80)), check_of(24, rms(24)), kP).explained;
   EXPECT_NEAR(alarms, kTrials * kP, 3 * std::sqrt(kTrials * kP * (1 - kP)));  // binomial, 3 sigma
 }
 
