@@ -1,8 +1,9 @@
 // Pretravel of the probe: the stylus gives way before the trigger fires,
-//   pretravel = p0 + sin(phi) (p1 + p3 cos(3 psi))
+//   pretravel = p0 + sin(phi) (p1 + p3 cos(3 psi) + q3 sin(3 psi))
 // phi the angle between the surface's normal and the stylus (z of the last frame), psi the azimuth
 // of the normal about it, counted from x. The tip that fired lies that deep in the surface, so the
-// contact was at the tip plus the pretravel along the outward normal. p0, p1, p3: m.
+// contact was at the tip plus the pretravel along the outward normal. How the three feet stand to x
+// is as the probe was screwed in: p3 and q3 are what they do along and beside it. p0, p1, p3, q3: m.
 #include <cmath>
 
 #include "kinematics/effect.h"
@@ -15,8 +16,10 @@ namespace {
 class ProbePretravel final : public Effect {
  public:
   ProbePretravel() {
-    parameters_ = {
-        {"p0", "m", 1e-6, 1e-4, true}, {"p1", "m", 1e-6, 1e-4, true}, {"p3", "m", 1e-6, 1e-4}};
+    parameters_ = {{"p0", "m", 1e-6, 1e-4, true},
+                   {"p1", "m", 1e-6, 1e-4, true},
+                   {"p3", "m", 1e-6, 1e-4},
+                   {"q3", "m", 1e-6, 1e-4}};
   }
 
   bool of_machine() const override { return false; }
@@ -26,8 +29,8 @@ class ProbePretravel final : public Effect {
     if (!at.normal.allFinite()) return;
     const Eigen::Vector3d n = at.poses.back().linear().transpose() * at.normal;
     const double sine = std::hypot(n.x(), n.y()), psi = std::atan2(n.y(), n.x());
-    const double share[] = {1, sine, sine * std::cos(3 * psi)};
-    for (int i = 0; i < 3; ++i) into.tip.col(i).head<3>() = share[i] * at.normal;
+    const double share[] = {1, sine, sine * std::cos(3 * psi), sine * std::sin(3 * psi)};
+    for (int i = 0; i < 4; ++i) into.tip.col(i).head<3>() = share[i] * at.normal;
   }
 };
 

@@ -25,6 +25,11 @@ TEST(ProbePretravelByHand, DependsOnTheAngleToTheStylusAndOnTheSideOfIt) {
   held.q = numbers({90 * kDegree});
   held.normal = {0, 0.5, std::cos(30 * kDegree)};
   EXPECT_LT((moved(kTurntable, probe, held).p - 12e-6 * held.normal).norm(), 1e-15);
+  // Feet a twelfth of a turn aside: at psi = 30 degrees sin 90 brings all of q3.
+  const std::string aside = "[{effect: probe_pretravel, p0: 5.0e-6, p1: 1.0e-5, q3: 4.0e-6}]";
+  held.q = numbers({0});
+  held.normal = {0.5 * std::cos(30 * kDegree), 0.25, std::cos(30 * kDegree)};
+  EXPECT_LT((moved(kTurntable, aside, held).p - 12e-6 * held.normal).norm(), 1e-15);
   held.normal.setConstant(kUnknown);  // nothing was touched
   expect_near(moved(kTurntable, probe, held).p, 0, 0, 0, 0);
 }
