@@ -42,6 +42,13 @@ Diagnosis of_part(const std::shared_ptr<const Robot>& robot, const DataSet& data
   return diagnose(robot, some);
 }
 
+/// It happened at one moment: only rows on both sides of that can show it.
+bool happened(const CauseResult& cause) {
+  return std::ranges::any_of(cause.correction, [](const FoundEffect& found) {
+    return found.what.shape.moment.has_value();
+  });
+}
+
 bool is_of(const std::string& label, const std::string& effect) {
   return label.substr(0, label.find('@')) == effect;
 }
@@ -50,9 +57,9 @@ bool is_of(const std::string& label, const std::string& effect) {
 struct Carried {
   int certain = 0, same = 0, placed = 0, closed = 0, judged = 0;
 
-  void add(const Diagnosis& from, const Diagnosis& to) {
+  void add(const Diagnosis& from, const Diagnosis& to, bool in_turn) {
     for (const CauseResult& each : from.named) {
-      if (each.probability < kCertain) continue;
+      if (each.probability < kCertain || (!in_turn && happened(each))) continue;
       ++certain;
       const auto says = [&](const CauseResult& other) {
         const bool alike = std::ranges::any_of(
@@ -123,7 +130,7 @@ TEST_P(Agreement, HoldsBetweenPartsOfOneSet) {
     }
     for (int a = 0; a < parts; ++a)
       for (int b = 0; b < parts; ++b)
-        if (a != b) carried.add(answers[a], answers[b]);
+        if (a != b) carried.add(answers[a], answers[b], in_turn);
   }
   std::printf(
       "%s: certain %d, of these the other part says the same cause %d, at the same place "
