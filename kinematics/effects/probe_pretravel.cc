@@ -3,7 +3,8 @@
 // phi the angle between the surface's normal and the stylus (z of the last frame), psi the azimuth
 // of the normal about it, counted from x. The tip that fired lies that deep in the surface, so the
 // contact was at the tip plus the pretravel along the outward normal. How the three feet stand to x
-// is as the probe was screwed in: p3 and q3 are what they do along and beside it. p0, p1, p3, q3: m.
+// is as the probe was screwed in: p3 and q3 are what they do along and beside it.
+// p0, p1, p3, q3: m.
 #include <cmath>
 
 #include "kinematics/effect.h"
