@@ -81,6 +81,9 @@ struct DiagnosisConstants {
     double also_there = 0.5;           ///< of the cause's own: further places; 0.2 to 0.9 [trials]
     /// Of a row's noise beyond the geometry, that is scaled up; 0.01 to 0.3 [habit]
     double least_of_row = 0.05;
+    double of_tail = 0.2;             ///< share of the resamples that is it; 0.05 to 0.3 [habit]
+    std::size_t fewest_of_tail = 15;  ///< resamples; 10 to 50 [habit]
+    double least_p = 1e-6;            ///< that a tail is believed; 1e-9 to 1e-4 [habit]
   };
   /// Sessions that are simulated over the rows.
   struct Practice {

@@ -18,7 +18,6 @@
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
 #include "diagnosis/validation/folds.h"
-#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -142,7 +141,6 @@ class Diagnostician {
       result_.problem = lacking();
       if (!result_.problem.empty()) return;
       posterior_ = bench_->search();
-      expects(std::isfinite(posterior_.log_total), "the evidence of finite rows is finite");
       const Hypothesis& best = posterior_.hypotheses.front();
       const auto [columns, sigma] = MarginalLikelihood::unfold(bench_->terms(best));
       const double variance =

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "diagnosis/constants.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 /// One search on a bench: what it has visited so far.
@@ -155,6 +156,7 @@ class Search {
     for (const Visit& each : visited_) top = std::max(top, each.log_weight);
     for (const Visit& each : visited_) sum += std::exp(each.log_weight - top);
     const double total = top + std::log(sum);
+    expects(std::isfinite(total), "the evidence of finite rows is finite");
     Posterior posterior;
     posterior.log_total = total - bench_.marginal_likelihoods_.front().log_evidence({});
     std::vector<double> family(bench_.blocks_.size()), cause(bench_.blocks_.size());

@@ -99,11 +99,30 @@ Eigen::ArrayXd found_structure(const EvidenceEvaluator& bench, const Eigen::Matr
   return structure - noise;
 }
 
+/// Probability beyond `seen` by the tail of `found`, all below it: logs of odds fall off
+/// exponentially (Markov: P(odds > k) <= 1/k), how fast by the mean excess of the best of them,
+/// taken two sigma slower (Knijnenburg et al., Bioinformatics 25 (2009), with shape 0). 1 where
+/// they are too few.
+double beyond_tail(std::vector<double> found, double seen) {
+  std::ranges::sort(found, std::ranges::greater{});
+  const auto best =
+      static_cast<std::size_t>(kDiagnosis.naming.of_tail * static_cast<double>(found.size()));
+  if (best < kDiagnosis.naming.fewest_of_tail || !std::isfinite(found[best])) return 1;
+  const double from = found[best], count = static_cast<double>(best);
+  const double excess = std::accumulate(found.begin(), found.begin() + best, 0.0) / count - from;
+  if (!(excess > 0)) return 1;
+  const double slowly = excess * (1 + 2 / std::sqrt(count));
+  const double p = count / static_cast<double>(found.size()) * std::exp((from - seen) / slowly);
+  return std::max(p, kDiagnosis.naming.least_p);
+}
+
 }  // namespace
 
 double share_as_good(const std::vector<double>& found, double seen) {
   const auto as_good = std::ranges::count_if(found, [&](double each) { return each >= seen; });
-  return (1.0 + static_cast<double>(as_good)) / (1.0 + static_cast<double>(found.size()));
+  const double share =
+      (1.0 + static_cast<double>(as_good)) / (1.0 + static_cast<double>(found.size()));
+  return as_good > 0 ? share : std::min(share, beyond_tail(found, seen));
 }
 
 NullDistribution::NullDistribution(const LinearisedModel& view, EvidenceEvaluator& bench,

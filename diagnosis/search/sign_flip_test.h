@@ -9,7 +9,8 @@
 
 namespace selfcal {
 
-/// (1 + k) / (1 + B), k of the B resamples `found` being as good as `seen`.
+/// (1 + k) / (1 + B), k of the B resamples `found` being as good as `seen`; without one as good
+/// what their tail says, where there are enough of them.
 double share_as_good(const std::vector<double>& found, double seen);
 
 /// What the search finds in noise alone: the most probable cause and the best one beside it, once
