@@ -203,7 +203,7 @@ struct PoseRepeats {
 struct GridCell {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world, of its poses
   double sigma = 0;                                  ///< m
-  double bias = -1;  ///< m, length of the mean residual of the rows there; negative without rows
+  double bias = -1;  ///< m, length of the mean residual of the rows there; else what is expected
   int poses = 0, rows = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "constraints/methods/plane.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -17,6 +18,8 @@ constexpr int kMotionColumns = 6;
 /// Of a gear ratio without a tolerance: tooth counts are exact, a ball screw or a belt less so.
 constexpr double kHeldRatio = 2e-5;
 constexpr double kExact = 1e-12;  ///< m or rad: of what is exact
+/// Of a probe's radius without a tolerance: a micrometre or two where a ball has millimetres.
+constexpr double kBall = 1e-3;
 
 /// A set whose place is given: the system of its rows, and 1 over the sigma of each motion of it.
 struct GivenPlace {
@@ -54,8 +57,9 @@ class Information {
       const bool plane = sets[s].method->touches() == TouchedSurface::plane;
       for (size_t i = 0; i < known.size(); ++i) {
         const double stated = plane ? sets[s].given.place : sets[s].given.length;
-        const double sigma = stated >= 0 ? stated : kBelieved * std::abs(known[i].value);
-        if (known[i].by_row && sigma > 0)
+        const double alone = stated >= 0 ? stated : kBelieved * std::abs(known[i].value);
+        const double sigma = std::hypot(known[i].by_row ? alone : 0, plane ? by_probe(s) : 0);
+        if (sigma > 0)
           add(static_cast<int>(R_.cols()) - 1 - equations_.known_lengths() +
                   equations_.known_at(s) + static_cast<int>(i),
               1 / sigma);
@@ -94,6 +98,26 @@ class Information {
   }
 
  private:
+  /// What a probe that is larger than given does to the distance of a plane (m, 1 sigma): once to
+  /// one that is known, twice to that from another one that was touched from the other side,
+  /// nothing to that from one on the same side.
+  double by_probe(int set) const {
+    const Set& of = equations_.data().sets[static_cast<size_t>(set)];
+    const double radius = probe_radius(*of.method);
+    if (radius <= 0) return 0;
+    const double doubt = of.given.length >= 0 ? of.given.length : kBall * radius;
+    if (of.reference < 0) return doubt;
+    return mean_normal(set).dot(mean_normal(of.reference)) < 0 ? 2 * doubt : 0;
+  }
+
+  Eigen::Vector3d mean_normal(int set) const {
+    const Observations& rows = equations_.data().rows;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int row = 0; row < rows.rows(); ++row)
+      if (rows.set[static_cast<size_t>(row)] == set) sum += rows.normal.row(row).transpose();
+    return sum / std::max(sum.norm(), kExact);
+  }
+
   /// W^T w of all unknowns, w the column of a parameter that is held.
   Eigen::VectorXd asked_by(int held, Eigen::Index unknowns) const {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(unknowns);

@@ -132,9 +132,17 @@ PoseRepeats pose_repeats(const DataSet& data, const Judged& after) {
   return result;
 }
 
-/// Cells of the box that the poses span: 1 sigma, and the mean of the residual vectors there.
+/// What more rows of the same kind would not make less: all but the noise of the rows.
+bool stays(const CovarianceSource& source) {
+  return source.name == "the maker's tolerances" || source.name == "held scale" ||
+         source.name == "what was given" || source.name == "rows that share errors";
+}
+
+/// Cells of the box that the poses span: 1 sigma, and the mean of the residual vectors there; where
+/// no row has any, what is expected of it, `lasting` being 1 sigma of what stays.
 std::vector<GridCell> grid(const DataSet& data, const EndpointQuestion& question,
-                           const EndpointSigma& sigma, const Judged& after) {
+                           const EndpointSigma& sigma, const EndpointSigma& lasting,
+                           const Judged& after) {
   const auto place = [&](const Eigen::VectorXd& q) {
     return locate(*question.robot, question.xi, q).p;
   };
@@ -153,10 +161,12 @@ std::vector<GridCell> grid(const DataSet& data, const EndpointQuestion& question
     return cell;
   };
   std::map<int, GridCell> cells;
+  std::map<int, double> expected;  // squares
   for (size_t i = 0; i < at.size(); ++i) {
     GridCell& cell = cells[cell_of(at[i])];
     cell.center += at[i];
     cell.sigma += std::pow(sigma.by_pose[i], 2);
+    expected[cell_of(at[i])] += std::pow(lasting.by_pose[i], 2);
     cell.poses += 1;
   }
   std::map<int, Eigen::Vector3d> sums;
@@ -173,7 +183,8 @@ std::vector<GridCell> grid(const DataSet& data, const EndpointQuestion& question
   for (auto& [index, cell] : cells) {
     cell.center /= cell.poses;
     cell.sigma = std::sqrt(cell.sigma / cell.poses);
-    if (cell.rows > 0) cell.bias = sums[index].norm() / cell.rows;
+    cell.bias =
+        cell.rows > 0 ? sums[index].norm() / cell.rows : std::sqrt(expected[index] / cell.poses);
     list.push_back(cell);
   }
   return list;
@@ -203,7 +214,10 @@ Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
   result.residuals = residual_tests(rows, noise);
   result.correlations = correlations(equations.robot(), C);
   result.repeats = pose_repeats(data, after);
-  result.grid = grid(data, question, sigma, after);
+  question.covariance.setZero();
+  for (const CovarianceSource& source : sources)
+    if (stays(source)) question.covariance += source.C.topLeftCorner(n, n);
+  result.grid = grid(data, question, sigma, endpoint_sigma(question), after);
   return result;
 }
 

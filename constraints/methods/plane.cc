@@ -68,6 +68,7 @@ class Touch : public Method {
                 Observations& data, int row) const override {
     data.normal.row(row) = (reference ? *reference : nuisance).head<3>().transpose();
   }
+  double probe_radius() const { return probe_radius_; }
 
  protected:
   Eigen::Vector3d touched(const MethodInput& in, int lane) const {
@@ -221,6 +222,11 @@ class ParallelPlane final : public Touch {
 
 std::shared_ptr<const Method> point_on_plane() {
   return std::make_shared<OnePlane>(0, std::nullopt);
+}
+
+double probe_radius(const Method& method) {
+  const auto* touch = dynamic_cast<const Touch*>(&method);
+  return touch ? touch->probe_radius() : 0;
 }
 
 MethodPtr make_plane(SetEntry& entry) {

@@ -62,7 +62,11 @@ TEST(Uncertainty, HasABudgetThatAddsUpAndResidualsThatAreNoise) {
   // Two readings apart by sqrt(2) of their noise, each half of it from their mean.
   EXPECT_NEAR(u.repeats.repeatability, 60e-6, 40e-6);
   EXPECT_LT(u.repeats.accuracy, 100e-6);
-  for (const GridCell& cell : u.grid) EXPECT_LT(cell.bias, 60e-6);
+  for (const GridCell& cell : u.grid) {
+    if (cell.rows > 0) {
+      EXPECT_LT(cell.bias, 60e-6);
+    }
+  }
 }
 
 TEST(Uncertainty, SeesAnEffectThatTheModelLacks) {
@@ -122,6 +126,21 @@ TEST(Uncertainty, HasTheDoubtOfAGivenPlaneInItUnlessItIsExact) {
   EXPECT_GT(budget(rough, "what was given"), 0.5e-3);
   EXPECT_GT(rough.workspace.rms, budget(rough, "what was given"));
   EXPECT_TRUE(rough.values.isApprox(exact.values, 1e-9)) << "given is kept";
+  // Touches of planes have no residual vectors: what is expected all over the workspace is said.
+  ASSERT_FALSE(rough.uncertainty.grid.empty());
+  double squares = 0, poses = 0;
+  for (const GridCell& cell : rough.uncertainty.grid) {
+    EXPECT_EQ(cell.rows, 0);
+    EXPECT_LT(cell.bias, cell.sigma);
+    squares += cell.poses * cell.bias * cell.bias;
+    poses += cell.poses;
+  }
+  double lasting = 0;
+  for (const char* source :
+       {"the maker's tolerances", "held scale", "what was given", "rows that share errors"})
+    lasting += std::pow(budget(rough, source), 2);
+  // A part that is the difference of two covariances counts by what of it is positive.
+  EXPECT_NEAR(std::sqrt(squares / poses / lasting), 1, 0.02);
 }
 
 /// The doubt of what was given where its tolerance is `text`.
@@ -168,6 +187,47 @@ TEST(Uncertainty, HasTheDoubtOfAGivenCentreAndRadiusInIt) {
   const double exact = given(ball, "0"), rough = given(ball, "1e-3");
   EXPECT_LT(exact, 0.02e-3);
   EXPECT_GT(rough, 0.5e-3);
+}
+
+/// The doubt of what was given, of touches of the two faces of a plate 0.2 m thick by a ball of 3
+/// mm whose radius is given to `tolerance`; or of two steps seen from one side.
+double given_by_probe(const char* tolerance, bool opposite) {
+  const auto robot = robot_of(kRx90);
+  Random random(5);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  const auto parts = [&](const char* distance) {
+    Node other = entry({{"set", "table"}, {"noise", "2e-6"}});
+    other.set("distance", Node::of(std::string(distance)));
+    Node step = entry({{"method", "plane"}, {"probe_radius", "3e-3"}});
+    step.set("parallel_to", other);
+    Node tolerances = Node::map();
+    tolerances.set("length", Node::of(std::string(tolerance)));
+    step.set("tolerance", tolerances);
+    return std::vector<SetPart>{
+        {"table", entry({{"method", "plane"}, {"probe_radius", "3e-3"}}), 150},
+        {"step", step, 150}};
+  };
+  Session session = make_session(*robot, truth, parts("0.2"), 20e-6, random);
+  EXPECT_EQ(session.unreached, "");
+  if (opposite) {  // the same touches, from the other side of a plate that is a ball thicker
+    Node all = Node::map();
+    for (const SetPart& part : parts("0.206")) all.set(part.name, part.node);
+    Problems problems;
+    session.data.sets = read_sets(all, problems);
+    EXPECT_FALSE(problems.any());
+    Observations& rows = session.data.rows;
+    for (int row = 0; row < rows.rows(); ++row)
+      if (rows.set[static_cast<size_t>(row)] == 1) rows.normal.row(row) *= -1;
+  }
+  return budget(identify(*robot, session.data), "what was given");
+}
+
+TEST(Uncertainty, HasTheDoubtOfAProbesRadiusInItWhereItTouchesOppositeFaces) {
+  const double exact = given_by_probe("0", true), rough = given_by_probe("1e-4", true);
+  // 0.2 mm of 0.206 m are a thousandth of a robot that reaches a metre.
+  EXPECT_GT(rough, 0.2e-3);
+  EXPECT_LT(exact, 0.1 * rough);
+  EXPECT_NEAR(given_by_probe("1e-4", false), given_by_probe("0", false), 1e-6);
 }
 
 TEST(Uncertainty, HasTheDoubtOfGearsAndOfWhatIsFixedInIt) {
