@@ -13,10 +13,10 @@
 #include "kinematics/parameter.h"
 #include "kinematics/robot.h"
 
-// What to command: Compensation, CompensationStream, controller_model().
+// What to command: Compensation, CompensationStream, fit_controller().
 #include "kinematics/inverse/compensation.h"
 #include "kinematics/inverse/compensation_stream.h"
-#include "kinematics/inverse/controller_model.h"
+#include "kinematics/inverse/controller_fit.h"
 
 // What the rows say: identify().
 #include "constraints/estimation/identification.h"

@@ -12,7 +12,7 @@
 #include "io/files/poses_csv.h"
 #include "io/files/robot_file.h"
 #include "kinematics/inverse/compensation.h"
-#include "kinematics/inverse/controller_model.h"
+#include "kinematics/inverse/controller_fit.h"
 #include "kinematics/robot_text.h"
 
 namespace selfcal {
@@ -89,13 +89,15 @@ Result<void> tell_controller(const CompensateArguments& arguments, const Robot& 
   const OperatingPoint at = operating_point(arguments);
   const Eigen::MatrixXd q = fitted_configurations(nominal, calibrated, tally.reached);
   if (q.rows() == 0) return {};
-  const ControllerModel model = controller_model(nominal, calibrated, q, at);
+  const std::vector<int> taken = controller_parameters(nominal);
+  const ControllerNumbers numbers = numbers_of_parameters(nominal, taken);
+  const Eigen::VectorXd xi = fit_controller(nominal, numbers, calibrated, q, at);
   const Eigen::MatrixXd judged = tally.reached.empty() ? q : rows_of_vectors(tally.reached);
-  const auto error = [&](const Eigen::VectorXd& xi) {
-    return controller_error(nominal, xi, calibrated, judged, at);
+  const auto error = [&](const Eigen::VectorXd& of) {
+    return ends_apart(nominal, of, calibrated, judged, at);
   };
-  const ControllerError maker = error(nominal_values(nominal)), found = error(model.as_found),
-                        fitted = error(model.xi);
+  const EndsApart maker = error(numbers.start),
+                  found = error(as_found(nominal, numbers, calibrated)), fitted = error(xi);
   std::fprintf(
       stderr,
       "a controller that takes no more than these is off by %.3g mm rms, %.3g mm at most "
@@ -103,15 +105,15 @@ Result<void> tell_controller(const CompensateArguments& arguments, const Robot& 
       "rms\n",
       1e3 * fitted.rms, 1e3 * fitted.most, 1e3 * fitted.rms_angle, 1e3 * found.rms,
       1e3 * maker.rms);
-  for (const int i : model.taken) {
+  for (const int i : taken) {
     const Parameter& each = nominal.parameters()[static_cast<std::size_t>(i)];
     std::fprintf(stderr, "  %-12s %s %s, of the maker's %s\n", each.name.c_str(),
-                 format_number(model.xi[i]).c_str(), std::string(each.unit()).c_str(),
-                 format_number(nominal_values(nominal)[i]).c_str());
+                 format_number(xi[i]).c_str(), std::string(each.unit()).c_str(),
+                 format_number(numbers.start[i]).c_str());
   }
   return arguments.controller.empty()
              ? Result<void>()
-             : write_file_atomically(arguments.controller, robot_text(nominal, model.xi));
+             : write_file_atomically(arguments.controller, robot_text(nominal, xi));
 }
 
 int compensate_command(const CompensateArguments& arguments) {

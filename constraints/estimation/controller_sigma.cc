@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "constraints/sampling/workspace_poses.h"
-#include "kinematics/inverse/controller_model.h"
+#include "kinematics/inverse/controller_fit.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
 

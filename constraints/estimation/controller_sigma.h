@@ -12,8 +12,9 @@ struct ControllerSigma {
   double sigma = 0;  ///< m, 1 sigma of the end position then; negative where it is not known at all
 };
 
-/// Of the parameters that a controller usually takes (kinematics/inverse/compensation.h), moved so
-/// that the maker's robot comes as near the calibrated one as it can where the end position counts.
+/// Of the parameters that a controller usually takes (kinematics/inverse/controller_fit.h), moved
+/// so that the maker's robot comes as near the calibrated one as it can where the end position
+/// counts.
 ControllerSigma controller_sigma(const Robot& robot, const DataSet& data, const Solution& solution);
 
 }  // namespace selfcal

@@ -2,35 +2,82 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
 
+constexpr double kQuarter = 1e-6;   // rad from a multiple of a quarter turn that count as one
 constexpr double kTurnArm = 0.1;    // m: what a turn weighs beside a shift
 constexpr double kNear = 1e-6;      // m, that a move by its tolerance is worth
 constexpr double kAllOfIt = 1e-9;   // m: robots that are one
 constexpr double kFitStep = 1e-12;  // rad, m: the last step's
 constexpr int kMostFits = 20;
 
-/// Up to kLanes rows of `q` from `first` on.
-ConfigurationBlock poses_from(const Eigen::MatrixXd& q, Eigen::Index first) {
-  ConfigurationBlock block;
-  block.count = static_cast<int>(std::min<Eigen::Index>(kLanes, q.rows() - first));
-  block.q.resize(kLanes, q.cols());
-  for (int lane = 0; lane < kLanes; ++lane)
-    block.q.row(lane) = q.row(first + std::min(lane, block.count - 1));
-  return block;
+bool multiple_of_a_quarter(double angle) {
+  return std::abs(std::remainder(angle, std::numbers::pi / 2)) < kQuarter;
 }
 
-/// Shift and turn from where `X` has the end to where `wanted` has it, in the world.
-Eigen::Matrix<double, 6, 1> way_between(const Location& X, const Location& wanted) {
-  Eigen::Matrix<double, 6, 1> e;
-  e << wanted.p - X.p, log_rotation(wanted.R * X.R.transpose());
-  return e;
+/// Poses that a robot with some parameters can take, block by block, beside where the real one is
+/// there.
+class Beside {
+ public:
+  Beside(const Robot& robot, const Robot& real, const Eigen::MatrixXd& q, const OperatingPoint& at)
+      : robot_(robot), q_(q) {
+    const Eigen::VectorXd xi = values(real);
+    Locations X;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const Eigen::VectorXd each = q.row(i).transpose();
+      if (real.locate(block_of(each), xi, Body::endpoint, X, nullptr).closes(0))
+        is_.emplace_back(locate_at(at, real, xi, each));
+      else
+        is_.emplace_back();
+    }
+  }
+
+  /// `take(pose, lane, off)` of each, `off` the way and the turn from the robot with `xi`, whose
+  /// Jacobian is `psi`, to the real one.
+  template <class Take>
+  void each(const Eigen::VectorXd& xi, PsiBlock* psi, Take take) const {
+    Locations X;
+    for (Eigen::Index first = 0; first < q_.rows(); first += kLanes) {
+      const auto count = static_cast<int>(std::min<Eigen::Index>(kLanes, q_.rows() - first));
+      ConfigurationBlock block{Eigen::ArrayXXd(kLanes, q_.cols()), count};
+      for (int lane = 0; lane < kLanes; ++lane)
+        block.q.row(lane) = q_.row(first + std::min(lane, count - 1)).array();
+      const Closure closure = robot_.locate(block, xi, Body::endpoint, X, psi);
+      for (int lane = 0; lane < count; ++lane) {
+        const std::optional<Location>& is = is_[static_cast<std::size_t>(first + lane)];
+        if (!is || !closure.closes(lane)) continue;
+        Eigen::Matrix<double, 6, 1> off;
+        off << is->p - X.p(lane), log_rotation(is->R * X.R(lane).transpose());
+        take(first + lane, lane, off);
+      }
+    }
+  }
+
+ private:
+  const Robot& robot_;
+  const Eigen::MatrixXd& q_;
+  std::vector<std::optional<Location>> is_;
+};
+
+EndsApart apart(const Beside& beside, const Eigen::VectorXd& xi) {
+  EndsApart ends;
+  double squares = 0, squares_angle = 0;
+  beside.each(xi, nullptr, [&](Eigen::Index, int, const Eigen::Matrix<double, 6, 1>& off) {
+    squares += off.head<3>().squaredNorm();
+    squares_angle += off.tail<3>().squaredNorm();
+    ends.most = std::max(ends.most, off.head<3>().norm());
+    ++ends.poses;
+  });
+  if (ends.poses == 0) return ends;
+  ends.rms = std::sqrt(squares / ends.poses);
+  ends.rms_angle = std::sqrt(squares_angle / ends.poses);
+  return ends;
 }
 
 /// What one step of the fit is solved from.
@@ -39,71 +86,51 @@ struct Linearised {
   Eigen::VectorXd b;
 };
 
-class Fit {
- public:
-  Fit(const Robot& geometry, const ControllerNumbers& numbers, const Robot& real,
-      const Eigen::MatrixXd& q)
-      : geometry_(geometry), numbers_(numbers), q_(q) {
-    const Eigen::VectorXd xi = values(real);
-    for (Eigen::Index i = 0; i < q.rows(); ++i)
-      wanted_.push_back(locate(real, xi, q.row(i).transpose()));
+Linearised linearised(const Robot& geometry, const ControllerNumbers& numbers, const Beside& beside,
+                      Eigen::Index poses, const Eigen::VectorXd& s) {
+  const Eigen::Index priors = numbers.start.size();
+  Linearised at{Eigen::MatrixXd::Zero(6 * poses + priors, s.size()),
+                Eigen::VectorXd::Zero(6 * poses + priors)};
+  const Eigen::VectorXd moved = numbers.basis * s;
+  PsiBlock psi;
+  beside.each(numbers.start + moved, &psi,
+              [&](Eigen::Index pose, int lane, const Eigen::Matrix<double, 6, 1>& off) {
+                for (int c = 0; c < 6; ++c) {
+                  const double weight = (c < 3 ? 1 : kTurnArm) / kNear;
+                  at.A.row(6 * pose + c).noalias() =
+                      weight * psi.row(c * kLanes + lane) * numbers.basis;
+                  at.b[6 * pose + c] = weight * off[c];
+                }
+              });
+  for (Eigen::Index i = 0; i < priors; ++i) {
+    const double tolerance = geometry.parameters()[static_cast<std::size_t>(i)].tolerance;
+    if (!(tolerance > 0)) continue;
+    at.A.row(6 * poses + i) = numbers.basis.row(i) / tolerance;
+    at.b[6 * poses + i] = -moved[i] / tolerance;
   }
-
-  Eigen::VectorXd run() const {
-    Eigen::VectorXd s = least_squares(numbers_.basis, values(geometry_) - numbers_.start);
-    for (int i = 0; i < kMostFits; ++i) {
-      const Linearised at = linearised(s);
-      const Eigen::VectorXd step = least_squares(at.A, at.b);
-      s += step;
-      if (step.size() == 0 || step.cwiseAbs().maxCoeff() < kFitStep) break;
-    }
-    return numbers_.start + numbers_.basis * s;
-  }
-
- private:
-  Linearised linearised(const Eigen::VectorXd& s) const {
-    const Eigen::Index numbers = s.size(), priors = numbers_.start.size();
-    Linearised at{Eigen::MatrixXd::Zero(6 * q_.rows() + priors, numbers),
-                  Eigen::VectorXd::Zero(6 * q_.rows() + priors)};
-    const Eigen::VectorXd moved = numbers_.basis * s, xi = numbers_.start + moved;
-    Locations X;
-    PsiBlock psi;
-    for (Eigen::Index first = 0; first < q_.rows(); first += kLanes) {
-      const ConfigurationBlock block = poses_from(q_, first);
-      const Closure closure = geometry_.locate(block, xi, Body::endpoint, X, &psi);
-      const Eigen::MatrixXd J = psi * numbers_.basis;
-      for (int lane = 0; lane < block.count; ++lane) {
-        if (!closure.closes(lane)) continue;
-        const Eigen::Matrix<double, 6, 1> e =
-            way_between(X.at(lane), wanted_[static_cast<std::size_t>(first + lane)]);
-        for (int c = 0; c < 6; ++c) {
-          const double weight = (c < 3 ? 1 : kTurnArm) / kNear;
-          at.A.row(6 * (first + lane) + c) = weight * J.row(c * kLanes + lane);
-          at.b[6 * (first + lane) + c] = weight * e[c];
-        }
-      }
-    }
-    for (Eigen::Index i = 0; i < priors; ++i) {
-      const double tolerance = geometry_.parameters()[static_cast<std::size_t>(i)].tolerance;
-      if (!(tolerance > 0)) continue;
-      at.A.row(6 * q_.rows() + i) = numbers_.basis.row(i) / tolerance;
-      at.b[6 * q_.rows() + i] = -moved[i] / tolerance;
-    }
-    return at;
-  }
-
-  const Robot& geometry_;
-  const ControllerNumbers& numbers_;
-  const Eigen::MatrixXd& q_;
-  std::vector<Location> wanted_;
-};
-
-/// The rows of `q` from `first` on, every other one.
-Eigen::MatrixXd every_other(const Eigen::MatrixXd& q, Eigen::Index first) {
-  return q(Eigen::seq(first, q.rows() - 1, Eigen::fix<2>), Eigen::all);
+  return at;
 }
 
 }  // namespace
+
+std::vector<int> controller_parameters(const Robot& robot) {
+  std::vector<int> list;
+  const Eigen::VectorXd xi = nominal_values(robot);
+  const std::vector<Parameter>& parameters = robot.parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    const auto index = static_cast<int>(i);
+    if (p.part == Part::effect || !p.free || !(p.tolerance > 0)) continue;
+    bool taken = robot.has_loops() || p.part == Part::base || p.part == Part::tool;
+    for (std::size_t j = 0; j < robot.joints().size(); ++j)
+      taken = taken || robot.variable_parameter(static_cast<int>(j)) == index;
+    if (p.part == Part::link && p.quantity == Quantity::length) taken = taken || xi[index] != 0;
+    if (p.part == Part::link && p.quantity == Quantity::angle)
+      taken = taken || !multiple_of_a_quarter(xi[index]);
+    if (taken) list.push_back(index);
+  }
+  return list;
+}
 
 ControllerNumbers numbers_of_parameters(const Robot& robot, const std::vector<int>& taken) {
   ControllerNumbers numbers{nominal_values(robot), {}};
@@ -114,44 +141,35 @@ ControllerNumbers numbers_of_parameters(const Robot& robot, const std::vector<in
   return numbers;
 }
 
-EndsApart ends_apart(const Robot& one, const Eigen::VectorXd& xi_one, const Robot& other,
-                     const Eigen::VectorXd& xi_other, const Eigen::MatrixXd& q) {
-  EndsApart apart;
-  double squares = 0, squares_angle = 0;
-  Locations X, Y;
-  for (Eigen::Index first = 0; first < q.rows(); first += kLanes) {
-    const ConfigurationBlock block = poses_from(q, first);
-    Closure closure = one.locate(block, xi_one, Body::endpoint, X, nullptr);
-    closure.add(other.locate(block, xi_other, Body::endpoint, Y, nullptr));
-    for (int lane = 0; lane < block.count; ++lane) {
-      if (!closure.closes(lane)) continue;
-      const Eigen::Matrix<double, 6, 1> e = way_between(X.at(lane), Y.at(lane));
-      squares += e.head<3>().squaredNorm();
-      squares_angle += e.tail<3>().squaredNorm();
-      apart.most = std::max(apart.most, e.head<3>().norm());
-      ++apart.poses;
-    }
-  }
-  if (apart.poses == 0) return apart;
-  apart.rms = std::sqrt(squares / apart.poses);
-  apart.rms_angle = std::sqrt(squares_angle / apart.poses);
-  return apart;
+EndsApart ends_apart(const Robot& robot, const Eigen::VectorXd& xi, const Robot& real,
+                     const Eigen::MatrixXd& q, const OperatingPoint& at) {
+  return apart(Beside(robot, real, q, at), xi);
 }
 
-ControllerFit fit_controller(const Robot& geometry, const ControllerNumbers& numbers,
-                             const Robot& real, const Eigen::MatrixXd& q) {
-  expects(q.rows() >= 2, "poses to fit and poses to judge by");
-  const Eigen::MatrixXd fitted = every_other(q, 0), judged = every_other(q, 1);
-  const Eigen::VectorXd xi_real = values(real);
-  ControllerFit fit;
-  fit.before = ends_apart(geometry, numbers.start, real, xi_real, judged);
-  fit.xi = numbers.start +
-           numbers.basis * least_squares(numbers.basis, values(geometry) - numbers.start);
-  fit.after = ends_apart(geometry, fit.xi, real, xi_real, judged);
-  if (fit.after.most < kAllOfIt) return fit;
-  fit.xi = Fit(geometry, numbers, real, fitted).run();
-  fit.after = ends_apart(geometry, fit.xi, real, xi_real, judged);
-  return fit;
+Eigen::VectorXd as_found(const Robot& geometry, const ControllerNumbers& numbers,
+                         const Robot& real) {
+  Eigen::VectorXd found = numbers.start;
+  const Eigen::VectorXd whole = values(real);
+  for (std::size_t i = 0; i < geometry.parameters().size(); ++i)
+    if (const int there = find_parameter(real, geometry.parameters()[i].name); there >= 0)
+      found[static_cast<Eigen::Index>(i)] = whole[there];
+  return numbers.start + numbers.basis * least_squares(numbers.basis, found - numbers.start);
+}
+
+Eigen::VectorXd fit_controller(const Robot& geometry, const ControllerNumbers& numbers,
+                               const Robot& real, const Eigen::MatrixXd& q,
+                               const OperatingPoint& at) {
+  const Beside beside(geometry, real, q, at);
+  const Eigen::VectorXd found = as_found(geometry, numbers, real);
+  if (apart(beside, found).most < kAllOfIt) return found;
+  Eigen::VectorXd s = least_squares(numbers.basis, found - numbers.start);
+  for (int i = 0; i < kMostFits && s.size() > 0; ++i) {
+    const Linearised at_s = linearised(geometry, numbers, beside, q.rows(), s);
+    const Eigen::VectorXd step = least_squares(at_s.A, at_s.b);
+    s += step;
+    if (step.cwiseAbs().maxCoeff() < kFitStep) break;
+  }
+  return numbers.start + numbers.basis * s;
 }
 
 }  // namespace selfcal

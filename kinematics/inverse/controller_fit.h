@@ -8,9 +8,14 @@
 
 #include <vector>
 
-#include "kinematics/robot.h"
+#include "kinematics/inverse/operating_point.h"
 
 namespace selfcal {
+
+/// Parameters that a controller usually takes (indices), of those that a calibration moves: base
+/// and tool frames, the joints' offsets, nonzero r and d, angles that are no multiples of a quarter
+/// turn; of a robot with loops all of them, which its inverse model holds.
+std::vector<int> controller_parameters(const Robot& robot);
 
 /// The parameters that a controller can hold: start + basis s.
 struct ControllerNumbers {
@@ -26,17 +31,22 @@ struct EndsApart {
   double rms = 0, most = 0, rms_angle = 0;
   int poses = 0;
 };
-EndsApart ends_apart(const Robot& one, const Eigen::VectorXd& xi_one, const Robot& other,
-                     const Eigen::VectorXd& xi_other, const Eigen::MatrixXd& q);
 
-struct ControllerFit {
-  Eigen::VectorXd xi;       ///< what to tell it
-  EndsApart before, after;  ///< with `start` and with xi, of the poses that were not fitted
-};
+/// Of `robot` with parameters `xi` and of `real` as it is, over those of `q` (poses x joints) at
+/// which both close; `real` stands there as it carries what `at` says.
+EndsApart ends_apart(const Robot& robot, const Eigen::VectorXd& xi, const Robot& real,
+                     const Eigen::MatrixXd& q, const OperatingPoint& at = {});
 
-/// Fits every other pose of `q` (poses x joints, loops closed) and judges by the rest. `geometry`
-/// is `real` without its effects: its values are taken as they are where they say all of it.
-ControllerFit fit_controller(const Robot& geometry, const ControllerNumbers& numbers,
-                             const Robot& real, const Eigen::MatrixXd& q);
+/// What the numbers come to that were found of `real`, by the parameters' names: those that the
+/// controller does not hold have the maker's figures.
+Eigen::VectorXd as_found(const Robot& geometry, const ControllerNumbers& numbers,
+                         const Robot& real);
+
+/// What to tell a controller whose model is `geometry`, without effects, of the robot `real`,
+/// fitted over those of `q` (poses x joints) at which both close. What was found stays as it is
+/// where it says all of it.
+Eigen::VectorXd fit_controller(const Robot& geometry, const ControllerNumbers& numbers,
+                               const Robot& real, const Eigen::MatrixXd& q,
+                               const OperatingPoint& at = {});
 
 }  // namespace selfcal

@@ -32,15 +32,26 @@ Result<RobotPair> robots_of(const Node& robot) {
   return pair;
 }
 
-ControllerFit fitted(const RobotPair& robots, const ControllerNumbers& numbers) {
+/// What a controller is best told, and how far off that and the maker's figures leave it, over
+/// poses that were not fitted.
+struct Told {
+  Eigen::VectorXd xi;
+  EndsApart before, after;
+};
+
+Told fitted(const RobotPair& robots, const ControllerNumbers& numbers) {
   const Eigen::MatrixXd q =
       closing_poses(*robots.real, values(*robots.real),
                     random_poses(*robots.geometry, nullptr, kFitPoses, kFitSeed));
-  return fit_controller(*robots.geometry, numbers, *robots.real, q);
+  const Eigen::MatrixXd fits = q.topRows(q.rows() / 2), judges = q.bottomRows(q.rows() / 2);
+  Told told{fit_controller(*robots.geometry, numbers, *robots.real, fits), {}, {}};
+  told.before = ends_apart(*robots.geometry, numbers.start, *robots.real, judges);
+  told.after = ends_apart(*robots.geometry, told.xi, *robots.real, judges);
+  return told;
 }
 
 /// What a person wants to know of it before it is typed in.
-std::string head_of(const std::string& what, const ControllerFit& fit) {
+std::string head_of(const std::string& what, const Told& fit) {
   return what + "\n" +
          printed(
              "Over %d poses all over the joints' ranges the end is %s mm (rms; %s at most) off "
@@ -67,7 +78,7 @@ std::vector<int> taken_by(const std::string& to, const Robot& robot) {
 /// The serial robot of a file with what its controller is best told.
 struct ToldRobot {
   serial::Model model;
-  ControllerFit fit;
+  Told fit;
 };
 
 Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) {
@@ -145,7 +156,7 @@ Result<std::string> to_delta(const Node& robot, const ControllerFormat& format) 
   note_effects(robot);
   const auto robots = robots_of(robot);
   if (!robots) return tl::unexpected(robots.error());
-  const ControllerFit fit = fitted(*robots, firmware_numbers(delta));
+  const Told fit = fitted(*robots, firmware_numbers(delta));
   const auto made =
       delta_firmware(delta, fit.xi, head_of("Of " + delta.name + ".", fit), format.file);
   if (!made) return tl::unexpected(made.error());
