@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kBlock = 65536;
 constexpr std::size_t kMostBytesInRow = 1 << 20;
 constexpr std::size_t kMostColumns = 10000;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kSeparators = ",;\t";
 
 std::string count_of_cells(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " cell" : " cells");
@@ -53,15 +53,16 @@ class CsvReader {
     Result<InputFile> file = InputFile::open(path_);
     if (!file) return tl::unexpected(file.error());
     std::array<char, kBlock> block;
-    for (bool first = true; !fault_; first = false) {
+    Utf8Pieces pieces;
+    while (!fault_) {
       const Result<std::size_t> got = file->read(block);
       if (!got) return tl::unexpected(got.error());
       if (*got == 0) break;
-      std::string_view text(block.data(), *got);
-      if (first && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+      std::string_view text = pieces.take({block.data(), *got});
       pass_over(text, lines_above_);
       parse(text);
     }
+    if (!fault_ && !pieces.whole()) complain({"the file ends inside a character"});
     if (!fault_) finish();
     if (!fault_) return {};
     return bad_input(path_.string() + ": " + *fault_);
@@ -113,7 +114,8 @@ class CsvReader {
       cells_.emplace_back(buffer_.data() + begin, end - begin);
       begin = end;
     }
-    if (!is_text(buffer_)) return complain({"expected UTF-8 text, got other bytes"});
+    if (!is_text(buffer_))
+      return complain({"expected text in UTF-8, or UTF-16 behind its mark, got other bytes"});
     if (blank_lines_) return complain({"stands below a blank line"});
     if (!header_taken_) return take_header();
     if (rows_ == std::numeric_limits<int>::max() - 1) return complain({"too many rows"});
@@ -178,24 +180,26 @@ Result<std::optional<char>> separator_of(const std::filesystem::path& path, int 
   if (!file) return tl::unexpected(file.error());
   std::array<char, kBlock> block;
   std::string line;
+  Utf8Pieces pieces;
   for (int above = header - 1; line.find('\n') == std::string::npos;) {
     const Result<std::size_t> got = file->read(block);
     if (!got) return tl::unexpected(got.error());
     if (*got == 0 || line.size() > kMostBytesInRow) break;
-    std::string_view text(block.data(), *got);
+    std::string_view text = pieces.take({block.data(), *got});
     pass_over(text, above);
     line += text;
   }
-  bool quoted = false, commas = false, semicolons = false;
+  bool quoted = false;
+  std::string found;  // of those that may separate, each once
   for (const char each : line) {
     if (each == '"') quoted = !quoted;
     if (quoted) continue;
     if (each == '\n' || each == '\r') break;
-    commas = commas || each == ',';
-    semicolons = semicolons || each == ';';
+    if (kSeparators.find(each) != std::string_view::npos && found.find(each) == std::string::npos)
+      found += each;
   }
-  if (commas && semicolons) return std::optional<char>();
-  return std::optional(semicolons ? ';' : ',');
+  if (found.size() > 1) return std::optional<char>();
+  return std::optional(found.empty() ? ',' : found[0]);
 }
 
 }  // namespace selfcal

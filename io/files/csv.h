@@ -1,9 +1,9 @@
 // Rows of a CSV file, one after the other, without holding the file (libcsv).
 //
-// RFC 4180: cells between commas (or semicolons, where a caller says so), quoted where they hold
-// commas, quotes or line ends; lines end in LF, CR or CRLF, the last one may lack its end. A UTF-8
-// byte order mark is skipped, blanks around a cell are dropped, blank lines may stand at the end
-// only.
+// RFC 4180: cells between commas (or semicolons or tabs, where a caller says so), quoted where they
+// hold commas, quotes or line ends; lines end in LF, CR or CRLF, the last one may lack its end. A
+// byte order mark is skipped and tells UTF-16, blanks around a cell are dropped, blank lines may
+// stand at the end only.
 #pragma once
 
 #include <filesystem>
@@ -34,11 +34,11 @@ using TakeRow = std::function<std::optional<RowFault>(Cells cells, int row)>;
 /// Where the names of the columns stand and what stands between the cells.
 struct CsvForm {
   int header = 1;        ///< line of the file, from 1; what is above it is passed over
-  char separator = ',';  ///< or ;
+  char separator = ',';  ///< or ; or a tab
 };
 
-/// What stands between the names in line `header`, outside quotations: commas or semicolons; a
-/// comma where there is one name only, nothing where both are and either may be meant.
+/// What stands between the names in line `header`, outside quotations: commas, semicolons or tabs;
+/// a comma where there is one name only, nothing where more than one of them may be meant.
 Result<std::optional<char>> separator_of(const std::filesystem::path& path, int header);
 
 /// Calls `header` once and `row` for each row. Fails with "FILE: row 17: column x: ..." on the

@@ -55,7 +55,7 @@ class RowReader {
 
   const ColumnMap& map() const { return map_; }
   /// Of the file, before its header.
-  void begin(bool semicolons) { semicolons_ = semicolons; }
+  void begin(bool decimal_commas) { decimal_commas_ = decimal_commas; }
 
   std::optional<RowFault> take_header(Cells names) {
     auto layout = read_header(
@@ -63,7 +63,7 @@ class RowReader {
         configurations_ ? std::vector<MeasuredColumn>() : measured_columns(data_.sets), map_);
     if (!layout) return layout.error();
     layout_ = std::move(*layout);
-    layout_.semicolons = semicolons_;
+    layout_.decimal_commas = decimal_commas_;
     labels_.begin(layout_);
     numbers_.begin(layout_);
     for (const Set& set : data_.sets) {
@@ -209,7 +209,7 @@ class RowReader {
   const ColumnMap& map_;
   const bool configurations_;
   const std::vector<Joint>& joints_;
-  bool semicolons_ = false;
+  bool decimal_commas_ = false;
   Layout layout_;
   LabelReader labels_;
   NumberReader numbers_;
@@ -229,10 +229,11 @@ Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
   const auto separator = separator_of(path, map.header);
   if (!separator) return tl::unexpected(separator.error());
   if (!*separator && map.any())
-    return bad_input(path.string() + ": line " + std::to_string(map.header) +
-                     ": both commas and semicolons: put names with one of them between quotes");
+    return bad_input(
+        path.string() + ": line " + std::to_string(map.header) +
+        ": more than one of comma, semicolon and tab: put names with one of them between quotes");
   const CsvForm form{map.header, separator->value_or(',')};
-  reader.begin(form.separator == ';');
+  reader.begin(form.separator != ',');
   Result<void> read = read_csv(
       path, [&](Cells names) { return reader.take_header(names); },
       [&](Cells cells, int row) { return reader.take_row(cells, row); }, form);

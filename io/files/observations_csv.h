@@ -15,9 +15,9 @@ namespace selfcal {
 /// Reads the rows for `data.sets` (each with its method) into `data.rows`; names of groups that the
 /// rows bring up are appended to their set's. Every known column is validated, the ones that
 /// Observations lacks are then dropped. What a person should know of a file that is accepted is
-/// appended to `notices`. A file that another program wrote is read as `map` says; semicolons may
-/// stand between the cells of any, and decimal commas in numbers then. After a failure `data` is
-/// not to be used.
+/// appended to `notices`. A file that another program wrote is read as `map` says; semicolons or
+/// tabs may stand between the cells of any, and decimal commas in numbers then. After a failure
+/// `data` is not to be used.
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
                                const ColumnMap& map, DataSet& data,
                                std::vector<std::string>& notices);

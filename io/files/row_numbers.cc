@@ -25,7 +25,7 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
     values_[i] = std::numeric_limits<double>::quiet_NaN();
     if (kind == CellKind::ignored || kind == CellKind::text || cells[i].empty()) continue;
     const std::optional<double> number =
-        layout_->semicolons ? number_in(cells[i]) : parse_number(cells[i]);
+        layout_->decimal_commas ? number_in(cells[i]) : parse_number(cells[i]);
     if (!number) return RowFault{"expected a number, got '" + std::string(cells[i]) + "'", i};
     if (commas_ && points_)
       return RowFault{"decimal commas and decimal points in one file: '" + std::string(cells[i]) +
@@ -45,7 +45,7 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
   return std::nullopt;
 }
 
-/// Between semicolons the comma of a number is a decimal one.
+/// Between semicolons or tabs the comma of a number is a decimal one.
 std::optional<double> NumberReader::number_in(std::string_view cell) {
   const std::size_t comma = cell.find(',');
   points_ = points_ || cell.find('.') != std::string_view::npos;

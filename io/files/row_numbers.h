@@ -48,7 +48,7 @@ class NumberReader {
   std::array<double, 4> orientation_{};
   std::array<double, 6> wrench_{};
   std::string with_point_;                // a number with a decimal comma, rewritten
-  bool commas_ = false, points_ = false;  // seen in numbers between semicolons
+  bool commas_ = false, points_ = false;  // seen in numbers where both may stand
   int outside_ = 0;
   std::string first_outside_;
 };

@@ -1,5 +1,6 @@
 // UTF-8 as RFC 3629 has it: a lead byte says how many bytes of the form 10xxxxxx follow, and no
-// shorter form of the same character may exist.
+// shorter form of the same character may exist. UTF-16 as RFC 2781 has it: a character beyond
+// 0xFFFF is 0x10000 + (high - 0xD800) 0x400 + (low - 0xDC00).
 #include "io/files/utf8.h"
 
 namespace selfcal {
@@ -22,6 +23,18 @@ std::size_t length_of_character(std::string_view bytes) {
   return code < kLeast[length] || code > 0x10FFFF || surrogate ? 0 : length;
 }
 
+constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF", kMarkOfLittleEndian = "\xFF\xFE",
+                           kMarkOfBigEndian = "\xFE\xFF";
+constexpr char kNoText = '\xFF';  // in no UTF-8
+
+std::string utf8_of(unsigned code) {
+  const auto follows = [&](int bits) { return static_cast<char>(0x80u | (code >> bits & 0x3Fu)); };
+  if (code < 0x80) return {static_cast<char>(code)};
+  if (code < 0x800) return {static_cast<char>(0xC0u | code >> 6), follows(0)};
+  if (code < 0x10000) return {static_cast<char>(0xE0u | code >> 12), follows(6), follows(0)};
+  return {static_cast<char>(0xF0u | code >> 18), follows(12), follows(6), follows(0)};
+}
+
 }  // namespace
 
 bool is_text(std::string_view bytes) {
@@ -34,6 +47,44 @@ bool is_text(std::string_view bytes) {
     i += length;
   }
   return true;
+}
+
+std::string_view Utf8Pieces::take(std::string_view piece) {
+  if (form_ == Form::as_it_stands) return piece;
+  rest_ += piece;
+  text_.clear();
+  if (form_ == Form::unknown) {
+    if (kMarkOfUtf8.starts_with(rest_) && rest_ != kMarkOfUtf8 && !piece.empty()) return {};
+    if (rest_.size() == 1 && (rest_[0] == '\xFF' || rest_[0] == '\xFE')) return {};
+    form_ = rest_.starts_with(kMarkOfLittleEndian) ? Form::little_endian
+            : rest_.starts_with(kMarkOfBigEndian)  ? Form::big_endian
+                                                   : Form::as_it_stands;
+    rest_.erase(0, form_ != Form::as_it_stands      ? kMarkOfLittleEndian.size()
+                   : rest_.starts_with(kMarkOfUtf8) ? kMarkOfUtf8.size()
+                                                    : 0);
+    if (form_ == Form::as_it_stands) {
+      text_.swap(rest_);
+      return text_;
+    }
+  }
+  const int low = form_ == Form::little_endian ? 0 : 1;
+  const std::size_t whole = rest_.size() / 2 * 2;
+  for (std::size_t i = 0; i < whole; i += 2) {
+    const auto at = [&](int which) {
+      return static_cast<unsigned char>(rest_[i + static_cast<std::size_t>(which)]);
+    };
+    take_unit(at(low) | static_cast<unsigned>(at(1 - low)) << 8);
+  }
+  rest_.erase(0, whole);
+  return text_;
+}
+
+void Utf8Pieces::take_unit(unsigned unit) {
+  const bool low = unit >= 0xDC00 && unit <= 0xDFFF, high = unit >= 0xD800 && unit <= 0xDBFF;
+  if (low != (high_ != 0)) text_ += kNoText;
+  if (low && high_ != 0) text_ += utf8_of(0x10000 + (high_ - 0xD800) * 0x400 + (unit - 0xDC00));
+  if (!low && !high) text_ += utf8_of(unit);
+  high_ = high ? unit : 0;
 }
 
 }  // namespace selfcal

@@ -10,6 +10,7 @@
 #include "io/files/csv.h"
 #include "io/files/file.h"
 #include "io/files/units.h"
+#include "io/files/utf8.h"
 
 namespace selfcal {
 namespace {
@@ -163,12 +164,14 @@ class Table {
 
 /// The line of the names: what stands above it behind # is for people.
 Result<int> header_line(const std::filesystem::path& path) {
-  const auto text = read_file(path, kMostTableBytes);
-  if (!text) return tl::unexpected(text.error());
+  const auto bytes = read_file(path, kMostTableBytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  Utf8Pieces pieces;
+  const std::string_view text = pieces.take(*bytes);
   int line = 1;
-  for (std::size_t at = 0; at < text->size() && (*text)[at] == '#'; ++line) {
-    at = text->find('\n', at);
-    if (at == std::string::npos) break;
+  for (std::size_t at = 0; at < text.size() && text[at] == '#'; ++line) {
+    at = text.find('\n', at);
+    if (at == std::string_view::npos) break;
     ++at;
   }
   return line;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/files/utf8.h"
 #include "tests/io/data_set_folder.h"
 
 namespace selfcal {
@@ -93,9 +94,67 @@ TEST_F(ColumnNames, MayStandBetweenSemicolonsWithDecimalCommas) {
             "'1.250' may be thousands");
   EXPECT_THAT(why("", "set;q1;q2;x;y;z\ntracker;0,5;0;1,250,000;2;3\n"),
               HasSubstr("expected a number, got '1,250,000'"));
-  EXPECT_EQ(why("header: 1\ncolumns: {q1: pan}\n", "pan, left;q2;x;y;z\n1;0;1;2;3\n"),
-            "observations.csv: line 1: both commas and semicolons: put names with one of them "
-            "between quotes");
+  EXPECT_EQ(
+      why("header: 1\ncolumns: {q1: pan}\n", "pan, left;q2;x;y;z\n1;0;1;2;3\n"),
+      "observations.csv: line 1: more than one of comma, semicolon and tab: put names with one "
+      "of them between quotes");
+}
+
+// As trackers' programs and spreadsheets export: tabs, with decimal points or commas.
+TEST_F(ColumnNames, MayStandBetweenTabs) {
+  const auto loaded = with("columns: {x: X, y: Y, z: Z}\n",
+                           "Point\tX [mm]\tY\tZ\tj1\tj2\nP 1\t1250,5\t-2\t3\t0,5\t0,1\n");
+  ASSERT_FALSE(loaded.has_value());
+  const auto read = with("columns: {x: \"X [mm]\", y: Y, z: Z}\n",
+                         "Point\tX [mm]\tY\tZ\tj1\tj2\nP 1\t1250,5\t-2\t3\t0,5\t0,1\n");
+  ASSERT_TRUE(read.has_value()) << read.error().what;
+  EXPECT_EQ(read->data.rows.q.row(0), Eigen::RowVector2d(0.5, 0.1));
+  EXPECT_TRUE(read->data.rows.position.row(0).isApprox(Eigen::RowVector3d(1.2505, -2, 3), 1e-15));
+  const auto points = with("", "set\tq1\tq2\tx\ty\tz\ntracker\t0.5\t0.1\t1.25\t-2\t3\n");
+  ASSERT_TRUE(points.has_value()) << points.error().what;
+  EXPECT_EQ(points->data.rows.position.row(0), Eigen::RowVector3d(1.25, -2, 3));
+  // Commas that are lined up with tabs part the cells still.
+  const auto both = with("", "set,\tq1,\tq2,\tx,\ty,\tz\ntracker,\t0.5,\t0.1,\t1.25,\t-2,\t3\n");
+  ASSERT_TRUE(both.has_value()) << both.error().what;
+  EXPECT_EQ(both->data.rows.q.row(0), Eigen::RowVector2d(0.5, 0.1));
+}
+
+/// ASCII as UTF-16 behind its mark.
+std::string utf16(const std::string& ascii, bool little) {
+  std::string text = little ? "\xFF\xFE" : "\xFE\xFF";
+  for (const char c : ascii) text += little ? std::string{c, '\0'} : std::string{'\0', c};
+  return text;
+}
+
+TEST_F(ColumnNames, MayBeInUtf16) {
+  const std::string csv = "Tracker\r\nj1\tj2\tx\ty\tz\r\n0,5\t0,1\t1,25\t-2\t3\r\n";
+  for (const bool little : {true, false}) {
+    const auto loaded = with("header: 2\n", utf16(csv, little));
+    ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+    EXPECT_EQ(loaded->data.rows.q.row(0), Eigen::RowVector2d(0.5, 0.1));
+    EXPECT_EQ(loaded->data.rows.position.row(0), Eigen::RowVector3d(1.25, -2, 3));
+  }
+  EXPECT_THAT(why("header: 2\n", utf16(csv, true) + "1"), HasSubstr("ends inside a character"));
+  EXPECT_THAT(why("header: 2\n", utf16(csv, true).substr(2)), HasSubstr("UTF-16 behind its mark"));
+}
+
+TEST(Utf8Pieces, AreTheSameWhereverTheFileIsCut) {
+  // U+00B0, U+20AC and U+1F916 in UTF-16, high byte first, and in UTF-8.
+  const std::string wide("\xFE\xFF\x00\xB0\x20\xAC\xD8\x3E\xDD\x16", 10);
+  for (std::size_t step = 1; step <= wide.size(); ++step) {
+    Utf8Pieces pieces;
+    std::string text;
+    for (std::size_t at = 0; at < wide.size(); at += step)
+      text += pieces.take(std::string_view(wide).substr(at, step));
+    EXPECT_EQ(text, "\xC2\xB0\xE2\x82\xAC\xF0\x9F\xA4\x96") << step;
+    EXPECT_TRUE(pieces.whole());
+  }
+  // Half a pair is no text.
+  for (const auto& half :
+       {std::string("\xFE\xFF\xD8\x3E\x00\x41", 6), std::string("\xFE\xFF\xDD\x16\x00\x41", 6)}) {
+    Utf8Pieces pieces;
+    EXPECT_FALSE(is_text(pieces.take(half)));
+  }
 }
 
 TEST_F(ColumnNames, MayStandBelowOtherLines) {
