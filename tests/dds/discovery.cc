@@ -98,36 +98,75 @@ TEST_F(DdsDiscovery, ShowsARobotsSide) {
             "selfcal_msgs::msg::dds_::MotionRequest_");
 }
 
-// Bytes worked by hand after the CDR rules: little endian, numbers at multiples of their size
-// counted after the four bytes of the encapsulation, strings with length and closing zero.
-TEST_F(DdsDiscovery, EncodesAsRosReads) {
-  const std::string topic = robot_topic("r", "motion_reply");
-  auto writer = must(DdsWriter<dds::MotionReply>::open(participant, topic, kExchange));
+/// The message on the wire, without the library's padding at the end and its count of it.
+template <class Message>
+std::vector<std::uint8_t> on_the_wire(const DdsParticipant& participant, const std::string& topic,
+                                      const Message& message, std::size_t size) {
+  auto writer = must(DdsWriter<Message>::open(participant, topic, kExchange));
   const DdsEntity named(dds_create_topic(participant.handle(),
-                                         dds::message_type<dds::MotionReply>.descriptor,
-                                         topic.c_str(), nullptr, nullptr));
+                                         dds::message_type<Message>.descriptor, topic.c_str(),
+                                         nullptr, nullptr));
   const DdsEntity reader(dds_create_reader(participant.handle(), named.handle(),
                                            to_library(kExchange, "").get(), nullptr));
-  const MotionReply reply{.id = 0x0102, .outcome = MotionReply::Outcome::done, .why = "ab"};
-  must(writer.write(borrow(reply)));
-
+  must(writer.write(message));
   ddsi_serdata* data = nullptr;
   dds_sample_info_t info;
-  ASSERT_EQ(dds_takecdr(reader.handle(), &data, 1, &info, DDS_ANY_STATE), 1);
+  EXPECT_EQ(dds_takecdr(reader.handle(), &data, 1, &info, DDS_ANY_STATE), 1);
+  if (!data) return {};
   std::vector<std::uint8_t> bytes(ddsi_serdata_size(data));
   ddsi_serdata_to_ser(data, 0, bytes.size(), bytes.data());
   ddsi_serdata_unref(data);
+  EXPECT_GE(bytes.size(), size);
+  EXPECT_LT(bytes.size(), size + 4);
+  bytes[3] = 0;
+  bytes.resize(size);
+  return bytes;
+}
 
+// Bytes worked by hand after the CDR rules: little endian, numbers at multiples of their size
+// counted after the four bytes of the encapsulation, strings with length and closing zero.
+TEST_F(DdsDiscovery, EncodesAsRosReads) {
+  const MotionReply reply{.id = 0x0102, .outcome = MotionReply::Outcome::done, .why = "ab"};
   const std::vector<std::uint8_t> expected = {0, 1, 0, 0,  // classic CDR, little endian
                                               2, 1, 0, 0, 0,   0,   0,   0,  // id
                                               5, 0, 0, 0, 'd', 'o', 'n', 'e',
                                               0, 0, 0, 0,  // outcome, and up to a multiple of 4
                                               3, 0, 0, 0, 'a', 'b', 0};  // why
-  ASSERT_GE(bytes.size(), expected.size());
-  EXPECT_LT(bytes.size(), expected.size() + 4);  // the library pads the end
-  bytes[3] = 0;                                  // and says there by how much
-  bytes.resize(expected.size());
-  EXPECT_THAT(bytes, ElementsAreArray(expected));
+  EXPECT_THAT(on_the_wire<dds::MotionReply>(participant, robot_topic("r", "motion_reply"),
+                                            borrow(reply), expected.size()),
+              ElementsAreArray(expected));
+}
+
+TEST_F(DdsDiscovery, EncodesJointStatesAndTouchesAsRosReads) {
+  std::string frame, joint = "a";
+  char* names[] = {joint.data()};
+  double position[] = {1.5};
+  dds::JointState joints{};
+  joints.header_.stamp_ = {.sec_ = 1, .nanosec_ = 2};
+  joints.header_.frame_id_ = frame.data();
+  joints.name_ = {._maximum = 1, ._length = 1, ._buffer = names, ._release = false};
+  joints.position_ = {._maximum = 1, ._length = 1, ._buffer = position, ._release = false};
+  const std::vector<std::uint8_t> states = {0, 1, 0, 0,                      //
+                                            1, 0, 0, 0, 2,   0, 0,    0,     // stamp
+                                            1, 0, 0, 0, 0,   0, 0,    0,     // frame, up to 4
+                                            1, 0, 0, 0,                      // one name
+                                            2, 0, 0, 0, 'a', 0, 0,    0,     // up to 4
+                                            1, 0, 0, 0,                      // one position, at 32
+                                            0, 0, 0, 0, 0,   0, 0xF8, 0x3F,  // 1.5
+                                            0, 0, 0, 0,                      // no velocity
+                                            0, 0, 0, 0};                     // no effort
+  EXPECT_THAT(on_the_wire(participant, "rt/joint_states", joints, states.size()),
+              ElementsAreArray(states));
+
+  dds::StampedBool touch{};
+  touch.header_.stamp_ = {.sec_ = 1, .nanosec_ = 2};
+  touch.header_.frame_id_ = frame.data();
+  touch.data_ = true;
+  const std::vector<std::uint8_t> touched = {0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0,  // stamp
+                                             1, 0, 0, 0, 0,                       // frame
+                                             1};                                  // the level
+  EXPECT_THAT(on_the_wire(participant, "rt/touch", touch, touched.size()),
+              ElementsAreArray(touched));
 }
 
 }  // namespace
