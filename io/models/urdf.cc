@@ -78,23 +78,34 @@ class Reduction {
   std::string place_of_joint(const std::string& name) const { return lines_.place("joint", name); }
   std::string place_of_link(const std::string& name) const { return lines_.place("link", name); }
 
+  /// Links that carry no other.
+  std::vector<std::string> ends_of_tree() const {
+    std::vector<std::string> names;
+    for (const auto& [name, link] : model_.links_)
+      if (link->child_links.empty()) names.push_back(name);
+    return names;
+  }
+
+  static std::string in_a_row(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;
+    return list;
+  }
+
   Result<void> find_ends(const UrdfEnds& ends) {
     found_.ends = ends;
     if (found_.ends.base.empty()) found_.ends.base = model_.getRoot()->name;
     if (found_.ends.tip.empty()) {
-      std::string leaves;
-      int count = 0;
-      for (const auto& [name, link] : model_.links_) {
-        if (!link->child_links.empty()) continue;
-        leaves += (count++ > 0 ? ", " : "") + name;
-        found_.ends.tip = name;
-      }
-      if (count > 1)
-        return bad_input(file_ + ": has " + std::to_string(count) + " ends: " + leaves +
-                         "; choose one with --tip");
+      const std::vector<std::string> ends_of_it = ends_of_tree();
+      if (!ends_of_it.empty()) found_.ends.tip = ends_of_it.back();
+      if (ends_of_it.size() > 1)
+        return bad_input(file_ + ": has " + std::to_string(ends_of_it.size()) +
+                         " ends: " + in_a_row(ends_of_it) + "; choose one with --tip");
     }
     for (const std::string& name : {found_.ends.base, found_.ends.tip})
-      if (!model_.getLink(name)) return bad_input(file_ + ": has no link '" + name + "'");
+      if (!model_.getLink(name))
+        return bad_input(file_ + ": has no link '" + name + "'; it ends at " +
+                         in_a_row(ends_of_tree()));
     return {};
   }
 

@@ -43,6 +43,12 @@ Result<std::string> from_mjcf(const ForeignRobot& foreign) {
                     foreign);
 }
 
+/// A URDF or a model for MuJoCo by its name.
+bool should_be_xml(const std::filesystem::path& file) {
+  const std::string end = file.extension().string();
+  return end == ".urdf" || end == ".xacro" || end == ".xml" || end == ".mjcf";
+}
+
 /// The kinematics file of Universal Robots' driver, which one key tells.
 bool is_ur_kinematics(const std::string& text, const ForeignRobot& foreign) {
   const auto node = parse_yaml(text, foreign.file);
@@ -97,6 +103,8 @@ bool is_table(const std::string& file) { return file.ends_with(".csv"); }
 Result<std::string> as_robot_file(const std::string& text, const ForeignRobot& foreign) {
   if (is_table(foreign.file)) return from_table(foreign);
   if (looks_like_xml(text)) return is_mjcf(text) ? from_mjcf(foreign) : from_urdf(text, foreign);
+  if (should_be_xml(foreign.file))
+    return bad_input(foreign.file + ":1: no XML, which a URDF and a model for MuJoCo are");
   if (is_ur_kinematics(text, foreign)) return from_ur(text, foreign);
   const auto robot = robot_of(text, foreign.file);
   if (!robot) return tl::unexpected(robot.error());
