@@ -49,7 +49,8 @@ class CorrectedRobot final : public Robot, public RobotText {
         std::string place = effect->at().empty() ? "robot" : effect->at();
         // A base that is a whole pose has a base.x of its own.
         if (find_parameter(*geometry_, place + "." + p.name) >= 0) place = effect->name();
-        Parameter parameter{place + "." + p.name, place, p.name, Quantity::other, Part::effect};
+        Parameter parameter{free_name(place + "." + p.name), place, p.name, Quantity::other,
+                            Part::effect};
         parameter.value = p.value;
         parameter.tolerance = kLooseness * p.usual_most;
         parameter.free = false;
@@ -285,6 +286,17 @@ class CorrectedRobot final : public Robot, public RobotText {
     for (int c = 0; c < 6; ++c) all += wrench[c] * psi.row(c * (psi.rows() / 6) + lane);
     for (Eigen::Index j = 0; j < at.torque.size(); ++j)
       at.torque[j] = all.dot(geometry_->variable_change(values(*geometry_), static_cast<int>(j)));
+  }
+
+  /// The name, or of an effect that is at one place again, at another moment, the name with a
+  /// number.
+  std::string free_name(const std::string& name) const {
+    const auto taken = [&](const std::string& each) {
+      return std::ranges::any_of(parameters_, [&](const Parameter& p) { return p.name == each; });
+    };
+    std::string free = name;
+    for (int again = 2; taken(free); ++again) free = name + "_" + std::to_string(again);
+    return free;
   }
 
   /// `inner` is Psi of the geometry alone.

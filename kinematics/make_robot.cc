@@ -1,6 +1,5 @@
 #include "kinematics/make_robot.h"
 
-#include <set>
 #include <string>
 
 #include "kinematics/corrected_robot.h"
@@ -36,11 +35,9 @@ std::unique_ptr<Robot> with_effects_of(const Node& node, const Kind& kind, Probl
     return nullptr;
   }
   auto corrected = correct(std::move(robot), effects->items, {}, problems);
-  std::set<std::string> names;
-  for (size_t i = 0; corrected && i < corrected->parameters().size(); ++i)
-    if (!names.insert(corrected->parameters()[i].name).second)
-      problems.add(effects->place,
-                   "effects: " + corrected->parameters()[i].name + " is there twice");
+  // A text has those that differ in their values alone as one.
+  if (corrected && effect_entries(*corrected).size() < effects->items.size())
+    problems.add(effects->place, "effects: one is there twice, at one place and of one kind");
   return problems.any() ? nullptr : std::move(corrected);
 }
 
