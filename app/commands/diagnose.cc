@@ -57,8 +57,7 @@ Result<void> load_simulated(const DiagnoseArguments& arguments, Inputs& inputs) 
     inputs.simulated = *std::move(other);
     return {};
   }
-  auto simulation =
-      ask_simulator(arguments.simulated, arguments.tool, inputs.measured, *inputs.robot);
+  auto simulation = ask_simulator(arguments.simulated, arguments.tool, inputs.measured);
   if (!simulation) return tl::unexpected(simulation.error());
   print_notices(simulation->measured);
   inputs.simulated = std::move(simulation->measured);

@@ -4,6 +4,7 @@
 #include "io/models/mjcf_effects.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace selfcal {
 namespace {
@@ -39,6 +40,7 @@ class Taking {
 
  private:
   static constexpr const char* kTaken = "taken";
+  static constexpr const char* kBends[] = {"bend_x", "bend_y", "twist"};
 
   std::string refused(const Node& entry, const std::string& effect, const std::string& at) {
     if (effect == "joint_compliance") return spring(number_in(entry, "c"), at);
@@ -57,28 +59,41 @@ class Taking {
     return kTaken;
   }
 
-  static Eigen::Vector3d bends(const Node& entry) {
-    return {number_in(entry, "bend_x"), number_in(entry, "bend_y"), number_in(entry, "twist")};
+  /// Those of an entry that are springs. A compliance below zero, which noise makes of one that is
+  /// hardly there, is none: it is left out and named.
+  std::optional<Eigen::Vector3d> bends(const Node& entry, const std::string& effect) {
+    Eigen::Vector3d compliance = Eigen::Vector3d::Zero();
+    std::vector<std::string> below;
+    for (int i = 0; i < 3; ++i) {
+      const char* const name = kBends[i];
+      compliance[i] = number_in(entry, name);
+      if (compliance[i] < 0) below.emplace_back(name);
+    }
+    compliance = compliance.cwiseMax(0);
+    if (!below.empty() && compliance.isZero()) return std::nullopt;
+    for (const std::string& each : below)
+      into_.left_out.push_back("of " + effect + " " + each + ", which is below zero");
+    return compliance;
   }
 
   std::string link(const Node& entry, const std::string& at) {
     const int frame = frame_called(model_, at);
-    const Eigen::Vector3d compliance = bends(entry);
-    if (compliance.minCoeff() < 0) return "a negative compliance";
     if (frame + 1 >= static_cast<int>(model_.frames.size())) return "no frame behind it to carry";
     if (model_.frames[frame + 1].motion == serial::Motion::prismatic)
       return "its length changes with the slide behind it";
-    into_.links.push_back({at, compliance});
+    const auto compliance = bends(entry, "link_compliance at " + at);
+    if (!compliance) return "a negative compliance";
+    into_.links.push_back({at, *compliance});
     return kTaken;
   }
 
   std::string tool(const Node& entry) {
-    const Eigen::Vector3d compliance = bends(entry);
-    if (compliance.minCoeff() < 0) return "a negative compliance";
     const int last = serial::moving_frames(model_).back();
     if (last + 1 == static_cast<int>(model_.frames.size())) return "no tool frame to carry";
     if (number_in(entry, "mass") > 0) return "its tool's frames have no mass";
-    into_.tools.push_back({model_.frames[last].name, compliance});
+    const auto compliance = bends(entry, "tool_compliance");
+    if (!compliance) return "a negative compliance";
+    into_.tools.push_back({model_.frames[last].name, *compliance});
     return kTaken;
   }
 

@@ -40,6 +40,10 @@ struct MjcfEffects {
   std::vector<DeadBand> plays;
   std::vector<Drag> drags;
   std::vector<std::string> left_out;  ///< what no static model for MuJoCo has, and why
+
+  bool carries_any() const {
+    return !joints.empty() || !links.empty() || !tools.empty() || !plays.empty() || !drags.empty();
+  }
 };
 
 /// What a joint moves beside its own reading, in proportion to the reading of one (11.16).

@@ -19,6 +19,7 @@ using Eigen::Isometry3d;
 
 constexpr double kUnmovedBody = 1e-11;  // m, rad: a pose that keeps its digits
 constexpr double kOnAxis = 1e-9;        // of the cross product of one axis told twice
+constexpr double kNextToNone = 1e-3;    // kg
 
 bool same_pose(const Isometry3d& a, const Isometry3d& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() < kUnmovedBody;
@@ -71,6 +72,7 @@ class MendedModel {
     for (std::size_t b = 0; b < elements_.size(); ++b)
       for (const int joint : read_.bodies[b].joints) add_joint_effects(*root, *elements_[b], joint);
     bend_links();
+    give_masses();
     TiXmlPrinter printer;
     printer.SetIndent("  ");
     document_.Accept(&printer);
@@ -121,6 +123,52 @@ class MendedModel {
                             " is what the last joint moves: put a site at the tool");
   }
 
+  /// Where the robot's file has no masses, those that its effects were found with, to bodies that
+  /// have next to none: without, nothing would give way.
+  void give_masses() {
+    const serial::Model usual = serial::with_usual_masses(robot_);
+    const std::vector<int> moving = serial::moving_frames(robot_);
+    const auto given = [&](int f) {
+      const auto i = static_cast<std::size_t>(f);
+      return usual.frames[i].mass && !robot_.frames[i].mass;
+    };
+    if (!given(moving.front())) return;
+    for (const ChainJoint& joint : read_.chain.joints)
+      if (joint.mass.value_or(0) > kNextToNone)
+        return out_.left_out.push_back(
+            "masses: the robot's file has none, and its effects were found with others than the "
+            "model's: make the robot file of this model");
+    Isometry3d X = Isometry3d::Identity();
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    double mass = 0;
+    std::size_t joint = 0;
+    for (std::size_t f = 0; f < usual.frames.size(); ++f) {
+      X = X * serial::pose_in_parent(usual.frames[f], 0);
+      mass += usual.frames[f].mass.value_or(0);
+      moment += usual.frames[f].mass.value_or(0) * (X * usual.frames[f].com);
+      const bool last = f + 1 == usual.frames.size();
+      const bool ends =
+          joint < moving.size() && static_cast<int>(f) >= moving[joint] &&
+          (last || (joint + 1 < moving.size() && static_cast<int>(f) + 1 == moving[joint + 1]));
+      if (!ends) continue;
+      give_mass(static_cast<int>(joint++), mass, moment / std::max(mass, kNextToNone));
+      mass = 0;
+      moment.setZero();
+    }
+  }
+
+  /// To the body of the joint; `com_W` as the calibrated robot has it with all joints at zero.
+  void give_mass(int joint, double mass, const Eigen::Vector3d& com_W) {
+    for (std::size_t b = 0; b < elements_.size(); ++b) {
+      if (std::ranges::find(read_.bodies[b].joints, joint) == read_.bodies[b].joints.end())
+        continue;
+      if (TiXmlElement* old = elements_[b]->FirstChildElement("inertial"))
+        elements_[b]->RemoveChild(old);
+      const TiXmlElement inertial = mjcf_inertial(mass, placed_[b].inverse() * com_W);
+      elements_[b]->InsertBeforeChild(elements_[b]->FirstChild(), inertial);
+    }
+  }
+
   /// A copy of the joint's element behind it, with a name and a rest of its own.
   TiXmlElement* copy_of(TiXmlElement& body, TiXmlElement& joint, const std::string& name) {
     TiXmlElement copy = joint;
@@ -164,7 +212,8 @@ class MendedModel {
       play->SetAttribute("range", mjcf_numbers(Eigen::Vector2d(-half, half)));
     }
     for (const JointSpring& each : effects_.joints)
-      if (mine(each.joint)) add_spring(root, body, element, before(joint).name, each);
+      if (mine(each.joint) && element)
+        set_mjcf_spring(*copy_of(body, *element, each.joint + ".spring"), each.compliance);
     if (!element) unnamed(frame);
   }
 
@@ -175,24 +224,6 @@ class MendedModel {
     if (needs(effects_.joints) || needs(effects_.plays) || needs(effects_.drags))
       out_.left_out.push_back("effects of joint " + joint +
                               ", which the file does not call so: give it this name");
-  }
-
-  void add_spring(TiXmlElement& root, TiXmlElement& body, TiXmlElement* element,
-                  const std::string& name, const JointSpring& spring) {
-    if (std::ranges::find(read_.driven, name) == read_.driven.end()) {
-      if (element)
-        set_mjcf_spring(*copy_of(body, *element, spring.joint + ".spring"), spring.compliance);
-      return;
-    }
-    for (auto* actuators = root.FirstChildElement("actuator"); actuators;
-         actuators = actuators->NextSiblingElement("actuator"))
-      for (auto* e = actuators->FirstChildElement("position"); e;
-           e = e->NextSiblingElement("position"))
-        if (const char* of = e->Attribute("joint"); of && name == of)
-          return e->SetAttribute("kp", format_number(1 / spring.compliance));
-    out_.left_out.push_back("the effect joint_compliance at " + spring.joint +
-                            ": give the actuator that holds it a gain of " +
-                            format_number(1 / spring.compliance));
   }
 
   /// What the file has angles in, of a radian: degrees where it says nothing.

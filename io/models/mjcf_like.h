@@ -12,9 +12,8 @@
 namespace selfcal {
 
 /// The model `text` (`file` in messages), which `read` is of, with its bodies where `corrected` has
-/// the joints and with `effects` of the calibrated `robot`; all else as it was. A joint that its
-/// position actuator holds gives way by this actuator's kp. Refuses a model whose bodies are not
-/// all in this one file.
+/// the joints and with `effects` of the calibrated `robot`; all else as it was. Refuses a model
+/// whose bodies are not all in this one file.
 Result<MjcfText> mjcf_like(const std::string& text, const std::string& file,
                            const MujocoChain& read, const CorrectedChain& corrected,
                            const serial::Model& robot, const MjcfEffects& effects);

@@ -28,11 +28,10 @@ struct MujocoBody {
 };
 
 struct MujocoChain {
-  JointChain chain;                 ///< W is the model's world, T the tool; springs at their rest
-  std::vector<MujocoBody> bodies;   ///< that carry T, from the world on
-  int every_body = 0;               ///< that the model has
-  std::vector<std::string> driven;  ///< the chain's joints that a position actuator holds
-  std::string tool;                 ///< the site or body that T is, as found
+  JointChain chain;                ///< W is the model's world, T the tool; springs at their rest
+  std::vector<MujocoBody> bodies;  ///< that carry T, from the world on
+  int every_body = 0;              ///< that the model has
+  std::string tool;                ///< the site or body that T is, as found
   bool tool_is_site = false;
   std::vector<std::string> notices;  ///< what a person should know
 };
@@ -53,12 +52,14 @@ struct MujocoLoad {
 struct MujocoPoses {
   std::vector<std::optional<Location>> tool;  ///< in the world; nothing where it came to no rest
   int driven = 0;                             ///< joints that a position actuator holds
+  double sag = 0;                             ///< m, rms: how far off it is where these are told
+                                              ///< the readings and give way under the load
   int touching = 0;                           ///< configurations with contacts
 };
 
-/// Where the tool stands at rest. A joint with a position actuator is commanded to its reading and
-/// gives way as the actuator lets it; one without stands at its reading. Joints that follow these
-/// by an equality follow exactly. Springs of the chain settle to the balance of all forces, by
+/// Where the tool stands at rest. The joints stand at their readings, as the encoders of a robot
+/// say where its joints are, whatever drives them. Joints that follow these by an equality follow
+/// exactly. Springs of the chain settle to the balance of all forces, by
 /// Newton's method on the inverse dynamics at no acceleration; what is off the chain stays where
 /// the model has it. With a `text`, that is the model in place of the file's, beside which the
 /// files that it names lie.

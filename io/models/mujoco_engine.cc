@@ -98,10 +98,7 @@ class Model {
   }
 
   const Tool& tool() const { return tool_; }
-  int driven() const {
-    return static_cast<int>(
-        std::ranges::count_if(joints_, [](const ModelJoint& j) { return j.actuator >= 0; }));
-  }
+  int driven() const { return static_cast<int>(driven_.size()); }
   std::size_t joints() const { return joints_.size(); }
   std::size_t springs() const { return springs_.size(); }
   bool touches() const { return data_->ncon > 0; }
@@ -135,15 +132,11 @@ class Model {
     return list;
   }
 
-  std::vector<std::string> driven_joints() const {
-    std::vector<std::string> names;
-    for (const ModelJoint& joint : joints_)
-      if (joint.actuator >= 0) names.push_back(joint_name(joint.id));
-    return names;
-  }
-
-  /// The tool at rest, or nothing.
-  std::optional<Location> settle(const MujocoLoad& load) {
+  /// The tool at rest, or nothing: joints at the readings, or those with a position actuator as far
+  /// as it brings them when it is told the readings.
+  std::optional<Location> settle(const MujocoLoad& load, bool told) {
+    free_ = springy_;
+    if (told) free_.insert(free_.end(), driven_.begin(), driven_.end());
     stand(load.q);
     for (int i = 0; i < kMostSides; ++i) {
       if (!balance(load)) return std::nullopt;
@@ -314,7 +307,8 @@ class Model {
           springs_.push_back(joint);
         else
           joints_.push_back({joint, position_actuator(joint)});
-        if (spring || joints_.back().actuator >= 0) free_.push_back(m.jnt_dofadr[joint]);
+        if (spring) springy_.push_back(m.jnt_dofadr[joint]);
+        if (!spring && joints_.back().actuator >= 0) driven_.push_back(m.jnt_dofadr[joint]);
       }
     for (const Follower& each : followers_)
       if (std::ranges::find(joints_, each.leader, &ModelJoint::id) == joints_.end())
@@ -469,7 +463,9 @@ class Model {
   std::vector<Follower> followers_;
   std::vector<int> springs_;  ///< joints between them that give way
   std::vector<int> plays_;    ///< joints between them that lie where their load puts them
-  std::vector<int> free_;     ///< degrees of freedom that settle
+  std::vector<int> springy_;  ///< degrees of freedom of the springs
+  std::vector<int> driven_;   ///< and of the joints that a position actuator drives
+  std::vector<int> free_;     ///< of these, that settle
   VectorXd force_missing_;    ///< N m, N: by degree of freedom, in the last imbalance
 };
 
@@ -482,7 +478,6 @@ Result<MujocoChain> read_mujoco(const std::filesystem::path& file, const std::st
   read.chain = model->chain();
   read.bodies = model->bodies();
   read.every_body = model->every_body();
-  read.driven = model->driven_joints();
   read.tool = model->tool().name;
   read.tool_is_site = model->tool().site >= 0;
   if (model->followers() > 0)
@@ -502,14 +497,22 @@ Result<MujocoPoses> settled_poses(const std::filesystem::path& file, const std::
   if (!model) return tl::unexpected(model.error());
   MujocoPoses poses;
   poses.driven = model->driven();
+  double squares = 0;
+  int compared = 0;
   for (const MujocoLoad& load : loads) {
     if (load.q.size() != static_cast<Eigen::Index>(model->joints()))
       return bad_input(file.string() + ": " + std::to_string(model->joints()) +
                        " joints of a robot move '" + model->tool().name + "', and the rows have " +
                        std::to_string(load.q.size()));
-    poses.tool.push_back(model->settle(load));
+    poses.tool.push_back(model->settle(load, false));
     poses.touching += model->touches();
+    if (poses.driven == 0 || !poses.tool.back()) continue;
+    if (const auto told = model->settle(load, true)) {
+      squares += (told->p - poses.tool.back()->p).squaredNorm();
+      ++compared;
+    }
   }
+  if (compared > 0) poses.sag = std::sqrt(squares / compared);
   return poses;
 }
 

@@ -82,6 +82,13 @@ TEST_F(Tutorials, MendASimulator) {
       << ran.out;
 }
 
+TEST_F(Tutorials, LeadFromAUrdfToACalibratedOne) {
+  const Ran ran = follow("urdf.md");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("Improved"), std::string::npos) << ran.out;
+  EXPECT_NE(text_of(folder_ / "calibrated.urdf").find("Calibrated by selfcal"), std::string::npos);
+}
+
 TEST_F(Tutorials, WatchManyRobots) {
   const Ran ran = follow("fleet.md");
   EXPECT_EQ(ran.status, 0) << ran.out;

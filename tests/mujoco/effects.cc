@@ -205,7 +205,7 @@ TEST(MendedModel, OfTheUsersPutsTheToolWhereTheCalibratedRobotHasIt) {
   const Mended mended = mended_by("{effect: joint_compliance, at: j3, c: 1.0e-12}");
   EXPECT_THAT(mended.left_out, IsEmpty());
   EXPECT_THAT(mended.text, HasSubstr("name=\"kept\""));
-  // The actuator that holds j3 stands for 1e-12 rad/(N m): nothing beside a nanometre.
+  // The spring behind j3 is one of 1e-12 rad/(N m): nothing beside a nanometre.
   EXPECT_LT(most_apart(mended), 1e-9);
 }
 
@@ -215,7 +215,8 @@ TEST(MendedModel, OfTheUsersGivesWayAsTheRobotDoes) {
       "4.0e-6}, {effect: link_compliance, at: j2, bend_x: 1.0e-6, bend_y: 1.0e-6, twist: 1.0e-6}, "
       "{effect: backlash, at: j2, by: load, play: 4.0e-4}");
   EXPECT_THAT(mended.left_out, IsEmpty());
-  EXPECT_THAT(mended.text, HasSubstr("kp=\"250000\""));
+  EXPECT_THAT(mended.text, HasSubstr("stiffness=\"250000\""));
+  EXPECT_THAT(mended.text, HasSubstr("joint=\"j3\" kp=\"1000000\""));
   EXPECT_THAT(mended.text, HasSubstr("j2.play"));
   // Effects move the tool by 0.2 mm and more; a hundredth of it is of second order and of masses
   // that the robot file has at the joints' own links.

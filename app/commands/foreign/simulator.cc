@@ -3,8 +3,12 @@
 #include <algorithm>
 
 #include "app/commands/foreign/mended_model.h"
+#include "app/report/format.h"
+#include "constraints/estimation/identification.h"
 #include "constraints/methods/data_set.h"
+#include "io/files/robot_file.h"
 #include "io/files/yaml.h"
+#include "io/models/mjcf_effects.h"
 #include "io/models/mujoco.h"
 
 namespace selfcal {
@@ -13,6 +17,8 @@ namespace {
 /// 1 sigma of one coordinate (m) that the simulated rows are taken for: far below any instrument's
 /// on a real robot, far above what a balance of forces leaves open.
 constexpr double kSimulatedNoise = 1e-6;
+
+constexpr const char* kCorrectedName = "corrected.robot.yaml";
 
 std::vector<MujocoLoad> loads_of(const Observations& rows) {
   std::vector<MujocoLoad> loads;
@@ -65,15 +71,50 @@ Observations simulated_rows(const Observations& real, const ToolPoses& tool) {
   return rows;
 }
 
-std::vector<std::string> notices_of(const MujocoPoses& poses, const Robot& robot) {
-  const auto joints = static_cast<int>(robot.joints().size());
+/// The robot of a file with those of its effects alone that a model for MuJoCo carries; where these
+/// are not all, its parameters and theirs fitted to the rows anew, for what is left out would be
+/// missing from what they came to beside it. What is left out is named in `left_out`.
+std::optional<Node> fitted_without_the_rest(const Node& robot, const DataSet& data,
+                                            std::vector<std::string>& left_out) {
+  const Node* effects = robot.find("effects");
+  Problems problems;
+  const Node geometry = robot.without({"effects"});
+  const serial::Model model = serial::read(geometry, problems);
+  if (!effects || problems.any()) return robot;
+  Node kept = Node::list();
+  for (const Node& entry : effects->items) {
+    Node one = Node::list();
+    one.items = {entry};
+    Node alone = geometry;
+    const MjcfEffects taken = mjcf_effects(alone.set("effects", one), model);
+    if (taken.carries_any())
+      kept.items.push_back(entry);
+    else
+      left_out.insert(left_out.end(), taken.left_out.begin(), taken.left_out.end());
+  }
+  if (kept.items.size() == effects->items.size()) return robot;
+  Node less = geometry;
+  if (!kept.items.empty()) less.set("effects", kept);
+  const auto fewer = make_robot(less, problems);
+  if (!fewer || problems.any()) return std::nullopt;
+  Options options;
+  options.gears = true;
+  for (const Parameter& each : fewer->parameters())
+    if (each.part == Part::effect) options.free.push_back(each.name);
+  const Solution solution = identify(*fewer, data, options);
+  return parse_yaml(robot_text(*fewer, solution.values), kCorrectedName).value();
+}
+
+std::vector<std::string> notices_of(const MujocoPoses& poses) {
   const auto rows = std::to_string(poses.tool.size());
-  std::vector<std::string> list = {
-      poses.driven == 0 ? "no position actuator drives the joints: they stand at the readings"
-      : poses.driven == joints
-          ? "its position actuators are told the readings and hold the joints"
-          : std::to_string(poses.driven) + " of " + std::to_string(joints) +
-                " joints are held by position actuators, the others stand at the readings"};
+  std::vector<std::string> list;
+  if (poses.driven > 0)
+    list.push_back(
+        "its joints stand at the readings; told these, its position actuators let the "
+        "tool sag by " +
+        mm(poses.sag) +
+        " mm (rms), which is of the controller and not counted: the readings of a robot "
+        "are where its joints are");
   if (poses.touching > 0)
     list.push_back("it touches something in " + std::to_string(poses.touching) + " of " + rows +
                    " rows");
@@ -92,7 +133,7 @@ bool is_simulator_model(const std::filesystem::path& path) {
 }
 
 Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::string& tool,
-                                 const LoadedDataSet& real, const Robot& robot) {
+                                 const LoadedDataSet& real) {
   const auto poses = settled_poses(file, tool, loads_of(real.data.rows));
   if (!poses) return tl::unexpected(poses.error());
   if (std::ranges::count(poses->tool, false, &std::optional<Location>::has_value) ==
@@ -102,7 +143,7 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
   simulation.gap = simulator_gap(real.data, poses->tool);
   LoadedDataSet& measured = simulation.measured;
   measured.name = file.filename().string();
-  measured.notices = notices_of(*poses, robot);
+  measured.notices = notices_of(*poses);
   measured.files = {file};
   measured.data.target = real.data.target;
   measured.data.workspace = real.data.workspace;
@@ -115,22 +156,25 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
 std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& file,
                                                 const std::string& tool, const LoadedDataSet& real,
                                                 const std::string& corrected) {
-  const auto robot = parse_yaml(corrected, "corrected.robot.yaml");
-  if (!robot || robot->find("kind")->text != "serial") return std::nullopt;
-  auto model = mjcf_mended(*robot, "corrected.robot.yaml", file.string(), tool);
+  const auto all = parse_yaml(corrected, kCorrectedName);
+  if (!all || all->find("kind")->text != "serial") return std::nullopt;
+  std::vector<std::string> left_out;
+  const auto robot = fitted_without_the_rest(*all, real.data, left_out);
+  if (!robot) return std::nullopt;
+  auto model = mjcf_mended(*robot, kCorrectedName, file.string(), tool);
   const bool own = model.has_value();
-  if (!own) model = mjcf_of_robot(*robot, "corrected.robot.yaml");
+  if (!own) model = mjcf_of_robot(*robot, kCorrectedName);
   if (!model) return std::nullopt;
   const auto poses =
       settled_poses(own ? file : file.parent_path() / "mended.xml", own ? tool : std::string(),
                     loads_of(real.data.rows), model->text);
   if (!poses) return std::nullopt;
-  MendedSimulator mended{model->text, simulator_gap(real.data, poses->tool), model->left_out};
   if (!own)
-    mended.left_out.insert(mended.left_out.begin(),
-                           "all of the model but the robot's own bodies, for it is not of this "
-                           "robot file");
-  return mended;
+    left_out.insert(
+        left_out.begin(),
+        "all of the model but the robot's own bodies, for it is not of this robot file");
+  left_out.insert(left_out.end(), model->left_out.begin(), model->left_out.end());
+  return MendedSimulator{model->text, simulator_gap(real.data, poses->tool), std::move(left_out)};
 }
 
 }  // namespace selfcal

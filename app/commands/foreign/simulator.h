@@ -25,7 +25,7 @@ struct Simulation {
 /// world; its place is unknown where those of `real` are, and so is the target's. Wrenches of the
 /// rows act on the tool.
 Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::string& tool,
-                                 const LoadedDataSet& real, const Robot& robot);
+                                 const LoadedDataSet& real);
 
 /// The model `file`, or where it is none of MuJoCo's own or another robot's a model of the robot
 /// alone, mended by the robot file `corrected` and asked at the same rows; nothing where there is
