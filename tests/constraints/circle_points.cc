@@ -238,7 +238,7 @@ TEST(AxisModelOfMotoman, FindsAxesThatDifferFromTheTable) {
 TEST(AxisModelOfMotoman, IsItsTableToACamerasThirdOfAMillimetre) {
   const serial::Model robot = model_of(kMotoman);
   Random random(2);
-  double angle = 0, length = 0;
+  double angle = 0, length = 0, turn = 0, along = 0;
   constexpr int kTrials = 20;
   for (int i = 0; i < kTrials; ++i) {
     std::vector<std::string> problems;
@@ -248,16 +248,23 @@ TEST(AxisModelOfMotoman, IsItsTableToACamerasThirdOfAMillimetre) {
       const Eigen::VectorXd off = model->found.frames[j].value - model->made.frames[j].value;
       angle = std::max(angle, std::abs(off[serial::kAlpha]));
       length = std::max(length, std::abs(off[serial::kD]));
+      turn = std::max(turn, std::abs(off[serial::kTheta]));
+      along = std::max(along, std::abs(off[serial::kR]));
     }
   }
-  std::printf("Motoman by a camera of 0.3 mm, worst of %d: %.2f mrad, %.2f mm\n", kTrials,
-              1e3 * angle, 1e3 * length);
+  std::printf(
+      "Motoman by a camera of 0.3 mm, worst of %d: alpha %.2f, theta %.2f mrad, d %.2f, r "
+      "%.2f mm\n",
+      kTrials, 1e3 * angle, 1e3 * turn, 1e3 * length, 1e3 * along);
   // Per axis: rotation of a row 0.3 mm / sqrt(0.22 m^2), the markers' squares about a line across;
   // over sqrt(0.53), the squares of six turns 10 degrees apart: 0.88 mrad. Two axes, 4 sigma; an
   // arm of 1 m from the markers to where the axes are nearest. The paper's own table was off by 65
   // mrad and 9.3 mm.
   EXPECT_LT(angle, 4 * std::sqrt(2.0) * 0.88e-3);
   EXPECT_LT(length, 4 * std::sqrt(2.0) * 0.88e-3);
+  // Three axes each; those of j2 and j3 are parallel, 0.67 m apart.
+  EXPECT_LT(turn, 4 * std::sqrt(3.0) * 0.88e-3 / 0.67);
+  EXPECT_LT(along, 4 * std::sqrt(3.0) * 0.88e-3);
 }
 
 TEST(AxisModelOfMotoman, NamesTheJointThatLacksRowsAndTheOneThatMoved) {

@@ -53,6 +53,17 @@ std::vector<Device> devices() {
       {"cameras, whole location",
        0.2e-3,
        {of("cameras", {{"method", "location"}, {"frame", "unknown"}}, kRows)}},
+      {"extendable ball bar of 5 um, from three nests",
+       5e-6,
+       {of("a", {{"method", "fixed-point-distance"}}, kRows / 3),
+        of("b", {{"method", "fixed-point-distance"}}, kRows / 3),
+        of("c", {{"method", "fixed-point-distance"}}, kRows / 3)}},
+      {"extendable ball bar of 5 um, from one nest",
+       5e-6,
+       {of("a", {{"method", "fixed-point-distance"}}, kRows)}},
+      {"telescoping link of 50 um at one point, its zero unknown",
+       50e-6,
+       {of("a", {{"method", "fixed-point-distance"}, {"offset", "unknown"}}, kRows)}},
   };
 }
 
