@@ -252,5 +252,25 @@ TEST(EffectOfABase, HasItsOwnNamesBesideABaseThatIsAWholePose) {
   EXPECT_EQ(values(*back), values(*robot));
 }
 
+TEST(EffectsOfAFile, MayBeAtOnePlaceAgainWhereTheyDifferInMoreThanTheirValues) {
+  const std::string arm =
+      "robot: arm\nkind: serial\nframes:\n  - {name: j1, joint: revolute}\n"
+      "  - {name: tool, joint: fixed, r: 0.1}\neffects:\n";
+  const std::string at_10 = "  - {effect: tool_shift, moment: 10, x: 1.0e-4}\n",
+                    at_20 = "  - {effect: tool_shift, moment: 20, x: 2.0e-4}\n";
+  const auto robot = robot_of(arm + at_10 + at_20, "arm.yaml");
+  ASSERT_TRUE(robot) << robot.error().what;
+  const int first = find_parameter(**robot, "probe.x"),
+            second = find_parameter(**robot, "probe.x_2");
+  ASSERT_GE(first, 0);
+  ASSERT_GE(second, 0);
+  EXPECT_EQ(values(**robot)[first], 1e-4);
+  EXPECT_EQ(values(**robot)[second], 2e-4);
+  EXPECT_TRUE(robot_of(robot_text(**robot, values(**robot)), "again.yaml"));
+  const auto twice = robot_of(arm + at_10 + at_10, "arm.yaml");
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().what, HasSubstr("effects: one is there twice"));
+}
+
 }  // namespace
 }  // namespace selfcal
