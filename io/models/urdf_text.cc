@@ -5,6 +5,7 @@
 #include <tinyxml.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinematics/rotation.h"
 
@@ -14,7 +15,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kUnmoved = 1e-11;  // m, rad: an origin that keeps its digits
+constexpr double kUnmoved = 1e-11;   // m, rad: an origin that keeps its digits
+constexpr double kLastDigit = 1e15;  // of a metre, of a radian
 
 // <calibration rising falling> is where a homing switch is (urdf's JointCalibration), which a
 // corrected origin does not move.
@@ -23,10 +25,13 @@ constexpr const char* kWhereItIs =
     "Give the driver no kinematics file and no joint offsets beside them; a calibration element "
     "tells where a homing switch is, and is as it was. ";
 
+/// Without what products of rotations leave behind the last digit.
 std::string three_numbers(const Vector3d& v) {
-  const Vector3d unsigned_zeros = v.array() + 0.0;
   std::string text;
-  for (const double each : unsigned_zeros) text += (text.empty() ? "" : " ") + format_number(each);
+  for (const double each : v) {
+    const double rounded = std::round(each * kLastDigit) / kLastDigit;
+    text += (text.empty() ? "" : " ") + format_number(rounded + 0.0);  // no sign at zero
+  }
   return text;
 }
 
