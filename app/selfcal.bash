@@ -2,8 +2,9 @@
 _selfcal() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]-} words
   if [[ $prev == --method || $prev == --effects ]]; then
-    [[ $prev == --method ]] && command=identifiable || command=identify
-    words=$("${COMP_WORDS[0]}" $command --help 2>/dev/null | sed -n "s/^ *$prev .*{\(.*\)}.*/\1/p")
+    command=identify
+    if [[ $prev == --method ]]; then command=identifiable; fi
+    words=$("${COMP_WORDS[0]}" "$command" --help 2>/dev/null | sed -n "s/^ *$prev .*{\(.*\)}.*/\1/p")
     words=${words//,/ }
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
     return

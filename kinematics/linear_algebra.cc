@@ -84,6 +84,7 @@ Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) 
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   if (A.cols() == 0) return {};
+  expects(A.rows() == b.size(), "a right side of as many rows");
   return A.completeOrthogonalDecomposition().solve(b);
 }
 
@@ -94,6 +95,7 @@ Eigen::MatrixXd least_squares_of_all(const Eigen::MatrixXd& A, const Eigen::Matr
 
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {
   if (onto.cols() == 0) return M;
+  expects(onto.rows() == M.rows(), "columns of one space");
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(onto);
   const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(onto.rows(), qr.rank());
   return M - Q * (Q.transpose() * M);
@@ -122,6 +124,7 @@ Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A) {
 
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
   if (B.size() == 0) return B;
+  expects(L.rows() == L.cols() && L.rows() == B.rows(), "a triangle and a right side of it");
   if (!large(L, B)) return L.triangularView<Eigen::Lower>().solve(B);
   Eigen::MatrixXd X = B;
   solve_in_place(CblasNoTrans, L, X);
@@ -130,6 +133,7 @@ Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) 
 
 Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
   if (B.size() == 0) return B;
+  expects(L.rows() == L.cols() && L.rows() == B.rows(), "a triangle and a right side of it");
   if (!large(L, B)) return L.transpose().triangularView<Eigen::Upper>().solve(B);
   Eigen::MatrixXd X = B;
   solve_in_place(CblasTrans, L, X);
@@ -137,6 +141,7 @@ Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::Ma
 }
 
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  expects(A.rows() == B.rows(), "two of as many rows");
   if (static_cast<double>(A.size() * B.cols()) < kWorthACall) return A.transpose() * B;
   Eigen::MatrixXd AB(A.cols(), B.cols());
   if (AB.size() == 0) return AB;

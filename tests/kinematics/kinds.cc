@@ -149,7 +149,7 @@ TEST_P(RobotKind, MovesAPointOfABodyWithIt) {
     PsiBlock psi;
     const Locations origin = located(block_, xi_, body), there = place(xi_, &psi);
     for (int lane = 0; lane < kLanes; ++lane)
-      EXPECT_LT((origin.p(lane) + origin.R(lane) * at - there.p(lane)).norm(), 1e-15) << name;
+      EXPECT_LT((origin.p(lane) + origin.R(lane) * at - there.p(lane)).norm(), 1e-14) << name;
     for (Eigen::Index p = 0; p < xi_.size(); ++p) {
       Eigen::VectorXd plus = xi_, minus = xi_;
       plus[p] += kKindStep;
