@@ -5,19 +5,38 @@
 
 namespace selfcal {
 
+namespace {
+
+/// Needs links, masses of links, or drives that share a gearbox: legs have none of them.
+bool of_links(const std::string& name) {
+  for (const char* each : {"joint_compliance", "link_compliance", "transmission_error",
+                           "joint_coupling", "thermal_expansion", "tool_compliance"})
+    if (name == each) return true;
+  return false;
+}
+
+using Causes = const std::map<std::string, CauseMaker>& (*)();
+constexpr Causes kAllCauses[] = {joint_causes, leg_causes, site_causes, tracked_causes,
+                                 touch_causes};
+
+}  // namespace
+
 std::vector<std::string> listed_causes(const TrialWorld& world) {
   std::vector<std::string> names;
-  for (const auto* list : {&joint_causes(), &site_causes(), &tracked_causes(), &touch_causes()}) {
+  for (const Causes causes : kAllCauses) {
+    const auto* list = &causes();
     if (list == (world.touches() ? &tracked_causes() : &touch_causes())) continue;
-    for (const auto& [name, maker] : *list) names.push_back(name);
+    if (list == &leg_causes() && !world.on_legs()) continue;
+    for (const auto& [name, maker] : *list)
+      if (!world.on_legs() || !of_links(name)) names.push_back(name);
   }
   return names;
 }
 
 TrialCause draw_cause(const std::string& effect, const TrialWorld& world, Random& random) {
   if (effect == "unknown") return draw_unknown(world, random);
-  for (const auto* list : {&joint_causes(), &site_causes(), &tracked_causes(), &touch_causes()})
-    if (const auto found = list->find(effect); found != list->end()) {
+  for (const Causes causes : kAllCauses)
+    if (const auto found = causes().find(effect); found != causes().end()) {
       TrialCause cause = found->second(world, random);
       cause.effect = effect;
       return cause;

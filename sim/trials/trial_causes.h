@@ -27,9 +27,10 @@ TrialCause draw_cause(const std::string& effect, const TrialWorld& world, Random
 TrialCause draw_unknown(const TrialWorld& world, Random& random);
 
 using CauseMaker = TrialCause (*)(const TrialWorld&, Random&);
-/// Of the joints and of links (trial_joint_causes.cc), and of what is around
-/// (trial_site_causes.cc).
+/// Of the joints and of links (trial_joint_causes.cc), of legs (trial_leg_causes.cc), and of what
+/// is around (trial_site_causes.cc).
 const std::map<std::string, CauseMaker>& joint_causes();
+const std::map<std::string, CauseMaker>& leg_causes();
 const std::map<std::string, CauseMaker>& site_causes();
 const std::map<std::string, CauseMaker>& tracked_causes();
 const std::map<std::string, CauseMaker>& touch_causes();

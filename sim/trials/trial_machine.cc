@@ -143,15 +143,21 @@ class TrialMaker {
       Deviation one{Eigen::VectorXd::Zero(at.q.size())};
       cause.act(at, one);
       sum.joints += cause.size * one.joints;
+      sum.legs += cause.size * one.legs;
       sum.tip += cause.size * one.tip;
     }
     return sum;
   }
 
+  /// The true one, with what is added to its legs.
+  Eigen::VectorXd geometry(const Deviation& d) const {
+    return with_legs(*session_.robot, session_.truth.xi, d.legs);
+  }
+
   Eigen::Vector3d shift(const std::vector<TrialCause>& causes, const Instant& at) const {
     const Deviation d = deviation(causes, at);
     const Robot& robot = *session_.robot;
-    return tip_of(robot, session_.truth.xi, at.q + d.joints, nullptr) -
+    return tip_of(robot, geometry(d), at.q + d.joints, nullptr) -
            tip_of(robot, session_.truth.xi, at.q, nullptr) + d.tip;
   }
 
@@ -183,20 +189,20 @@ class TrialMaker {
     for (int step = 0; step < kTouchSteps; ++step) {
       const Deviation d = deviation(causes_, at);
       Eigen::MatrixXd J;
-      const Eigen::Vector3d tip = tip_of(robot, session_.truth.xi, at.q + d.joints, &J) + d.tip;
+      const Eigen::Vector3d tip = tip_of(robot, geometry(d), at.q + d.joints, &J) + d.tip;
       const double miss = wanted + surface.distance - surface.normal.dot(tip);
       if (std::abs(miss) < kTouchMet) break;
       const Eigen::VectorXd along = J.transpose() * surface.normal;
       at.q += along * (miss / along.squaredNorm());
-      at.poses = robot.statics()->link_poses(at.q);
+      look(robot, session_.truth.xi, at);
     }
     session_.data.rows.q.row(at.row) = at.q.transpose();
   }
 
   void track(const Instant& at, double astray) {
     const Deviation d = deviation(causes_, at);
-    Eigen::Vector3d p = tip_of(*session_.robot, session_.truth.xi, at.q + d.joints, nullptr) +
-                        d.tip + noise_.row(at.row).transpose();
+    Eigen::Vector3d p = tip_of(*session_.robot, geometry(d), at.q + d.joints, nullptr) + d.tip +
+                        noise_.row(at.row).transpose();
     if (astray > 0)
       p += astray * Eigen::Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
     session_.data.rows.position.row(at.row) = p.transpose();

@@ -1,7 +1,8 @@
-// A UR10's figures, each drawn anew within a fifth or so.
+// A UR10's figures, each drawn anew within a fifth or so; what legs carry by their length.
 #include "sim/trials/trial_robot.h"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "kinematics/make_robot.h"
@@ -53,6 +54,16 @@ Node tool_node(Random& random) {
   return node;
 }
 
+/// Mean of the legs in the middle of the readings (m): everything that they carry goes by it.
+double leg_length(const Robot& robot) {
+  Eigen::VectorXd q(static_cast<Eigen::Index>(robot.joints().size()));
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Joint& joint = robot.joints()[static_cast<size_t>(j)];
+    q[j] = (joint.lower + joint.upper) / 2;
+  }
+  return robot.leg_lengths(values(robot), q).mean();
+}
+
 }  // namespace
 
 std::unique_ptr<Robot> draw_arm(Random& random) {
@@ -88,6 +99,13 @@ Eigen::VectorXd draw_geometry(const Robot& robot, Random& random) {
 
 Weights draw_weights(const Robot& robot, Random& random) {
   Weights weights;
+  if (runs_on_legs(robot)) {
+    const double length = leg_length(robot);
+    weights.mass.push_back(uniform(random, 30, 60) * std::pow(length, 3));
+    weights.com.push_back(0.05 * length *
+                          Eigen::Vector3d(normal(random), normal(random), normal(random)));
+    return weights;
+  }
   for (const Link& link : robot.statics()->mechanics().links) {
     const double off = uniform(random, 0.1, 0.2) * (chance(random, 0.5) ? 1 : -1);
     weights.mass.push_back(link.mass.value_or(0) * (1 + off));
@@ -95,6 +113,10 @@ Weights draw_weights(const Robot& robot, Random& random) {
                           0.01 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
   }
   return weights;
+}
+
+double most_load(const Robot& robot) {
+  return runs_on_legs(robot) ? 400 * std::pow(leg_length(robot), 3) : 40;
 }
 
 }  // namespace selfcal

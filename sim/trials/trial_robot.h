@@ -17,11 +17,15 @@ std::unique_ptr<Robot> draw_arm(Random& random);
 /// base and tool a few mm and mrad.
 Eigen::VectorXd draw_geometry(const Robot& robot, Random& random);
 
-/// Masses (kg) and centres of mass (m) by link, 10 to 20 % and 10 mm off what the maker says.
+/// Masses (kg) and centres of mass (m) by link, 10 to 20 % and 10 mm off what the maker says; on
+/// legs those of what they carry, of which no maker says anything.
 struct Weights {
   std::vector<double> mass;
   std::vector<Eigen::Vector3d> com;
 };
 Weights draw_weights(const Robot& robot, Random& random);
+
+/// N: of the loads that a session puts on the tip.
+double most_load(const Robot& robot);
 
 }  // namespace selfcal

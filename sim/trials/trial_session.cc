@@ -9,6 +9,7 @@
 #include "constraints/sampling/configurations.h"
 #include "constraints/sampling/random_poses.h"
 #include "kinematics/linear_algebra.h"
+#include "sim/trials/trial_robot.h"
 
 namespace selfcal {
 namespace {
@@ -157,7 +158,7 @@ class SessionMaker {
     at.configuration = configuration;
     at.set = sampled.set[static_cast<size_t>(from)];
     at.q = sampled.q.row(from).transpose();
-    at.poses = robot_.statics()->link_poses(at.q);
+    look(robot_, xi_, at);
     at.velocity = Eigen::VectorXd::NullaryExpr(at.q.size(), [&] { return normal(random_); });
     if (!plan_.touches) {
       at.velocity *= log_uniform(random_, 0.008, 0.032) / at.velocity.norm();
@@ -178,8 +179,12 @@ class SessionMaker {
 
   void load(Instant& at) {
     const Eigen::Matrix3d R = at.poses.back().linear();
-    at.force = R * Eigen::Vector3d::NullaryExpr([&] { return uniform(random_, -40, 40); });
-    at.moment = R * Eigen::Vector3d::NullaryExpr([&] { return uniform(random_, -4, 4); });
+    const auto within = [&](double most) {
+      return Eigen::Vector3d(
+          Eigen::Vector3d::NullaryExpr([&] { return uniform(random_, -most, most); }));
+    };
+    at.force = R * within(most_load_);
+    at.moment = R * within(0.1 * most_load_);
   }
 
   void write(Observations& rows, const Instant& at, bool check, bool repeated) {
@@ -219,7 +224,9 @@ class SessionMaker {
   const Eigen::VectorXd& xi_;
   const SessionPlan plan_;
   Random& random_;
-  const bool loaded_ = chance(random_, 0.6);
+  // What legs give way to shows under loads alone.
+  const bool loaded_ = chance(random_, runs_on_legs(robot_) ? 1 : 0.6);
+  const double most_load_ = most_load(robot_);  ///< N, and a tenth as many N m
   std::vector<int> takes_;
   std::vector<char> check_;
   std::vector<double> times_;

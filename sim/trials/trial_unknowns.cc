@@ -43,7 +43,10 @@ TrialCause cross_coupling(const TrialWorld& world, Random& random) {
 }
 
 TrialCause wobble(const TrialWorld& world, Random& random) {
-  const int elbow = world.robot->statics()->mechanics().link_of(std::min(3, world.joints() - 1));
+  const int elbow =
+      world.on_legs()
+          ? 0
+          : world.robot->statics()->mechanics().link_of(std::min(3, world.joints() - 1));
   const double waves = uniform(random, 6, 12), phase = uniform(random, 0, 6.28);
   const int axis = pick(random, 3);
   return {.physics = "the tool wobbles with the elbow's height",

@@ -33,18 +33,52 @@ AirRecord draw_air(double duration, Random& random) {
   return air;
 }
 
+bool runs_on_legs(const Robot& robot) { return robot.leg_parameter(0) >= 0; }
+
+void look(const Robot& robot, const Eigen::VectorXd& xi, Instant& at) {
+  if (!runs_on_legs(robot)) {
+    at.poses = robot.statics()->link_poses(at.q);
+    return;
+  }
+  Locations X;
+  PsiBlock psi;
+  robot.locate(block_of(at.q), xi, Body::endpoint, X, &psi);
+  at.poses.assign(1, Eigen::Isometry3d::Identity());
+  at.poses[0].linear() = X.R(0);
+  at.poses[0].translation() = X.p(0);
+  at.lengths = robot.leg_lengths(xi, at.q);
+  at.legs.resize(6, at.q.size());
+  for (int j = 0; j < at.q.size(); ++j)
+    for (int c = 0; c < 6; ++c) at.legs(c, j) = psi(c * kLanes, robot.leg_parameter(j));
+}
+
+Eigen::VectorXd with_legs(const Robot& robot, Eigen::VectorXd xi, const Eigen::VectorXd& longer) {
+  if (runs_on_legs(robot))
+    for (int j = 0; j < longer.size(); ++j) xi[robot.leg_parameter(j)] += longer[j];
+  return xi;
+}
+
 void TrialWorld::load(const Instant& at, int first, const Eigen::Vector3d& point,
                       Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
   force = at.force;
   moment = at.moment + (at.poses.back().translation() - point).cross(at.force);
   for (size_t k = static_cast<size_t>(first); k < mass.size(); ++k) {
-    const Eigen::Vector3d weight = mass[k] * robot->statics()->mechanics().gravity;
+    const Eigen::Vector3d weight = mass[k] * gravity();
     force += weight;
     moment += (at.poses[k] * com[k] - point).cross(weight);
   }
 }
 
+Eigen::Vector3d TrialWorld::gravity() const {
+  return on_legs() ? Eigen::Vector3d(0, 0, -9.81) : robot->statics()->mechanics().gravity;
+}
+
 double TrialWorld::torque(const Instant& at, int joint) const {
+  if (on_legs()) {  // virtual work: a leg's growth times its pull is what the loads do meanwhile
+    Eigen::Vector3d force, moment;
+    load(at, 0, at.poses.back().translation(), force, moment);
+    return at.legs.col(joint).head<3>().dot(force) + at.legs.col(joint).tail<3>().dot(moment);
+  }
   const int link = robot->statics()->mechanics().link_of(joint);
   const Eigen::Isometry3d& pose = at.poses[static_cast<size_t>(link)];
   Eigen::Vector3d force, moment;

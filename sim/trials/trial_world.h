@@ -19,17 +19,21 @@ struct Instant {
   int row = 0;
   int configuration = 0;  ///< equal for immediate repeats
   int set = 0;
-  double time = 0;                                   ///< s
-  Eigen::VectorXd q, velocity;                       ///< readings and their rates (rad or m, per s)
-  std::vector<Eigen::Isometry3d> poses;              ///< of the links, world, nominal geometry
+  double time = 0;                       ///< s
+  Eigen::VectorXd q, velocity;           ///< readings and their rates (rad or m, per s)
+  std::vector<Eigen::Isometry3d> poses;  ///< of the links, nominal geometry; on legs of the tool
+  Eigen::MatrixXd legs;     ///< 6 x legs: twist of the tip as one grows (1, 1/m), world
+  Eigen::VectorXd lengths;  ///< of the legs (m)
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward, of the touched surface, world
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the tip, world (N)
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< about the tip, world (N m)
 };
 
-/// What is added to the joint variables and to the place of the tip (world, m).
+/// What is added to the joint variables, to the lengths of legs and to the place of the tip (world,
+/// m).
 struct Deviation {
   Eigen::VectorXd joints;
+  Eigen::VectorXd legs = Eigen::VectorXd::Zero(joints.size());  ///< m, one behind each joint
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
 };
 
@@ -54,6 +58,9 @@ struct AirRecord {
 /// Warms up by 6 to 13 K towards its end, with some weather.
 AirRecord draw_air(double duration, Random& random);
 
+/// Every joint has a leg behind it, all of which carry the tip together.
+bool runs_on_legs(const Robot& robot);
+
 struct TrialWorld {
   const Robot* robot = nullptr;        ///< nominal
   std::vector<double> mass;            ///< kg, by link, true
@@ -64,17 +71,25 @@ struct TrialWorld {
   double duration = 0;  ///< s
 
   bool touches() const { return !surfaces.empty(); }
+  bool on_legs() const { return runs_on_legs(*robot); }
   const std::vector<Link>& links() const { return robot->statics()->mechanics().links; }
   int joints() const { return static_cast<int>(robot->joints().size()); }
+  Eigen::Vector3d gravity() const;  ///< m/s^2, world
   /// Force and moment about `point` (world) of all weights from link `first` on and of the tool's
   /// load.
   void load(const Instant& at, int first, const Eigen::Vector3d& point, Eigen::Vector3d& force,
             Eigen::Vector3d& moment) const;
-  /// N m (N of a prismatic joint).
+  /// N m (N of a prismatic joint); on legs the pull along the joint's.
   double torque(const Instant& at, int joint) const;
   /// Largest |torque| over the rows.
   double largest_torque(int joint) const;
 };
+
+/// Fills in the poses at `at.q`, or on legs what these do there (true geometry).
+void look(const Robot& robot, const Eigen::VectorXd& xi, Instant& at);
+
+/// Geometry `xi` with longer legs (m, by joint).
+Eigen::VectorXd with_legs(const Robot& robot, Eigen::VectorXd xi, const Eigen::VectorXd& longer);
 
 /// Place of the tip at joint variables `q` and true geometry, and its derivative to them (3 x
 /// joints) unless null.

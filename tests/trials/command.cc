@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "diagnosis/diagnosis.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
 #include "tests/io/scratch.h"
@@ -52,6 +53,20 @@ TEST_F(TrialCommand, SealsDataSetsThatReadAndTheSameForOneSeed) {
               text(std::string("b/") + name + "/observations.csv"));
   }
   EXPECT_EQ(make("a"), kBadInput) << "a sealed folder is not sealed again";
+}
+
+TEST_F(TrialCommand, SealsTrialsOfPlatformsAndADelta) {
+  for (const std::string robot : {"stewart", "hexaslide", "delta"}) {
+    const std::string made = "seal --make 3 --seed 2 --rows 120-130 --robot " SELFCAL_SOURCE_DIR
+                             "/app/examples/" +
+                             robot + ".robot.yaml --out " + path(robot).string();
+    ASSERT_EQ(trial(made), 0) << robot << said_;
+    for (const char* name : {"t000", "t001", "t002"}) {
+      const auto loaded = load_data_set(path(robot) / name);
+      ASSERT_TRUE(loaded) << loaded.error().what;
+      EXPECT_EQ(why_not_diagnosable(std::move(loaded->robot), loaded->data), "");
+    }
+  }
 }
 
 TEST_F(TrialCommand, AnswersWithoutTheTruthAndScoresWithIt) {

@@ -6,6 +6,8 @@
 #include "constraints/equations/equations.h"
 #include "constraints/estimation/identification.h"
 #include "sim/trials/trial_machine.h"
+#include "tests/kinematics/kind_examples.h"
+#include "tests/kinematics/parsed_robot.h"
 
 namespace selfcal {
 namespace {
@@ -104,6 +106,70 @@ TEST(TrialMachine, MakesEveryCauseAsVisibleAsAsked) {
   }
   for (const std::string& effect : touched) expect(effect, true);
   expect("scale_error", false);
+}
+
+class TrialOnLegs : public testing::TestWithParam<const char*> {};
+
+TEST_P(TrialOnLegs, MakesTheirCausesAsVisibleAsAsked) {
+  const std::shared_ptr<const Robot> robot = robot_of(kind_examples().at(GetParam()));
+  const auto expect = [&](const std::string& effect, bool touches) {
+    SCOPED_TRACE(effect + (touches ? ", touched" : ", tracked"));
+    TrialRequest asked = request(effect, 1.5, touches);
+    asked.robot = robot;
+    const MadeTrial made = make_trial(asked);
+    ASSERT_EQ(made.unreached, "");
+    EXPECT_NEAR(made.visible, 1.5, 0.02);
+    EXPECT_NEAR(visible_again(made), 1.5, 0.08);
+  };
+  for (const char* effect :
+       {"leg_thermal_growth", "zero_shift", "backlash", "tool_shift", "base_drift", "unknown"}) {
+    expect(effect, false);
+    expect(effect, true);
+  }
+  // Touches carry no loads.
+  for (const char* effect : {"leg_compliance", "joint_clearance"}) expect(effect, false);
+  TrialRequest idle = request("joint_clearance", 1.5, true);
+  idle.robot = robot;
+  EXPECT_NE(make_trial(idle).unreached, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, TrialOnLegs,
+                         testing::Values("gough-stewart", "hexaslide", "linear-delta"),
+                         [](const auto& made) {
+                           std::string kind = made.param;
+                           std::erase(kind, '-');
+                           return kind;
+                         });
+
+/// Legs are in balance with what they carry: with n the way of each leg as it pushes the tip, the
+/// pushes together are the load.
+TEST(TrialWorld, PullsItsLegsInBalanceWithTheLoad) {
+  const auto robot = robot_of(kind_examples().at("gough-stewart"));
+  TrialWorld world;
+  world.robot = robot.get();
+  world.mass = {20};
+  world.com = {{0.01, -0.02, 0.05}};
+  Instant at;
+  at.q = Eigen::VectorXd::Constant(6, 0.85);
+  at.force = {30, -50, 10};
+  at.moment = {1, 2, -3};
+  look(*robot, values(*robot), at);
+  Eigen::Matrix<double, 6, 1> pushed = Eigen::Matrix<double, 6, 1>::Zero();
+  for (int leg = 0; leg < 6; ++leg) {
+    const auto place = [&](const std::string& field) {
+      return values(*robot)[find_parameter(*robot, robot->joints()[leg].name + "." + field)];
+    };
+    const Eigen::Vector3d a(place("bx"), place("by"), place("bz")),
+        arm = at.poses[0].linear() * Eigen::Vector3d(place("px"), place("py"), place("pz"));
+    const Eigen::Vector3d n = (at.poses[0].translation() + arm - a).normalized();
+    pushed.head<3>() -= world.torque(at, leg) * n;
+    pushed.tail<3>() -= world.torque(at, leg) * arm.cross(n);
+  }
+  const Eigen::Vector3d weight(0, 0, -20 * 9.81);
+  EXPECT_LT((pushed.head<3>() + at.force + weight).norm(), 1e-9);
+  EXPECT_LT(
+      (pushed.tail<3>() + at.moment + (at.poses[0].linear() * world.com[0]).cross(weight)).norm(),
+      1e-9);
 }
 
 TEST(TrialMachine, TakesAnotherLawOfAnEffectWhereItIsGivenOne) {

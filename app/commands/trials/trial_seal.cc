@@ -102,7 +102,8 @@ int make_trials(const SealArguments& arguments) {
     auto robot = load_robot(arguments.robot);
     if (!robot) return tell(robot.error());
     const Statics* statics = (*robot)->statics();
-    if (!statics || !statics->mechanics().masses_known())
+    const bool on_legs = (*robot)->leg_parameter(0) >= 0;
+    if (!on_legs && (!statics || !statics->mechanics().masses_known()))
       return wrong_usage(arguments.robot + ": trials need the masses of the links");
     request.robot = std::move(*robot);
   }
