@@ -132,7 +132,7 @@ int identify_command(const IdentifyArguments& arguments) {
   {
     ProgressLine line;
     Engagements found = identify_engagements(
-        robot, loaded->data, options,
+        robot, std::move(loaded->data), options,
         [&](std::string_view stage, double share) { line.show(stage, share); });
     solution = std::move(found.solution);
     loaded->data = std::move(found.data);

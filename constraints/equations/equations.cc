@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 
-#include "constraints/equations/in_order.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/kernels/kernels.h"
 #include "kinematics/rotation.h"
@@ -248,7 +247,7 @@ std::vector<Entry> Equations::of_every_block(const State& state, const Of& of) c
     }
     return list;
   };
-  in_order(static_cast<int>(parts_.size()), processors(), make,
+  in_order(static_cast<int>(parts_.size()), parts_at_once(items_of_all()), make,
            [&](int, std::vector<Entry> list) { std::ranges::move(list, std::back_inserter(all)); });
   return all;
 }

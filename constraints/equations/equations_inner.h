@@ -1,11 +1,13 @@
 // What the two halves of the equations share; nobody else includes this.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
 #include "constraints/equations/column_products.h"
 #include "constraints/equations/equations.h"
+#include "constraints/equations/in_order.h"
 #include "constraints/equations/streaming_qr.h"
 
 namespace selfcal {
@@ -84,6 +86,13 @@ class Equations::Rows {
   std::optional<ColumnProducts> products_;
   Eigen::MatrixXd result_;
 };
+
+/// Parts that are worth going through at once where there are so many rows.
+inline int parts_at_once(std::size_t rows) {
+  constexpr std::size_t kRowsOfAThread = 4096;  // some milliseconds; to begin one takes a tenth
+  return static_cast<int>(
+      std::clamp<std::size_t>(rows / kRowsOfAThread, 1, static_cast<std::size_t>(processors())));
+}
 
 /// States a little ahead and behind along a step, and in between.
 struct Equations::GeodesicStep {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "constraints/equations/equations_inner.h"
-#include "constraints/equations/in_order.h"
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 
@@ -47,13 +46,15 @@ void Equations::sweep(const Pass& pass, const std::vector<Layout>& layouts, Pass
     swept.rows.finish();
     return swept;
   };
-  in_order(static_cast<int>(parts_.size()), processors(), make, [&](int i, Swept swept) {
-    out.cost += swept.passed.cost;
-    out.equations += swept.passed.equations;
-    out.norms.insert(out.norms.end(), swept.passed.norms.begin(), swept.passed.norms.end());
-    std::ranges::move(swept.passed.clusters, std::back_inserter(out.clusters));
-    take(parts_[static_cast<size_t>(i)].set, swept.rows);
-  });
+  in_order(static_cast<int>(parts_.size()), parts_at_once(items_of_all()), make,
+           [&](int i, Swept swept) {
+             out.cost += swept.passed.cost;
+             out.equations += swept.passed.equations;
+             out.norms.insert(out.norms.end(), swept.passed.norms.begin(),
+                              swept.passed.norms.end());
+             std::ranges::move(swept.passed.clusters, std::back_inserter(out.clusters));
+             take(parts_[static_cast<size_t>(i)].set, swept.rows);
+           });
 }
 
 std::vector<Equations::Layout> Equations::layouts(const Pass& pass) const {

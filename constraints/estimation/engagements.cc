@@ -17,18 +17,16 @@ int set_of(const std::vector<Set>& sets, const std::string& name) {
 
 class Splitter {
  public:
-  explicit Splitter(const DataSet& data) : origin_(data.sets.size()), aside_(data.sets.size(), 0) {
+  explicit Splitter(DataSet data) : origin_(data.sets.size()), aside_(data.sets.size(), 0) {
     std::iota(origin_.begin(), origin_.end(), 0);
-    out_.data = data;
-    out_.kept.resize(static_cast<std::size_t>(data.rows.rows()));
+    out_.data = std::move(data);
+    out_.kept.resize(static_cast<std::size_t>(out_.data.rows.rows()));
     std::iota(out_.kept.begin(), out_.kept.end(), 0);
   }
 
   Engagements run(const Robot& robot, const Options& options, const Progress& progress) {
     for (;;) {
-      DataSet used = out_.data;
-      used.rows = taken(out_.data.rows, out_.kept);
-      out_.solution = identify(robot, used, options, progress);
+      out_.solution = identified(robot, options, progress);
       const std::vector<LockSlip>& now = out_.solution.slips;
       if (now.empty()) break;
       take(*std::ranges::max_element(now, {}, &LockSlip::statistic));
@@ -38,6 +36,16 @@ class Splitter {
   }
 
  private:
+  Solution identified(const Robot& robot, const Options& options, const Progress& progress) const {
+    const DataSet& all = out_.data;
+    if (static_cast<int>(out_.kept.size()) == all.rows.rows())
+      return identify(robot, all, options, progress);
+    const DataSet used{all.sets,   taken(all.rows, out_.kept),
+                       all.speeds, all.order_is_time,
+                       all.target, all.workspace};
+    return identify(robot, used, options, progress);
+  }
+
   /// Of the rows that were kept to the rows of the data set.
   int row(int kept) const { return out_.kept[static_cast<std::size_t>(kept)]; }
 
@@ -123,9 +131,9 @@ int add_engagement(std::vector<Set>& sets, int set) {
   return static_cast<int>(sets.size()) - 1;
 }
 
-Engagements identify_engagements(const Robot& robot, const DataSet& data, const Options& options,
+Engagements identify_engagements(const Robot& robot, DataSet data, const Options& options,
                                  const Progress& progress) {
-  return Splitter(data).run(robot, options, progress);
+  return Splitter(std::move(data)).run(robot, options, progress);
 }
 
 }  // namespace selfcal

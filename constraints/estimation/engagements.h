@@ -18,8 +18,8 @@ struct Engagements {
 /// their own, whose direction is fitted on its own. One that slips more than kMostSlips times is
 /// put aside whole: its rows are among the solution's rejected ones, the lock among its
 /// locks_put_aside. Without a slip it is identify().
-Engagements identify_engagements(const Robot& robot, const DataSet& data,
-                                 const Options& options = {}, const Progress& progress = {});
+Engagements identify_engagements(const Robot& robot, DataSet data, const Options& options = {},
+                                 const Progress& progress = {});
 
 /// A set beside `sets` like `set`, under the first name NAME-2, NAME-3 … that is free; its index.
 int add_engagement(std::vector<Set>& sets, int set);

@@ -178,9 +178,8 @@ DataSet part_of(const DataSet& data) {
     if (data.rows.group[row] >= 0 ? place < kMostLookedAt : place % stride == 0)
       kept.push_back(row);
   }
-  DataSet few = data;
-  if (static_cast<int>(kept.size()) < data.rows.rows()) few.rows = taken(data.rows, kept);
-  return few;
+  return {data.sets,   taken(data.rows, kept), data.speeds, data.order_is_time,
+          data.target, data.workspace};
 }
 
 /// What is left where the zero of one joint may be anywhere: of those that it then is elsewhere.
