@@ -8,6 +8,7 @@
 #include <random>
 
 #include "constraints/sampling/random_poses.h"
+#include "io/files/robot_file.h"
 #include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
 
