@@ -89,9 +89,7 @@ class LinearDelta final : public Robot, public RobotText {
     std::array<Tower, kTowers> towers;
     for (int t = 0; t < kTowers; ++t) towers[t] = tower(xi, t);
     const Eigen::Vector3d tilt = tilt_of(xi, kEffector);
-    const Eigen::Matrix3d R = body == Body::first_link
-                                  ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                                  : exp_rotation(tilt);
+    const Eigen::Matrix3d R = exp_rotation(tilt);
     const Eigen::Vector3d tool = body == Body::endpoint ? Eigen::Vector3d(R * xi.segment<3>(kTool))
                                                         : Eigen::Vector3d::Zero();
     const Eigen::Matrix3d turn = left_jacobian(tilt);
@@ -99,7 +97,7 @@ class LinearDelta final : public Robot, public RobotText {
     bool astray = false;
     if (psi) psi->setZero(6 * block.lanes(), kParameters);
     for (int lane = 0; lane < block.lanes(); ++lane) {
-      X.rotation.row(lane) = R.reshaped().transpose().array();
+      X.rotation.row(lane) = Eigen::Matrix3d::Identity().reshaped().transpose().array();
       X.position.row(lane).setZero();
       if (body == Body::first_link) continue;
       const Eigen::Vector3d q = block.q.row(lane).matrix().transpose();
@@ -123,6 +121,7 @@ class LinearDelta final : public Robot, public RobotText {
                        lane, X, psi);
         continue;
       }
+      X.rotation.row(lane) = R.reshaped().transpose().array();
       X.position.row(lane) = (at.p + tool).transpose().array();
       if (psi) fill(xi, at, q, R, turn, body == Body::endpoint ? &tool : nullptr, lane, *psi);
     }
