@@ -125,6 +125,10 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
 
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
                             const std::vector<char>& candidate) {
+  if (std::ranges::none_of(rank.status, [](Status status) {
+        return status == Status::grouped || status == Status::no_effect;
+      }))
+    return {};  // other rows could tell no more
   std::vector<char> used(data.sets.size(), 0);
   for (int row = 0; row < data.rows.rows(); ++row)
     if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
