@@ -188,10 +188,10 @@ struct Choice {
   double expected = 0;  ///< m, sigma of the end position in the range of the postures
 };
 
-enum class ChosenBy { condition, end_position };
+enum class ChosenBy { chance, condition, end_position };
 
-/// `count` of the rows, the best together: by the condition number, and from there on, where that
-/// is asked for, by what `end_position` expects of them.
+/// `count` of the rows: any, the best together by the condition number, or from there on by what
+/// `end_position` expects of them.
 Choice best_rows(const Robot& nominal, const DataSet& pool, int count, ChosenBy by,
                  const Objective& end_position, Random& random) {
   std::vector<Eigen::MatrixXd> candidates = posture_rows(nominal, pool);
@@ -201,7 +201,7 @@ Choice best_rows(const Robot& nominal, const DataSet& pool, int count, ChosenBy 
   std::erase_if(candidates, [](const Eigen::MatrixXd& W) { return W.rows() == 0; });
   Design as_there(candidates, by_condition());
   as_there.choose(random_choice(static_cast<int>(candidates.size()), count, random));
-  add_and_drop(as_there);
+  if (by != ChosenBy::chance) add_and_drop(as_there);
   Design design(candidates, end_position);
   design.choose(as_there.chosen());
   if (by == ChosenBy::end_position) exchange(design);
@@ -302,7 +302,7 @@ struct UnderNoise {
 
 UnderNoise calibrated_under_noise(double noise, ChosenBy by) {
   UnderNoise result;
-  result.robots = repetitions("SELFCAL_SEEDS", 4);
+  result.robots = repetitions("SELFCAL_SEEDS", 3);
   double one = 0, most = 0, all = 0;
   std::vector<double> positions, turns, expected;
   for (int seed = 1; seed <= result.robots; ++seed) {
@@ -334,9 +334,11 @@ UnderNoise calibrated_under_noise(double noise, ChosenBy by) {
   result.within_one = one / all;
   result.within_95 = most / all;
   std::printf("| %.0f | %s | %d | %.1f | %.1f | %.4f | %.1f | %.1f |\n", 1e6 * noise,
-              by == ChosenBy::condition ? "condition" : "end position", result.robots,
-              1e6 * result.expected, 1e6 * result.position, result.degrees, 100 * result.within_one,
-              100 * result.within_95);
+              by == ChosenBy::chance      ? "chance"
+              : by == ChosenBy::condition ? "condition"
+                                          : "end position",
+              result.robots, 1e6 * result.expected, 1e6 * result.position, result.degrees,
+              100 * result.within_one, 100 * result.within_95);
   return result;
 }
 
@@ -344,25 +346,37 @@ UnderNoise calibrated_under_noise(double noise, ChosenBy by) {
 struct Published {
   double noise, position, degrees;
 };
-constexpr Published kTable3[] = {
-    {5e-6, 19.6e-6, 0.004}, {10e-6, 32e-6, 0.005}, {50e-6, 169e-6, 0.045}};
 
-TEST(Hexaslide, IsKnownAsWellAsPublishedUnderNoiseAndBetterByPosturesChosenForTheEndPosition) {
-  for (const Published& row : kTable3) {
-    const UnderNoise as_there = calibrated_under_noise(row.noise, ChosenBy::condition);
-    EXPECT_LE(as_there.position, row.position) << row.noise;
-    EXPECT_LE(as_there.degrees, row.degrees) << row.noise;
-    const UnderNoise better = calibrated_under_noise(row.noise, ChosenBy::end_position);
-    EXPECT_LE(better.position, row.position) << row.noise;
-    EXPECT_LT(better.expected, as_there.expected) << row.noise;
-    EXPECT_LE(better.degrees, row.degrees) << row.noise;
-    for (const UnderNoise* each : {&as_there, &better}) {
-      // Ten independent parameters of a robot, three sigma of each share.
-      EXPECT_NEAR(each->within_one, 0.683, 3 * std::sqrt(0.683 * 0.317 / (10 * each->robots)));
-      EXPECT_NEAR(each->within_95, 0.95, 3 * std::sqrt(0.95 * 0.05 / (10 * each->robots)));
-    }
+class HexaslideUnderNoise : public testing::TestWithParam<Published> {};
+
+TEST_P(HexaslideUnderNoise, IsKnownAsWellAsPublishedAndBetterByPosturesChosenForTheEndPosition) {
+  const Published& row = GetParam();
+  const UnderNoise any = calibrated_under_noise(row.noise, ChosenBy::chance);
+  const UnderNoise as_there = calibrated_under_noise(row.noise, ChosenBy::condition);
+  const UnderNoise better = calibrated_under_noise(row.noise, ChosenBy::end_position);
+  for (const UnderNoise* each : {&as_there, &better}) {
+    EXPECT_LE(each->position, row.position);
+    EXPECT_LE(each->degrees, row.degrees);
   }
+  EXPECT_LT(better.expected, as_there.expected);
+  EXPECT_LT(better.expected, any.expected);
+  for (const UnderNoise* each : {&any, &as_there, &better}) {
+    // Ten independent parameters of a robot, three sigma of each share.
+    EXPECT_NEAR(each->within_one, 0.683, 3 * std::sqrt(0.683 * 0.317 / (10 * each->robots)));
+    EXPECT_NEAR(each->within_95, 0.95, 3 * std::sqrt(0.95 * 0.05 / (10 * each->robots)));
+  }
+  if (any.robots < 50) return;  // medians of few scatter by more than the gain
+  EXPECT_LT(better.position, as_there.position);
+  EXPECT_LT(better.position, any.position);
 }
+
+INSTANTIATE_TEST_SUITE_P(Table3, HexaslideUnderNoise,
+                         testing::Values(Published{5e-6, 19.6e-6, 0.004},
+                                         Published{10e-6, 32e-6, 0.005},
+                                         Published{50e-6, 169e-6, 0.045}),
+                         [](const auto& made) {
+                           return "Noise" + std::to_string(std::lround(1e6 * made.param.noise));
+                         });
 
 }  // namespace
 }  // namespace selfcal::recovery
