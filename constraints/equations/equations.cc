@@ -240,6 +240,7 @@ std::vector<Entry> Equations::of_every_block(const State& state, const Of& of) c
   const auto make = [&](int i) {
     const Part& part = parts_[static_cast<size_t>(i)];
     std::vector<Entry> list;
+    list.reserve(static_cast<size_t>(part.last - part.first));
     Block block;
     for (int first = part.first; first < part.last; first += kLanes) {
       evaluate(part.set, first, std::min(kLanes, part.last - first), state, block, false);

@@ -42,6 +42,7 @@ void Equations::sweep(const Pass& pass, const std::vector<Layout>& layouts, Pass
     const Part& part = parts_[static_cast<size_t>(i)];
     const Layout& layout = layouts[static_cast<size_t>(part.set)];
     Swept swept{Rows(layout.width(), pass.products), {}};
+    swept.passed.norms.reserve(static_cast<size_t>(part.last - part.first));
     sweep_part(part, pass, layout, swept.rows, swept.passed);
     swept.rows.finish();
     return swept;
