@@ -9,6 +9,8 @@
 namespace selfcal {
 namespace {
 
+constexpr double kRigid = 1e-12;  // rad/(N m): a nanometre by a kilonewton at a metre
+
 double number_in(const Node& entry, const std::string& key) {
   const Node* node = entry.find(key);
   return node ? written_number(node->text).value_or(0) : 0;
@@ -59,8 +61,9 @@ class Taking {
     return kTaken;
   }
 
-  /// Those of an entry that are springs. A compliance below zero, which noise makes of one that is
-  /// hardly there, is none: it is left out and named.
+  /// Those of an entry that are springs. One below zero, which noise makes of one that is hardly
+  /// there, is none: it is left out and named. One that moves nothing would be a spring beside
+  /// which others lose their digits.
   std::optional<Eigen::Vector3d> bends(const Node& entry, const std::string& effect) {
     Eigen::Vector3d compliance = Eigen::Vector3d::Zero();
     std::vector<std::string> below;
@@ -69,7 +72,7 @@ class Taking {
       compliance[i] = number_in(entry, name);
       if (compliance[i] < 0) below.emplace_back(name);
     }
-    compliance = compliance.cwiseMax(0);
+    compliance = (compliance.array() < kRigid).select(0, compliance);
     if (!below.empty() && compliance.isZero()) return std::nullopt;
     for (const std::string& each : below)
       into_.left_out.push_back("of " + effect + " " + each + ", which is below zero");
