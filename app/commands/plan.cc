@@ -174,7 +174,7 @@ int plan_for_cell(const PlanArguments& arguments) {
   if (!arguments.prior.empty()) {
     auto prior = read_prior(arguments.prior, *config->robot);
     if (!prior) return tell(prior.error());
-    config->plan.prior = *std::move(prior);
+    config->plan.known.prior = *std::move(prior);
   }
   CellPlan cell;
   {
@@ -193,7 +193,7 @@ int plan_for_cell(const PlanArguments& arguments) {
   if (!arguments.further.empty() && cell.plan.unreached.empty()) {
     auto next = next_request(*config->robot, arguments, cell_plan_data(*config, cell));
     if (!next) return tell(next.error());
-    next->pool.prior = config->plan.prior;
+    next->pool.prior = config->plan.known.prior;
     next->workspace = config->workspace;
     const NextPlaces places = find_next_places(*config->robot, *next);
     if (arguments.json)

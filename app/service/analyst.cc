@@ -62,13 +62,14 @@ SessionRecord Analyst::new_record(const std::string& why) const {
 }
 
 void Analyst::plan(const std::string& why) {
+  if (c_.situation.stored) return plan_round();
   const SessionRecord record = new_record(why);
   TouchPlanOptions options = c_.config.plan;
   options.seed = record.seed;
   const std::vector<TouchTarget> targets =
       c_.situation.kind == SessionKind::check
           ? shared_out(lasting(c_.config.sets, c_.config.targets), c_.config.schedule.check_touches)
-          : c_.config.targets;
+          : targets_of_round({});
   auto touches = std::make_shared<TouchPlan>();
   computation_.start([touches, robot = c_.models.active(), sets = c_.config.sets, targets, options,
                       obstacles = c_.config.obstacles,
@@ -156,8 +157,13 @@ void Analyst::identify() {
         return std::string();
       });
   when_computed_ = [this, found](const std::string& failure) {
-    if (failure.empty()) keep_solution(std::move(*found));
-    c_.put(Event::What::computed, failure.empty(), failure);
+    if (!failure.empty()) return c_.put(Event::What::computed, false, failure);
+    keep_solution(std::move(*found));
+    Event event;
+    event.what = Event::What::computed;
+    event.more = wants_more();
+    event.why = event.more ? "planning further touches from what is known by now" : "";
+    c_.put(std::move(event));
   };
 }
 

@@ -19,7 +19,8 @@ class Analyst {
 
   /// A quick check has something to compare with.
   bool can_check() const;
-  /// A session of the situation's kind; it begins once it is planned.
+  /// A session of the situation's kind, which begins once it is planned; of one that is in the
+  /// store a further round.
   void plan(const std::string& why);
   /// The rows of what was collected.
   void analyse();
@@ -48,6 +49,14 @@ class Analyst {
   void join_base();
   std::optional<Session> stored_session(const SessionRecord& record) const;
   void keep_solution(Engagements found);
+
+  // analyst_rounds.cc
+  /// Of each set those that are still to be made in this round.
+  std::vector<TouchTarget> targets_of_round(const std::vector<StepRecord>& made) const;
+  void plan_round();
+  void keep_round(const TouchPlan& plan);
+  bool wants_more() const;
+  std::vector<PossibleTouch> touches_made() const;
 
   // analyst_result.cc
   ResultRecord new_result(const ResultFigures& figures) const;

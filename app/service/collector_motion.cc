@@ -38,7 +38,8 @@ void Collector::make_move(Action::Do what) {
       return move(step.group.empty() ? MoveKind::touch : MoveKind::seat, step.end,
                   touch_speed(step));
     case Do::go_back:
-      return move(MoveKind::retract, step.start, kRetreatFaster * touch_speed(step));
+      return move(MoveKind::retract, step.start,
+                  step.group.empty() ? travel : kRetreatFaster * touch_speed(step));
     case Do::lock:
       return move(MoveKind::lock, step.start, touch_speed(step));
     case Do::visit:

@@ -18,8 +18,6 @@ namespace {
 const std::vector<std::string_view> kOwnKeys = {"touches", "surface", "within", "places",
                                                 "way_out"};
 
-constexpr double kSlowBefore = 1.3;  // of `search`, where a touch begins
-
 constexpr std::array<std::pair<std::string_view, CommandRules::Over>, 4> kOvers = {
     {{"none", CommandRules::Over::none},
      {"loopback", CommandRules::Over::loopback},
@@ -58,6 +56,7 @@ class Reader {
     part(fields, "touch", [&](Fields& f) { read_touch(f); });
     part(fields, "limits", [&](Fields& f) { read_limits(f); });
     part(fields, "accept", [&](Fields& f) { read_accept(f); });
+    part(fields, "rounds", [&](Fields& f) { read_rounds(f); });
     part(fields, "causes", [&](Fields& f) { read_causes(f); });
     part(fields, "commands", [&](Fields& f) { read_commands(f); });
     part(fields, "schedule", [&](Fields& f) { read_schedule(f); });
@@ -66,6 +65,10 @@ class Reader {
     if (const std::string file = fields.text("simulation", ""); !file.empty())
       c_.simulation = folder_ / file;
     read_sets(fields);
+    if (c_.rounds.touches > 0 && std::ranges::any_of(c_.sets, [](const Set& set) {
+          return set.method->planned() == Planned::lock;
+        }))
+      fields.fail("rounds", "none in a cell with locks, which are planned as a whole");
     fields.refuse_unknown();
     return std::move(c_);
   }
@@ -160,8 +163,7 @@ class Reader {
     if (c_.plan.apart >= c_.plan.clearance) f.fail("apart", "less than clearance");
     if (c_.plan.search >= c_.plan.clearance) f.fail("search", "less than clearance");
     const double most = std::max(c_.plan.search, c_.plan.clearance);
-    c_.plan.slow =
-        f.number("slow", std::min(kSlowBefore * c_.plan.search, most), c_.plan.search, most);
+    c_.plan.slow = f.number("slow", c_.plan.search, c_.plan.search, most);
     c_.plan.fence = read_fence(f.node("keep_out"), f.node("capsules"), *c_.robot, problems_);
     if (problems_.any() || !home) return;
     Locations X;
@@ -200,6 +202,11 @@ class Reader {
     c_.plan.check = c_.accept.check;
     c_.accept.margin = f.number("margin", c_.accept.margin, 0, 0.9);
     part(f, "largest_change", [&](Fields& g) { read_by_part(g, 10, c_.accept.largest_change); });
+  }
+
+  void read_rounds(Fields& f) {
+    c_.rounds.touches = f.integer("touches", c_.rounds.touches, 0, 1000);
+    c_.rounds.margin = f.number("margin", c_.rounds.margin, 1, 100);
   }
 
   void read_causes(Fields& f) {

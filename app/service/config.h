@@ -28,8 +28,8 @@
 //     speed          0.5        1e-3 to 100     largest joint speed on free ways (rad/s, m/s)
 //     touch_speed    0.01       1e-4 to 1 m/s   of the endpoint towards a surface
 //     clearance      0.03       1e-3 to 0.5 m   how far before the surface free ways end
-//     slow           1.3*search at most         how far before it the robot, coming straight in,
-//                               clearance       slows down to touch_speed; at least search
+//     slow           search     search to       how far before it the robot, coming straight in,
+//                               clearance       slows down to touch_speed
 //     search         0.01       1e-4 to 0.1 m   how far off the surface may be, either way
 //     apart          0.02       0 to 0.5 m      kept from every other surface; below clearance
 //     tilt           1.2        0.01 to 3.2 rad most between stylus and the way in
@@ -71,6 +71,10 @@
 //                                               command is taken
 //     allow          none                       [start, check, diagnose, done, abort, accept,
 //                                               rollback]: those that are taken, by name
+//   rounds           {}                         a full session planned anew as it goes:
+//     touches        0          0 to 1000       between two plans; 0: all is planned at once
+//     margin         1.3        1 to 100        it ends once the end position is known so
+//                                               many times better than target
 //   causes           {}                         looking for the cause of what calibration leaves:
 //     auto           true                       by itself, after a full session that leaves more
 //                                               than noise
@@ -128,6 +132,12 @@ struct Speeds {
   double touch = 0.01;  ///< m/s
 };
 
+/// How a full session is planned anew as it goes.
+struct RoundRules {
+  int touches = 0;      ///< between two plans; 0: all is planned at once
+  double margin = 1.3;  ///< times better than the target, and no more is touched
+};
+
 /// How the cause of what calibration leaves is looked for.
 struct CauseRules {
   bool automatic = true;
@@ -158,6 +168,7 @@ struct Config {
   std::vector<Obstacle> obstacles;
   Node description;  ///< of the data set that a session's touches make
   Acceptance accept;
+  RoundRules rounds;
   CauseRules causes;
   CommandRules commands;
   Schedule schedule;

@@ -4,6 +4,7 @@
 //   self-test → idle → planning → collecting ⟲ (approach → touch → settle → retract)
 //     or of a lock: approach → lock ⟲ (visit → settle) → release
 //     → analysing → identifying → judging → awaiting acceptance → applying → publishing → idle
+//   by rounds: planning ⟲ (collecting → analysing → identifying) until enough is known
 //   looking for a cause: idle → diagnosing ⟲ (collecting → analysing) → as after judging, with
 //   awaiting person while the payload is changed between two touches
 //   and from everywhere: fault, which stops motion and keeps what was collected.
@@ -109,6 +110,7 @@ struct Event {
   bool release = false;  ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
   bool cause = false;  ///< of `decided`: more than noise is left
+  bool more = false;   ///< of `computed`, once identified: further touches are to be planned
 };
 
 struct Action {
@@ -116,7 +118,7 @@ struct Action {
     stop,     ///< motion, now; `why`
     give_up,  ///< whatever is being computed
     test,     ///< begin the self-test
-    plan,     ///< a session of the situation's kind, full or check
+    plan,     ///< a session of the situation's kind, full or check, or a further round of it
     resume,   ///< the unfinished session
     go_home,
     go_along,  ///< to the next place of the step's way

@@ -25,6 +25,10 @@ void TransitionStep::computed() {
     enter(ServiceState::identifying, "identifying the parameters");
     return act(Do::identify);
   }
+  if (event_.more) {
+    enter(ServiceState::planning, event_.why);
+    return act(Do::plan, s_.why);
+  }
   enter(ServiceState::judging, "judging on the rows kept aside");
   act(Do::judge);
 }

@@ -14,9 +14,10 @@ constexpr int kExchangesAfresh = 25;         // exchanges after which the design
 constexpr std::size_t kFew = 200;            // left, of which each removal is exact
 constexpr std::size_t kRemovalsAfresh = 20;  // of more, after so many
 
-/// A merit that is so much better counts. Merits are logarithms or, negative, variances.
+/// A merit that is so much better counts. Merits are logarithms, of which a difference is relative
+/// already, or, negative, variances in whatever unit.
 bool gains(double merit, double over) {
-  return merit > over + kGain * std::max(1e-3, std::abs(over));
+  return merit > over + kGain * std::min(1.0, std::abs(over));
 }
 
 class Search {

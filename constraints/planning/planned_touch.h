@@ -6,6 +6,7 @@
 
 #include "constraints/methods/data_set.h"
 #include "constraints/planning/fence.h"
+#include "constraints/planning/touch_choice.h"
 
 namespace selfcal {
 
@@ -36,8 +37,7 @@ struct TouchPlanOptions {
   double touch_speed = 0.01;   ///< m/s, of the endpoint towards a surface
   int repeats = 1;             ///< touches of each configuration
   Fence fence = {};            ///< where no part of the robot may be
-  /// Covariance of the robot's parameters before any touch; without rows the makers' tolerances.
-  Eigen::MatrixXd prior = {};
+  KnownBefore known = {};
   Eigen::VectorXd home;  ///< readings from which every touch can be begun
   double speed = 0.5;    ///< rad/s or m/s, of the joints between touches
   unsigned long long seed = 1;

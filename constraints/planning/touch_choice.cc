@@ -176,14 +176,15 @@ Kinds kinds_of(const std::vector<PossibleTouch>& candidates, const std::vector<i
 class TouchDesigns {
  public:
   TouchDesigns(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
-               const std::vector<PossibleTouch>& candidates, const Eigen::MatrixXd& prior,
+               const std::vector<PossibleTouch>& candidates, const KnownBefore& known,
                const Eigen::MatrixXd& weight)
       : robot_(robot),
         xi_(xi),
         sets_(sets),
         columns_(static_cast<int>(robot.parameters().size()), sets) {
     for (const PossibleTouch& each : candidates) columns_.of(each);
-    const Eigen::MatrixXd covariance = prior_covariance(robot, prior, columns_.end());
+    for (const PossibleTouch& each : known.made) columns_.of(each);
+    const Eigen::MatrixXd covariance = prior_covariance(robot, known.prior, columns_.end());
     for (Eigen::Index c = 0; c < covariance.rows(); ++c)
       if (covariance(c, c) > 0) open_.push_back(c);
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(covariance.rows(), covariance.rows());
@@ -192,6 +193,7 @@ class TouchDesigns {
     objective_.prior = inverse_of_covariance(covariance(open_, open_));
     objective_.weight = all(open_, open_);
     objective_.nuisance = columns_.end() - weight.rows();
+    for (const Eigen::MatrixXd& W : rows(known.made)) objective_.prior += W.transpose() * W;
   }
 
   /// Rows of touches of surfaces and sockets that the candidates have.
@@ -299,11 +301,11 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
                            const Workspace& workspace, Random& random, const Progress& progress,
-                           const TouchMoves& moves, const Eigen::MatrixXd& prior) {
+                           const TouchMoves& moves, const KnownBefore& known) {
   TouchChoice choice;
   if (candidates.empty()) return choice;
   const Kinds kinds = kinds_of(candidates, counts.fit);
-  TouchDesigns designs(robot, xi, sets, candidates, prior,
+  TouchDesigns designs(robot, xi, sets, candidates, known,
                        weight_of(robot, xi, sets, candidates, workspace));
   Design design = designs.of(candidates, kinds.of);
   std::vector<int> wanted = counts.fit;
@@ -316,6 +318,7 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
   // A socket or nest that nothing identifies judges nothing.
   std::set<std::pair<int, int>> identified;
   for (const int i : choice.fit) identified.emplace(candidates[i].set, candidates[i].group);
+  for (const PossibleTouch& each : known.made) identified.emplace(each.set, each.group);
   std::vector<int> order(candidates.size()), left = counts.check;
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), random);
@@ -331,7 +334,7 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
                                    const std::vector<PossibleTouch>& touches,
                                    const Eigen::MatrixXd& weight, const Progress& progress,
                                    const Eigen::MatrixXd& prior) {
-  Design design = TouchDesigns(robot, xi, sets, touches, prior, weight).of(touches, {});
+  Design design = TouchDesigns(robot, xi, sets, touches, {prior, {}}, weight).of(touches, {});
   std::vector<int> all(touches.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);

@@ -48,9 +48,14 @@ struct TouchChoice {
   std::vector<int> fit, check;
 };
 
-/// As many of each set as are wanted or as there are, those to identify first. `xi` are the
-/// parameters that are believed; the end position counts in the box of `workspace`, without one
-/// over all that the joints can do.
+/// What is known before a choice.
+struct KnownBefore {
+  /// Covariance of the robot's parameters; without rows the makers' tolerances.
+  Eigen::MatrixXd prior = {};
+  /// Touches made already, on the same surfaces and in the same sockets.
+  std::vector<PossibleTouch> made = {};
+};
+
 /// How a candidate can be elsewhere.
 struct TouchMoves {
   /// The candidate moved by each column of `by` (joints x up to kLanes) and
@@ -62,12 +67,15 @@ struct TouchMoves {
   std::function<bool(int candidate, int column)> take;
 };
 
+/// As many of each set as are wanted or as there are, those to identify first. `xi` are the
+/// parameters that are believed; the end position counts in the box of `workspace`, without one
+/// over all that the joints can do.
 TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
                            const std::vector<Set>& sets,
                            const std::vector<PossibleTouch>& candidates, const TouchCounts& counts,
                            const Workspace& workspace, Random& random,
                            const Progress& progress = {}, const TouchMoves& moves = {},
-                           const Eigen::MatrixXd& prior = {});
+                           const KnownBefore& known = {});
 
 /// How sqrt(trace(weight C)) grows, C the covariance of the robot's parameters after the touches,
 /// when one of these after another is left out, always the one that tells least: by count, from 0.

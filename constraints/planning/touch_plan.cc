@@ -87,7 +87,7 @@ std::vector<PlannedTouch> choose(const Choosing& c, double share, Random& random
   std::vector<std::optional<Eigen::VectorXd>> looked;
   const TouchChoice choice =
       choose_touches(c.robot, c.xi, c.sets, possible, counts, c.workspace, random, progress,
-                     moves_of(c, of, touches, looked), c.options.prior);
+                     moves_of(c, of, touches, looked), c.options.known);
   std::vector<PlannedTouch> chosen;
   for (const int i : choice.fit) chosen.push_back(touches[i]);
   for (const int i : choice.check) {
@@ -256,7 +256,9 @@ MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const Touc
     const double speed_in = each.slow ? options.touch_speed / kSlower : options.touch_speed;
     const double way =
         (locate(robot, xi, each.touch).p - locate(robot, xi, each.start).p).norm() / speed_in;
-    time.touching += options.repeats * (1 + 1 / kRetreatFaster) * way;
+    const double out =
+        each.group < 0 ? joint_time(each.touch, each.start, speed) : way / kRetreatFaster;
+    time.touching += options.repeats * (way + out);
   }
   travel(options.home);
   return time;

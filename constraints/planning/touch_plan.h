@@ -57,7 +57,7 @@ struct ExpectedSigma {
 };
 
 /// After those of the planned touches that are not kept aside, with every surface and socket
-/// unknown; `prior` as in TouchPlanOptions.
+/// unknown; `prior` as in KnownBefore.
 ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
                              const std::vector<Set>& sets, const std::vector<TouchTarget>& targets,
                              const TouchPlan& plan, const Workspace& workspace,
@@ -69,7 +69,7 @@ struct MotionTime {
   double travel = 0, touching = 0;
 };
 
-/// Out of a contact the robot moves so much faster than into it.
+/// Out of a socket the robot moves so much faster than into it; off a surface as between touches.
 inline constexpr double kRetreatFaster = 2;
 
 MotionTime motion_time(const Robot& robot, const Eigen::VectorXd& xi, const TouchPlan& plan,

@@ -149,5 +149,38 @@ TEST(TouchPlan, IsGivenUpWhileItsTouchesAreExchanged) {
   EXPECT_EQ(stages.back(), "exchanging configurations");
 }
 
+TEST(TouchPlan, ChoosesWhatTellsMostBesideTheTouchesThatAreMade) {
+  PlannedCell first = table_and_wall(10);
+  first.options.check = 0;
+  std::vector<Eigen::VectorXd> made;
+  std::vector<int> set;
+  std::vector<PossibleTouch> known;
+  for (const PlannedTouch& each : first.plan().touches) {
+    made.push_back(each.touch);
+    set.push_back(each.set);
+    known.push_back({each.touch, each.set, -1, first.targets[each.set].outward});
+  }
+  const auto together = [&](const TouchPlan& plan) {
+    std::vector<Eigen::VectorXd> rows = made;
+    std::vector<int> sets = set;
+    for (const PlannedTouch& each : plan.touches) {
+      rows.push_back(each.touch);
+      sets.push_back(each.set);
+    }
+    return sigma_after(first, rows, sets);
+  };
+  PlannedCell next = table_and_wall(6);
+  next.options.check = 0;
+  next.options.seed = 2;
+  const double alone = together(next.plan());
+  next.options.known.made = known;
+  const double beside = together(next.plan());
+  std::printf(
+      "%.4f mm after ten touches of two surfaces each, %.4f mm with six more chosen as if "
+      "there were none, %.4f mm with six chosen beside them\n",
+      1e3 * sigma_after(first, made, set), 1e3 * alone, 1e3 * beside);
+  EXPECT_LT(beside, alone);
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -72,7 +72,7 @@ TEST(MotionTime, IsThatOfTheSlowestJointAndOfTheWayIntoTheContact) {
   const MotionTime time = motion_time(rx90(), values(rx90()), plan, options);
   // 0.02 to the first, 0.5 to the place and back to the second, 0.02 home.
   EXPECT_NEAR(time.travel, (0.02 + 0.5 + 0.5 + 0.02) / 0.1, 1e-9);
-  EXPECT_NEAR(time.touching, 2 * 3 * 1.5 * into, 1e-9);
+  EXPECT_NEAR(time.touching, 2 * 3 * (into + 0.02 / 0.1), 1e-9);
 }
 
 TEST(FreeWay, LeavesTheStraightPathOnlyWhereSomethingStandsInIt) {

@@ -112,6 +112,8 @@ const CellKeys kValues = {
     {"schedule.check_touches", "10"},
     {"schedule.check_p", "0.05"},
     {"schedule.full_after_checks", "7"},
+    {"rounds.touches", "40"},
+    {"rounds.margin", "2"},
     {"causes.auto", "false"},
     {"causes.touches", "30"},
     {"causes.round", "10"},
@@ -127,8 +129,9 @@ TEST(Config, AcceptsEveryKeyOfItsTable) {
   std::set<std::string> known;
   for (const auto& [path, value] : kValues) known.insert(path);
   for (const auto& [path, value] : cell) known.insert(path);
-  const std::set<std::string> parts = {"encoders", "trigger", "motion",   "touch",    "limits",
-                                       "sets",     "accept",  "commands", "schedule", "causes"};
+  const std::set<std::string> parts = {"encoders", "trigger", "motion", "touch",
+                                       "limits",   "sets",    "accept", "commands",
+                                       "schedule", "causes",  "rounds"};
   for (const Key& key : keys) {
     if (parts.contains(key.path) || key.path == "sets.places" || key.path == "sets.way_out")
       continue;  // of sockets: see below
@@ -192,6 +195,8 @@ TEST(Config, HasTheDefaultsOfItsTable) {
       {"limits.lock", seconds(config->limits.lock)},
       {"limits.computing", seconds(config->limits.computing)},
       {"limits.diagnosing", seconds(config->limits.diagnosing)},
+      {"rounds.touches", config->rounds.touches},
+      {"rounds.margin", config->rounds.margin},
       {"causes.touches", config->causes.touches},
       {"causes.round", config->causes.round},
       {"sets.touches", config->targets[0].touches},

@@ -5,6 +5,7 @@
 
 #include "app/service/session.h"
 #include "tests/service/cell.h"
+#include "tests/support/text.h"
 
 namespace selfcal {
 namespace {
@@ -42,6 +43,15 @@ TEST(Config, RefusesWaysThatDoNotFitTogether) {
   EXPECT_THAT(refusal({{"motion.apart", "0.03"}}), HasSubstr("less than clearance"));
   EXPECT_THAT(refusal({{"motion.search", "0.03"}}), HasSubstr("less than clearance"));
   EXPECT_EQ(refusal({{"motion.clearance", "0.021"}}), "");
+}
+
+TEST(Config, RefusesRoundsInACellWithLocks) {
+  std::string text = text_of(example("stewart_lock_cell.config.yaml"));
+  replace(text, "robot: stewart.robot.yaml", "robot: " + example("stewart.robot.yaml").string());
+  EXPECT_TRUE(load_text(text));
+  const auto config = load_text(text + "rounds: {touches: 40}\n");
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().what, HasSubstr("none in a cell with locks"));
 }
 
 TEST(Config, RefusesListsOfTheWrongLength) {

@@ -110,6 +110,22 @@ TEST(Transition, TakesASessionFromTheStartToTheNewParameters) {
   EXPECT_FALSE(script.s.unfinished);
 }
 
+TEST(Transition, PlansAFurtherRoundFromWhatIsIdentifiedUntilNoMoreIsWanted) {
+  Script script = script_at(ServiceState::planning);
+  script.planned(1).touch_well(1).on(What::computed);
+  Event event;
+  event.what = What::computed;
+  event.more = true;
+  event.why = "the rest";
+  EXPECT_EQ(script.on(event).done(), "plan");
+  EXPECT_EQ(script.s.state, ServiceState::planning);
+  EXPECT_TRUE(script.s.stored) << "it goes on after a restart";
+  EXPECT_EQ(script.planned(2, SessionKind::full, 1).s.step, 1) << "further touches";
+  EXPECT_EQ(script.touch_well(2).done(), "analyse");
+  EXPECT_EQ(script.on(What::computed).done(), "identify");
+  EXPECT_EQ(script.on(What::computed).done(), "judge");
+}
+
 TEST(Transition, LeavesTheParametersAloneWhenTheRulingSaysSo) {
   Script script = script_at(ServiceState::judging);
   EXPECT_EQ(script.decided(Decision::none, "no better").done(), "publish");

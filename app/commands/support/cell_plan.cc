@@ -45,7 +45,7 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
   if (!cell.plan.unreached.empty()) return cell;
   if (progress) progress("how well the end position is known then", 0);
   cell.expected = expected_sigma(*config.robot, xi, config.sets, config.targets, cell.plan,
-                                 config.workspace, progress, config.plan.prior);
+                                 config.workspace, progress, config.plan.known.prior);
   cell.time = motion_time(*config.robot, xi, cell.plan, config.plan);
   return cell;
 }

@@ -1,0 +1,99 @@
+// How long the sessions of the example cells move, and what of that the ways between the touches
+// and the way into a contact have saved.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "app/service/config.h"
+#include "constraints/planning/touch_plan.h"
+#include "constraints/planning/tour.h"
+#include "tests/sim/simulated_robot.h"
+
+namespace selfcal {
+namespace {
+
+struct Motion {
+  double travel = 0, touching = 0;  ///< s
+  int via_home = 0;
+  double all() const { return travel + touching; }
+};
+
+/// The same touches without free ways or a tour: always to the nearest one of the set, straight
+/// where that is free and through home else, slowly from the clearance on, out twice as fast.
+Motion straight_or_through_home(const Config& config, std::vector<PlannedTouch> left) {
+  const Robot& robot = *config.robot;
+  const Eigen::VectorXd xi = values(robot), &home = config.plan.home;
+  const Eigen::VectorXd speed = Eigen::VectorXd::Constant(home.size(), config.plan.speed);
+  Motion motion;
+  Eigen::VectorXd here = home;
+  int set = -1;
+  while (!left.empty()) {
+    const auto next = std::ranges::min_element(left, {}, [&](const PlannedTouch& each) {
+      return joint_time(here, each.outside, speed) + (set >= 0 && each.set != set ? 1e3 : 0);
+    });
+    if (path_is_free(robot, xi, here, next->outside, config.obstacles, config.plan.apart)) {
+      motion.travel += joint_time(here, next->outside, speed);
+    } else {
+      motion.travel += joint_time(here, home, speed) + joint_time(home, next->outside, speed);
+      ++motion.via_home;
+    }
+    const double way =
+        (locate(robot, xi, next->touch).p - locate(robot, xi, next->outside).p).norm();
+    motion.touching += 1.5 * way / config.plan.touch_speed;
+    here = next->outside;
+    set = next->set;
+    left.erase(next);
+  }
+  motion.travel += joint_time(here, home, speed);
+  return motion;
+}
+
+struct Compared {
+  Motion before, now;
+  std::size_t touches = 0;
+};
+
+Compared compare(const std::string& name) {
+  const auto config = load_config(example(name + "_cell.config.yaml"));
+  EXPECT_TRUE(config) << config.error().what;
+  const TouchPlan plan =
+      plan_touches(*config->robot, values(*config->robot), config->sets, config->targets,
+                   config->obstacles, config->workspace, config->plan);
+  EXPECT_EQ(plan.unreached, "");
+  const MotionTime time = motion_time(*config->robot, values(*config->robot), plan, config->plan);
+  Compared result{straight_or_through_home(*config, plan.touches), {}, plan.touches.size()};
+  result.now = {time.travel, time.touching,
+                static_cast<int>(std::ranges::count(plan.touches, true, &PlannedTouch::via_home))};
+  const auto print = [](const char* what, const Motion& motion) {
+    std::printf("  %s: %.0f s between touches, %.0f s into contacts and out, %d through home\n",
+                what, motion.travel, motion.touching, motion.via_home);
+  };
+  std::printf("%s, %zu touches: %.2f times as long before\n", name.c_str(), result.touches,
+              result.before.all() / result.now.all());
+  print("straight or through home", result.before);
+  print("as planned", result.now);
+  return result;
+}
+
+TEST(MotionOfCells, IsHalfOfWhatStraightPathsThroughHomeTake) {
+  for (const char* name : {"rx90", "irb1600"}) {
+    const Compared cell = compare(name);
+    EXPECT_LE(cell.now.via_home, static_cast<int>(cell.touches) / 10) << name;
+    EXPECT_LE(cell.now.all(), cell.before.all() / 2) << name;
+  }
+}
+
+// Their touches lie near each other and they come in slowly: what is left is the search for the
+// surface, at the speed that the configuration states.
+TEST(MotionOfCells, IsShorterWhereMostOfItIsTheSearchForTheSurface) {
+  for (const char* name : {"delta", "stewart", "hexaslide"}) {
+    const Compared cell = compare(name);
+    EXPECT_EQ(cell.now.via_home, 0) << name;
+    EXPECT_LE(cell.now.all(), cell.before.all() / 1.3) << name;
+  }
+}
+
+}  // namespace
+}  // namespace selfcal
