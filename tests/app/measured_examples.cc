@@ -13,7 +13,6 @@ namespace selfcal {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 struct MeasuredExample {
   const char* scenario;
@@ -45,8 +44,8 @@ TEST_P(MeasuredByProgram, IsSimulatedCheckedAndIdentifiedToItsTruth) {
   run("data check " + at("data"));
   run("identify " + at("data") + " --out " + at("result"));
   run("robot check " + at("result/calibrated.robot.yaml"));
-  const json truth = json::parse(text_of(folder / "truth.json"));
-  const json result = json::parse(text_of(folder / "result/result.json"));
+  const nlohmann::json truth = nlohmann::json::parse(text_of(folder / "truth.json"));
+  const nlohmann::json result = nlohmann::json::parse(text_of(folder / "result/result.json"));
   EXPECT_EQ(result["verdict"]["answer"], "improved");
   int identified = 0;
   for (const auto& each : result["parameters"]) {
