@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/report/format.h"
+#include "io/dds/context.h"
 #include "io/dds/names.h"
 #include "io/dds/senders.h"
 #include "tests/bridge/controller.h"
@@ -24,7 +25,7 @@ class RosRobot {
       : machine_(cell.machine()),
         participant_(must(DdsParticipant::open(cell.domain, "ros robot"))),
         config_(must(load_config(cell.folder / "config.yaml"))),
-        joints_(must(config_.encoders->open_sender({participant_, wakeup_, {}}))),
+        joints_(must(config_.encoders->open_sender({{participant_}, wakeup_, {}}))),
         touch_(must(DdsWriter<dds::Bool>::open(participant_, ros_topic("touch"), {.depth = 64}))),
         controller_(participant_, kArm, wakeup_),
         thread_([this] { play(); }) {}

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <regex>
 
+#include "io/dds/context.h"
 #include "io/files/yaml.h"
 #include "io/gpio/sim_line.h"
 #include "io/gpio/trigger.h"
@@ -102,7 +103,7 @@ TEST(GpioSimLine, WritesWhichWayTheLineIsPulled) {
 TEST(GpioKind, SaysWhatAPlayedRobotNeedsToDriveTheLine) {
   const auto participant = DdsParticipant::open(0, "test");
   Wakeup wakeup;
-  const auto sender = make("line: probe").kind->open_sender({*participant, wakeup, ""});
+  const auto sender = make("line: probe").kind->open_sender({{*participant}, wakeup, ""});
   ASSERT_FALSE(sender);
   EXPECT_THAT(sender.error().what, HasSubstr("trigger_pull"));
 }
