@@ -49,7 +49,7 @@ void look(const Robot& robot, const Eigen::VectorXd& xi, Instant& at) {
   at.lengths = robot.leg_lengths(xi, at.q);
   at.legs.resize(6, at.q.size());
   for (int j = 0; j < at.q.size(); ++j)
-    for (int c = 0; c < 6; ++c) at.legs(c, j) = psi(c * kLanes, robot.leg_parameter(j));
+    for (int c = 0; c < 6; ++c) at.legs(c, j) = psi(c, robot.leg_parameter(j));
 }
 
 Eigen::VectorXd with_legs(const Robot& robot, Eigen::VectorXd xi, const Eigen::VectorXd& longer) {

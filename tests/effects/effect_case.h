@@ -161,9 +161,7 @@ inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& r
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   made.xi = values(*made.robot);
   for (Eigen::Index i = made.own(); i < made.xi.size(); ++i)
-    // A heavy printer whose drives gave way by the largest usual size would leave its workspace.
-    made.xi[i] =
-        made.robot->parameters()[i].tolerance / (each.heavy ? 100 : 10) * uniform(random, -1, 1);
+    made.xi[i] = made.robot->parameters()[i].tolerance / 10 * uniform(random, -1, 1);
   made.block = with_conditions(
       legs ? closing_block(*made.geometry, random) : random_block(*made.geometry, random), random);
   return made;
