@@ -93,7 +93,10 @@ class Iteration {
 
   Weighting weighting() const { return {fit_.noise.used, fit_.noise.outlier}; }
 
-  const Passed& at() const { return by_factor_ ? static_cast<const Passed&>(factor_) : products_; }
+  const Passed& at() const {
+    if (by_factor_) return factor_;
+    return products_;
+  }
 
   void relinearise() {
     if (by_factor_)
