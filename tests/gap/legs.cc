@@ -137,7 +137,7 @@ constexpr LegEffect kLegEffects[] = {
 class LegTrials : public testing::TestWithParam<const char*> {};
 
 /// Trials of any leg, effect and size, a fourth of them of sound robots: few by default,
-/// SELFCAL_SEEDS on demand; README.md has the shares of many.
+/// SELFCAL_SEEDS on demand.
 TEST_P(LegTrials, NameCauseAndLegAndNothingOnSoundRobots) {
   const std::shared_ptr<const Robot> robot = robot_of(kind_examples().at(GetParam()));
   const char* text = std::getenv("SELFCAL_SEEDS");
