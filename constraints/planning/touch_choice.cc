@@ -138,7 +138,7 @@ Eigen::MatrixXd prior_covariance(const Robot& robot, const Eigen::MatrixXd& give
 Eigen::MatrixXd judged_poses(const Robot& robot, const Eigen::VectorXd& xi,
                              const Workspace& workspace) {
   if (workspace.box) {
-    const Eigen::MatrixXd poses =
+    Eigen::MatrixXd poses =
         workspace_poses(robot, xi, workspace, {}, kJudgedPoses, kJudgedSeed);
     if (poses.rows() > 0) return poses;
   }

@@ -102,11 +102,11 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
 }
 
 /// The geometry's priors weigh rightly only where the noise does: the structure's size is taken
-/// from what its best explanation leaves.
+/// from what its best explanation leaves, where that is an equation at least.
 void EvidenceEvaluator::agree(MarginalLikelihood& marginal_likelihood, const StructuredRows& seen,
                               const Eigen::MatrixXd& AC, const std::vector<double>& products,
                               ObservedRows& own) {
-  for (int i = 0; i < kDiagnosis.evidence.agreements; ++i) {
+  for (int i = 0; i < kDiagnosis.evidence.agreements && marginal_likelihood.freedom() >= 1; ++i) {
     double best = marginal_likelihood.log_evidence({});
     double variance = marginal_likelihood.estimate({}).variance;
     for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
