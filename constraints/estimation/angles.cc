@@ -122,6 +122,11 @@ class Turns {
   std::vector<std::array<int, 4>> turns_;
 };
 
+/// Whether the method's angles are those of whole orientations: read as quaternions, or of a nest.
+bool turns_whole(const Method& method) {
+  return method.group_freedom() > 0 || std::ranges::count(method.columns(), "qw") > 0;
+}
+
 /// The slip that explains the angles of `set` best, if one does.
 std::string slip_of(const Robot& robot, const DataSet& data, int set, const Eigen::VectorXd& xi,
                     double limit) {
@@ -158,8 +163,8 @@ std::vector<std::string> gross_angles(const Robot& robot, const DataSet& data, c
         with_figures(" are left %.3g mrad off about each axis, where noise and tolerances leave "
                      "less than %.2g: ",
                      1e3 * left, 1e3 * limit) +
-        (set.method->has_lengths() ? slip_of(robot, data, s, before.state.xi, limit)
-                                   : "check the signs and zeros of the readings"));
+        (turns_whole(*set.method) ? slip_of(robot, data, s, before.state.xi, limit)
+                                  : "check the signs and zeros of the readings"));
   }
   return list;
 }
