@@ -21,6 +21,7 @@ constexpr double kOwnSigma = 100;
 constexpr double kOwnScale = 50e-3;  ///< m or rad, of own freedoms where a step must be short
 constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
+constexpr int kBarred = 3;           ///< of them barred by a loop that does not close
 constexpr double kRounding = 1e-13;  ///< a step this short (m or rad) is nothing
 constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
 /// Of a pivot of the normal equations over its diagonal, which rounding blurs by some 1e-15: the
@@ -218,7 +219,9 @@ class Iteration {
     const Eigen::VectorXd whole = step(Rz, 0);
     if (!whole.allFinite()) return stop(false, "the system of equations is singular");
     const double distance = whitened(Rz, whole);
+    int barred = 0;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      if (barred == kBarred && put_open_rows_aside()) return;
       const Eigen::VectorXd s = lambda_ > 0 ? bent(step(Rz, lambda_), lambda_) : whole;
       if (take(stepped(s))) {
         lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
@@ -226,6 +229,7 @@ class Iteration {
         if (distance < 0.1 * free) settle(arrival(distance / free, whole));
         return;
       }
+      barred += std::isinf(trial_cost_);
       if (distance < kNear * free)
         return settle("no step lowers the residual, and the minimum is within " +
                       format_number(kNear) + " sigma");
@@ -243,11 +247,36 @@ class Iteration {
     else
       products = equations_.normal_equations(trial, weighting(), columns_);
     const double cost = (by_factor_ ? factor.cost : products.cost) + prior_cost(trial);
-    if (!(std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9)) return false;
+    trial_cost_ = cost;
+    if (!(std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9)) {
+      tried_ = std::move((by_factor_ ? static_cast<Passed&>(factor) : products).norms);
+      return false;
+    }
     fit_.state = std::move(trial);
     factor_ = std::move(factor);
     products_ = std::move(products);
     cost_ = cost;
+    return true;
+  }
+
+  /// One posture at the edge of what the robot reaches must not bar the way of all others: those
+  /// rows whose loops the step before left open, where they are few. They come back with the next
+  /// estimate of the noise that finds them closed.
+  bool put_open_rows_aside() {
+    std::vector<char> outlier = fit_.noise.outlier;
+    const RowNorm* norm = tried_.data();
+    double rows = 0, open = 0;
+    for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
+      for (const SetPlan::Item& item : equations_.plan(s).items) {
+        ++rows;
+        if (!std::isinf((norm++)->length) || outlier[item.row]) continue;
+        outlier[item.row] = 1;
+        ++open;
+      }
+    if (open == 0 || open > rule_.most_rejected * rows) return false;
+    fit_.noise.outlier = std::move(outlier);
+    lambda_ = 0;
+    relinearise();
     return true;
   }
 
@@ -334,7 +363,8 @@ class Iteration {
   bool by_factor_ = false;  ///< the normal equations would leave a direction to rounding
   Linearised factor_;
   NormalEquations products_;
-  double cost_ = 0, lambda_ = 0;
+  double cost_ = 0, lambda_ = 0, trial_cost_ = 0;
+  std::vector<RowNorm> tried_;  ///< of the last step that was not taken
   NoiseStage stage_ = NoiseStage::robust;
   bool done_ = false;
   int regroupings_ = 0;  ///< changes of the rows put aside since the noise is kept
