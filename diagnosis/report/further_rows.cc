@@ -79,7 +79,8 @@ class Further {
     joints_elsewhere();
     constexpr double kHalf = std::numbers::pi;
     add_postures("with the tool rolled about its axis", {kHalf, kHalf / 2, -kHalf / 2});
-    add_postures("in another posture (elbow up and down, wrist turned)", {0});
+    if (!robot_.has_loops())
+      add_postures("in another posture (elbow up and down, wrist turned)", {0});
     return std::move(list_);
   }
 
@@ -192,6 +193,8 @@ class Further {
     SampleRequest request;
     request.rows = request.rows_per_group = kPostures;
     request.places = {place};
+    // Of closed loops a place determines the readings: the first starts find them, or none do.
+    if (robot_.has_loops()) request.tries = 1;
     Random random(1);
     sample_rows(robot_, xi_, {request}, random, found);
     std::optional<Eigen::VectorXd> best;

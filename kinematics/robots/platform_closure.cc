@@ -77,7 +77,8 @@ ClosedChains at_pose(const Chains& chains, const Location& X) {
     A.row(i) << at.n.col(i).transpose(), arm.cross(at.n.col(i)).transpose();
   }
   at.A.compute(A);
-  at.volume = at.A.determinant() / std::pow(size_of(chains), 3);
+  const double size = size_of(chains);
+  at.volume = at.A.determinant() / (size * size * size);
   return at;
 }
 

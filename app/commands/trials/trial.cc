@@ -28,7 +28,7 @@ void add_seal(CLI::App& app, int& status) {
   command->add_option("--rows", arguments->rows, "LEAST-MOST, 120-400 by default")->needs(make);
   command
       ->add_option("--robot", arguments->robot,
-                   "Serial robot with masses and limits; an arm for each by default")
+                   "Robot with masses and limits, a platform or a delta; an arm for each by default")
       ->needs(make);
   command->add_option("--out", arguments->out, "Folder of the trials")->required();
   command->callback([arguments, &status] { status = seal_trials(*arguments); });
