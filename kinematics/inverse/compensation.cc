@@ -12,11 +12,12 @@ namespace selfcal {
 namespace {
 
 constexpr double kFarFromNominal = 0.3;  // of a joint's unit, that a correction may move it
-constexpr double kTwins = 1e-6;          // rad or m between two commands that are one
+constexpr double kTwins = 1e-6;          // of the same, between two commands that are one
 constexpr unsigned kStartsSeed = 1;      // the same poses give the same commands
 
-double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
+/// In units of the readings.
+double apart(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return ((a - b).array() / units_of_readings(robot)).abs().maxCoeff();
 }
 
 Eigen::VectorXd middle_of(const Robot& robot) {
@@ -118,7 +119,7 @@ std::vector<ReachedPose> Compensation::nominal_solutions(const Location& wanted,
   std::erase_if(list, [](const ReachedPose& each) { return each.q.size() == 0; });
   const auto key = [&](const ReachedPose& each) {
     return std::tuple(!each.there, each.there ? 0 : each.error, !within_limits(*nominal_, each.q),
-                      apart(each.q, near));
+                      apart(*nominal_, each.q, near));
   };
   std::ranges::sort(list, {}, key);
   return list;
@@ -134,8 +135,7 @@ Command Compensation::corrected(const Location& wanted, const ReachedPose& nomin
   command.iterations = found.steps;
   command.error = found.error;
   command.error_angle = found.error_angle;
-  const Eigen::ArrayXd moved = (found.q - nominal.q).array().abs() / units_of_readings(*nominal_);
-  if (!found.there || moved.maxCoeff() > kFarFromNominal) {
+  if (!found.there || apart(*nominal_, found.q, nominal.q) > kFarFromNominal) {
     command.status = nominal.there ? Reach::singular : Reach::out_of_reach;
   } else if (!within_limits(*nominal_, found.q)) {
     command.status = Reach::limit;
@@ -167,7 +167,7 @@ std::vector<Command> Compensation::commands(const Location& wanted,
     Command command = corrected(wanted, solution);
     if (command.status != Reach::reached) continue;
     const bool twin = std::ranges::any_of(
-        list, [&](const Command& other) { return apart(other.q, command.q) < kTwins; });
+        list, [&](const Command& other) { return apart(*nominal_, other.q, command.q) < kTwins; });
     if (!twin) list.push_back(std::move(command));
   }
   if (list.empty()) list.push_back(command(wanted, near));

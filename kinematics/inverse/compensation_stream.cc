@@ -6,16 +6,17 @@
 #include "kinematics/corrected_robot.h"
 #include "kinematics/robots/linear_delta.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kStreamedSteps = 4;
-constexpr double kStreamedThere = 1e-7;   // m, rad
-constexpr double kTurnWeight = 0.3;       // m/rad: what a turn weighs beside a shift
+constexpr double kStreamedThere = 1e-7;   // of the robot's size; rad
+constexpr double kTurnWeight = 0.2;       // of the robot's size: what a turn weighs beside a shift
 constexpr double kTurnBeside = 1e-5;      // the same, of fewer than six joints
-constexpr double kLongestStreamed = 0.1;  // rad or m, of a step
-constexpr double kLeastStreamed = 1e-14;  // m², of damping
+constexpr double kLongestStreamed = 0.1;  // units of the readings, of a step
+constexpr double kLeastStreamed = 1e-14;  // of damping
 
 constexpr int kMost = ScrewChain::kMostJoints;
 using Lever = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMost>;
@@ -59,6 +60,8 @@ CompensationStream::CompensationStream(std::shared_ptr<const Robot> calibrated, 
       at_(at),
       xi_(values(*calibrated_)),
       xi_geometry_(xi_.head(static_cast<Eigen::Index>(geometry_->parameters().size()))),
+      size_(size_of(*geometry_)),
+      units_(units_of_readings(*geometry_)),
       q_(q) {
   refresh();
 }
@@ -102,15 +105,18 @@ StreamedCommand CompensationStream::step(const ScrewChain& chain, const Location
   Lever J;
   Eigen::Matrix<double, 6, 1> e = between(at_readings(chain, q, J), wanted);
   for (int i = 0; i < kStreamedSteps; ++i) {
+    e.head<3>() /= size_;
     e.tail<3>() *= weight;
+    J.topRows<3>() /= size_;
     J.bottomRows<3>() *= weight;
+    for (int j = 0; j < chain.joints; ++j) J.col(j) *= units_[j];
     Square A = J.transpose().lazyProduct(J);
     // Damped by the square of what is left: short near singular places, whole near the goal.
     A.diagonal().array() += std::max(e.squaredNorm(), kLeastStreamed);
     Readings dq = J.transpose().lazyProduct(e);
     A.ldlt().solveInPlace(dq);
     if (dq.norm() > kLongestStreamed) dq *= kLongestStreamed / dq.norm();
-    q += dq;
+    for (int j = 0; j < chain.joints; ++j) q[j] += units_[j] * dq[j];
     e = between(at_readings(chain, q, J), wanted);
   }
   return take(q.data(), e.head<3>().norm(), whole ? e.tail<3>().norm() : 0);
@@ -129,7 +135,7 @@ StreamedCommand CompensationStream::step(const DeltaTool& delta, const Location&
 
 StreamedCommand CompensationStream::take(const double* q, double error, double error_angle) {
   StreamedCommand answer{Streamed::behind, error, error_angle};
-  if (!(error < kStreamedThere && error_angle < kStreamedThere)) return answer;
+  if (!(error < kStreamedThere * size_ && error_angle < kStreamedThere)) return answer;
   answer.status = Streamed::reached;
   for (Eigen::Index j = 0; j < q_.size(); ++j) {
     q_[j] = q[j];

@@ -59,7 +59,10 @@ class CompensationStream {
   std::shared_ptr<const Robot> calibrated_, geometry_;
   Machine machine_;
   OperatingPoint at_;
-  Eigen::VectorXd xi_, xi_geometry_, q_;
+  Eigen::VectorXd xi_, xi_geometry_;
+  double size_;           ///< of the robot (m)
+  Eigen::ArrayXd units_;  ///< of its readings
+  Eigen::VectorXd q_;
   Location deviation_;  ///< by which effects move the geometry's pose, in the world
 };
 

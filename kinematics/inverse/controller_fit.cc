@@ -6,14 +6,15 @@
 
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr double kQuarter = 1e-6;   // rad from a multiple of a quarter turn that count as one
-constexpr double kTurnArm = 0.1;    // m: what a turn weighs beside a shift
-constexpr double kNear = 1e-6;      // m, that a move by its tolerance is worth
-constexpr double kAllOfIt = 1e-9;   // m: robots that are one
+constexpr double kTurnArm = 0.1;    // of the robot's size: what a turn weighs beside a shift
+constexpr double kNear = 1e-6;      // of the same, that a move by its tolerance is worth
+constexpr double kAllOfIt = 1e-9;   // of the same: robots that are one
 constexpr double kFitStep = 1e-12;  // rad, m: the last step's
 constexpr int kMostFits = 20;
 
@@ -89,6 +90,7 @@ struct Linearised {
 Linearised linearised(const Robot& geometry, const ControllerNumbers& numbers, const Beside& beside,
                       Eigen::Index poses, const Eigen::VectorXd& s) {
   const Eigen::Index priors = numbers.start.size();
+  const double size = size_of(geometry);
   Linearised at{Eigen::MatrixXd::Zero(6 * poses + priors, s.size()),
                 Eigen::VectorXd::Zero(6 * poses + priors)};
   const Eigen::VectorXd moved = numbers.basis * s;
@@ -96,7 +98,7 @@ Linearised linearised(const Robot& geometry, const ControllerNumbers& numbers, c
   beside.each(numbers.start + moved, &psi,
               [&](Eigen::Index pose, int lane, const Eigen::Matrix<double, 6, 1>& off) {
                 for (int c = 0; c < 6; ++c) {
-                  const double weight = (c < 3 ? 1 : kTurnArm) / kNear;
+                  const double weight = (c < 3 ? 1 / size : kTurnArm) / kNear;
                   at.A.row(6 * pose + c).noalias() =
                       weight * psi.row(c * kLanes + lane) * numbers.basis;
                   at.b[6 * pose + c] = weight * off[c];
@@ -161,7 +163,7 @@ Eigen::VectorXd fit_controller(const Robot& geometry, const ControllerNumbers& n
                                const OperatingPoint& at) {
   const Beside beside(geometry, real, q, at);
   const Eigen::VectorXd found = as_found(geometry, numbers, real);
-  if (apart(beside, found).most < kAllOfIt) return found;
+  if (apart(beside, found).most < kAllOfIt * size_of(geometry)) return found;
   Eigen::VectorXd s = least_squares(numbers.basis, found - numbers.start);
   for (int i = 0; i < kMostFits && s.size() > 0; ++i) {
     const Linearised at_s = linearised(geometry, numbers, beside, q.rows(), s);

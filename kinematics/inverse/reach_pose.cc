@@ -6,21 +6,22 @@
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kMostSteps = 100;
-constexpr double kThere = 1e-9;       // m, rad
-constexpr double kWhole = 0.3;        // m/rad: what a turn weighs beside a shift
+constexpr double kThere = 1e-9;       // of the robot's size; rad
+constexpr double kWhole = 0.2;        // of the robot's size: what a turn weighs beside a shift
 constexpr double kBeside = 1e-5;      // the same, where the orientation cannot be had
-constexpr double kLongestStep = 0.5;  // rad or m
-constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6, kLeastDamping = 1e-12;  // m^2
+constexpr double kLongestStep = 0.5;  // units of the readings
+constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6, kLeastDamping = 1e-12;
 
 /// One lane on its way.
 struct Lane {
-  Eigen::VectorXd q, e;  ///< where it is, and what is left there
-  Eigen::MatrixXd J;
+  Eigen::VectorXd q, e;  ///< where it is, and what is left there, over the robot's size
+  Eigen::MatrixXd J;     ///< of e, by units of the readings
   double damping = kFirstDamping;
   ReachedPose best;
   bool done = false;
@@ -34,6 +35,8 @@ class DampedSteps {
         xi_(xi),
         wanted_(wanted),
         at_(at),
+        size_(size_of(robot)),
+        units_(units_of_readings(robot)),
         whole_(robot.joints().size() >= 6),
         weight_(whole_ ? kWhole : kBeside) {}
 
@@ -82,14 +85,16 @@ class DampedSteps {
     const Eigen::Vector3d shift = wanted_.p - X_.p(i);
     const Eigen::Vector3d turn = log_rotation(wanted_.R * X_.R(i).transpose());
     Eigen::VectorXd e(6);
-    e << shift, weight_ * turn;
+    e << shift / size_, weight_ * turn;
     if (lane.e.size() > 0 && !(e.norm() < lane.e.norm())) return refuse(lane);
     if (lane.e.size() > 0) lane.damping = std::max(lane.damping / 10, kLeastDamping);
     lane.q = proposed;
     lane.e = e;
     lane.J.resize(6, J_.cols());
-    for (int c = 0; c < 6; ++c) lane.J.row(c) = (c < 3 ? 1 : weight_) * J_.row(c * kLanes + i);
-    const bool there = shift.norm() < kThere && (!whole_ || turn.norm() < kThere);
+    for (int c = 0; c < 6; ++c)
+      lane.J.row(c) = (c < 3 ? 1 / size_ : weight_) *
+                      J_.row(c * kLanes + i).cwiseProduct(units_.matrix().transpose());
+    const bool there = shift.norm() < kThere * size_ && (!whole_ || turn.norm() < kThere);
     lane.best = {proposed, shift.norm(), turn.norm(), step, there};
     // Beside the position, the orientation has still to come as near as it goes.
     lane.done = there && (whole_ || lane.damping <= kLeastDamping);
@@ -100,7 +105,7 @@ class DampedSteps {
     lane.done = lane.e.size() == 0 || lane.damping > kMostDamping;
   }
 
-  static Eigen::VectorXd next(const Lane& lane) {
+  Eigen::VectorXd next(const Lane& lane) const {
     const Eigen::Index n = lane.J.cols();
     Eigen::MatrixXd A(6 + n, n);
     A.topRows(6) = lane.J;
@@ -109,14 +114,16 @@ class DampedSteps {
     b.head(6) = lane.e;
     Eigen::VectorXd dq = least_squares(A, b);
     if (dq.norm() > kLongestStep) dq *= kLongestStep / dq.norm();
-    return lane.q + dq;
+    return lane.q + units_.matrix().cwiseProduct(dq);
   }
 
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
   const Location& wanted_;
   const OperatingPoint& at_;
-  bool whole_;  ///< position and orientation can be had
+  const double size_;           ///< m
+  const Eigen::ArrayXd units_;  ///< of readings
+  bool whole_;                  ///< position and orientation can be had
   double weight_;
   Closure closure_;
   Locations X_;

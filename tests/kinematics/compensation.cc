@@ -10,9 +10,11 @@
 #include "constraints/sampling/random_poses.h"
 #include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/inverse/compensation_stream.h"
 #include "kinematics/rotation.h"
 #include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
+#include "tests/support/arm_of_size.h"
 
 namespace selfcal {
 namespace {
@@ -73,6 +75,43 @@ std::string shipped(const std::string& name) {
 
 TEST(Compensation, PutsTheIrb1600WhereItIsWantedToUnderAMicrometre) {
   expect_compensated(off_by_a_millimetre(shipped("irb1600")), 10000, 1e-8);
+}
+
+TEST(Compensation, IsTheSameForRobotsOfTenCentimetresAndTenMetres) {
+  const std::shared_ptr<const Robot> one = arm_of_size(1);
+  const Eigen::MatrixXd q = random_poses(*one, nullptr, 100, 7);
+  const auto commands = [&](double scale) {
+    const std::shared_ptr<const Robot> nominal = arm_of_size(scale);
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal;
+    Eigen::VectorXd xi = values(*nominal);
+    for (std::size_t i = 0; i < nominal->parameters().size(); ++i)
+      if (const Parameter& p = nominal->parameters()[i]; p.free)
+        xi[static_cast<Eigen::Index>(i)] +=
+            1e-3 * (p.quantity == Quantity::length ? scale : 1) * normal(random);
+    const std::shared_ptr<const Robot> calibrated = robot_of(robot_text(*nominal, xi));
+    const Compensation compensation(nominal, calibrated);
+    std::vector<Command> list;
+    std::vector<StreamedCommand> streamed;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const Eigen::VectorXd near = q.row(i).transpose();
+      const Location wanted = locate(*nominal, values(*nominal), near);
+      list.push_back(compensation.command(wanted, near));
+      streamed.push_back(CompensationStream::of(calibrated, near)->command(wanted));
+    }
+    return std::pair(list, streamed);
+  };
+  const auto [expected, followed] = commands(1);
+  for (const double scale : {0.1, 10.0}) {
+    const auto [found, streamed] = commands(scale);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].status, expected[i].status) << scale << " " << i;
+      EXPECT_EQ(streamed[i].status, followed[i].status) << scale << " " << i;
+      if (found[i].status != Reach::reached || expected[i].status != Reach::reached) continue;
+      EXPECT_EQ(found[i].iterations, expected[i].iterations) << scale << " " << i;
+      EXPECT_LT((found[i].q - expected[i].q).cwiseAbs().maxCoeff(), 1e-9) << scale << " " << i;
+    }
+  }
 }
 
 TEST(Compensation, TakesEffectsAlong) {
