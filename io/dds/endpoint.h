@@ -111,10 +111,10 @@ class DdsReader {
   std::uint64_t lost() const { return lost_on_the_way(handle()) + pushed_out_; }
   /// Our time of the newest message taken.
   Nanoseconds newest_arrival() const { return newest_arrival_; }
+  dds_entity_t handle() const { return listening_->entity.handle(); }
 
  private:
   explicit DdsReader(std::unique_ptr<DdsListening> listening) : listening_(std::move(listening)) {}
-  dds_entity_t handle() const { return listening_->entity.handle(); }
   void note_taken(std::uint64_t arrived, std::size_t taken, bool all);
   template <class Use>
   static void hand_over(Use& use, const T& message, const dds_sample_info_t& info) {

@@ -1,153 +1,43 @@
-// The action's services: send_goal, get_result and cancel_goal of ROS_NAME/_action.
+// The action's services, as its server encodes them.
 #include "io/dds/ros/trajectory_action.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "io/dds/convert.h"
-#include "io/dds/opened.h"
+#include "io/dds/ros/cyclone_services.h"
+#include "io/dds/ros/fast_services.h"
 
 namespace selfcal {
-namespace {
 
-// action_msgs/msg/GoalStatus
-constexpr int kSucceeded = 4, kCanceled = 5;
-
-/// FollowJointTrajectory_Result's constants.
-std::string error_name(std::int32_t code) {
-  switch (code) {
-    case 0:
-      return "aborted";
-    case -1:
-      return "INVALID_GOAL";
-    case -2:
-      return "INVALID_JOINTS";
-    case -3:
-      return "OLD_HEADER_TIMESTAMP";
-    case -4:
-      return "PATH_TOLERANCE_VIOLATED";
-    case -5:
-      return "GOAL_TOLERANCE_VIOLATED";
-    default:
-      return "error " + std::to_string(code);
-  }
-}
-
-selfcal_ros_Duration ros_duration(double time) {
-  const auto whole = static_cast<std::int32_t>(std::floor(time));
-  return {.sec_ = whole, .nanosec_ = static_cast<std::uint32_t>((time - whole) * 1e9)};
-}
-
-template <class Sequence, class Item>
-Sequence lent(const std::vector<Item>& items) {
-  const auto size = static_cast<std::uint32_t>(items.size());
-  return {size, size, const_cast<Item*>(items.data()), false};
-}
-
-GoalNews news_of(const dds::GetResultReply& reply, const GoalId& goal) {
-  using What = GoalNews::What;
-  if (reply.status_ == kSucceeded && reply.error_code_ == 0) return {goal, What::done, {}};
-  if (reply.status_ == kCanceled) return {goal, What::cancelled, {}};
-  std::string why = error_name(reply.error_code_);
-  if (*reply.error_string_) why += std::string(": ") + reply.error_string_;
-  return {goal, What::aborted, why};
-}
-
-}  // namespace
-
-TrajectoryAction::TrajectoryAction(std::vector<std::string> joints, Endpoints endpoints)
-    : joints_(std::move(joints)), dds_(std::move(endpoints)) {
-  dds_get_instance_handle(dds_.send.handle(), &client_);
-}
+TrajectoryAction::TrajectoryAction(const DdsParticipant& participant, std::string action,
+                                   std::vector<std::string> joints, Wakeup& wakeup)
+    : participant_(participant),
+      action_(std::move(action)),
+      joints_(std::move(joints)),
+      wakeup_(wakeup) {}
 
 Result<std::unique_ptr<TrajectoryAction>> TrajectoryAction::open(const DdsParticipant& participant,
                                                                  const std::string& action,
                                                                  std::vector<std::string> joints,
                                                                  Wakeup& wakeup) {
-  Endpoints all;
-  DdsOpening opening(participant);
-  const auto request = [&](auto& writer, const char* service) {
-    opening.open(writer, action_request_topic(action, service), kExchange, &wakeup);
-  };
-  const auto reply = [&](auto& reader, const char* service) {
-    opening.open(reader, action_reply_topic(action, service), kExchange, &wakeup);
-  };
-  request(all.send, "send_goal");
-  reply(all.sent, "send_goal");
-  request(all.ask, "get_result");
-  reply(all.result, "get_result");
-  request(all.cancel, "cancel_goal");
-  reply(all.cancelled, "cancel_goal");
-  return opening.finish([&] {
-    return std::unique_ptr<TrajectoryAction>(
-        new TrajectoryAction(std::move(joints), std::move(all)));
-  });
+  std::unique_ptr<TrajectoryAction> made(
+      new TrajectoryAction(participant, action, std::move(joints), wakeup));
+  if (auto opened = made->open_services(); !opened) return tl::make_unexpected(opened.error());
+  return made;
 }
 
-bool TrajectoryAction::connected() const {
-  return dds_.send.matched() > 0 && dds_.sent.matched() > 0 && dds_.ask.matched() > 0 &&
-         dds_.result.matched() > 0 && dds_.cancel.matched() > 0 && dds_.cancelled.matched() > 0;
-}
-
-Result<void> TrajectoryAction::send(const GoalId& goal,
-                                    const std::vector<TrajectoryPoint>& points) {
-  std::vector<char*> names;
-  for (const std::string& joint : joints_) names.push_back(borrowed::text(joint));
-  std::vector<selfcal_ros_JointTrajectoryPoint> sent(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    sent[i].positions_ = lent<decltype(sent[i].positions_)>(points[i].q);
-    sent[i].velocities_ = lent<decltype(sent[i].velocities_)>(points[i].dq);
-    sent[i].time_from_start_ = ros_duration(points[i].time);
-  }
-  dds::SendGoalRequest request{};
-  request.client_ = client_;
-  request.number_ = sent_ = ++number_;
-  asked_ = 0;
-  goal_ = goal;
-  std::ranges::copy(goal, request.goal_id_);
-  const std::string no_frame;
-  auto& trajectory = request.goal_.trajectory_;
-  trajectory.header_.frame_id_ = borrowed::text(no_frame);  // its stamp of zero: at once
-  trajectory.joint_names_ = lent<decltype(trajectory.joint_names_)>(names);
-  trajectory.points_ = lent<decltype(trajectory.points_)>(sent);
-  request.goal_.multi_dof_trajectory_.header_.frame_id_ = borrowed::text(no_frame);
-  return dds_.send.write(request);
-}
-
-Result<void> TrajectoryAction::cancel(const GoalId& goal) {
-  dds::CancelRequest request{};
-  request.client_ = client_;
-  request.number_ = ++number_;
-  std::ranges::copy(goal, request.goal_info_.goal_id_);
-  return dds_.cancel.write(request);
-}
-
-Result<void> TrajectoryAction::ask_for_result() {
-  dds::GetResultRequest request{};
-  request.client_ = client_;
-  request.number_ = asked_ = ++number_;
-  std::ranges::copy(goal_, request.goal_id_);
-  return dds_.ask.write(request);
+Result<void> TrajectoryAction::open_services() {
+  services_.reset();  // what another encoding wrote is read by none of ours
+  auto opened =
+      (fast_ ? FastServices::open : CycloneServices::open)(participant_, action_, joints_, wakeup_);
+  if (!opened) return tl::make_unexpected(opened.error());
+  services_ = *std::move(opened);
+  return {};
 }
 
 Result<void> TrajectoryAction::take(std::vector<GoalNews>& out) {
-  bool accepted = false;
-  auto taken = dds_.sent.take([&](const dds::SendGoalReply& reply) {
-    if (reply.client_ != client_ || reply.number_ != sent_) return;
-    accepted = reply.accepted_;
-    using What = GoalNews::What;
-    out.push_back({goal_, reply.accepted_ ? What::accepted : What::rejected, {}});
-  });
-  if (!taken) return taken;
-  if (accepted)
-    if (auto asked = ask_for_result(); !asked) return asked;
-  taken = dds_.result.take([&](const dds::GetResultReply& reply) {
-    if (reply.client_ != client_ || asked_ == 0 || reply.number_ != asked_) return;
-    asked_ = 0;
-    out.push_back(news_of(reply, goal_));
-  });
-  if (!taken) return taken;
-  return dds_.cancelled.take([](const dds::CancelReply&) {});  // the result tells what became of it
+  if (services_->other_encoding()) {
+    fast_ = !fast_;
+    if (auto opened = open_services(); !opened) return opened;
+  }
+  return services_->take(out);
 }
 
 }  // namespace selfcal
