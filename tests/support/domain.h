@@ -19,6 +19,10 @@ inline constexpr Nanoseconds kLimit = 20 * kSecond;
 /// a domain's number that no other test of this process has.
 std::uint32_t new_domain();
 
+/// The same for peers on another vendor's DDS, which knows no tags: a domain for one test of this
+/// computer at a time.
+std::uint32_t open_domain();
+
 /// The value, or a failed test and the end of the program.
 template <class T>
 T must(Result<T> result) {
