@@ -11,6 +11,7 @@ constexpr double kLongest = 2;      // of its direction, the longest step; the s
 constexpr int kRounds = 2;          // of all directions, of one unit in a sweep
 constexpr int kTaken = 3;           // of the steps that gain, tried until one can be taken
 constexpr double kShorter = 0.3;    // of the directions, after a sweep
+constexpr std::size_t kUnitsAfresh = 10;  // after so many the design is made anew
 constexpr double kWorth =
     2e-3;  // a sweep that gains less, of the variance or of a log, is the last
 
@@ -30,6 +31,7 @@ class Powell {
               "moving configurations",
               (sweep + static_cast<double>(i) / static_cast<double>(units.size())) / moves_.sweeps);
         improve(units[i], directions[i]);
+        if (i % kUnitsAfresh == 0 || i + 1 == units.size()) design_.refresh();
         directions[i] *= kShorter;
       }
       if (design_.merit() - before < kWorth * std::min(1.0, std::abs(before))) break;
@@ -70,7 +72,6 @@ class Powell {
       directions.col(best) = way;
     }
     design_.change(unit, +1);
-    design_.refresh();
   }
 
   /// The step along `direction` that gains most and can be taken; zero where none does.

@@ -164,41 +164,50 @@ Eigen::MatrixXd Design::information(Eigen::Index first, Eigen::Index columns) co
   const double ridge = objective_.criterion == Criterion::sigma ? 0 : kRidge;
   Eigen::MatrixXd H = ridge * Eigen::MatrixXd::Identity(columns, columns);
   if (objective_.prior.rows() > 0) H += objective_.prior.block(first, first, columns, columns);
-  for (std::size_t i = 0; i < in_.size(); ++i) {
-    if (!in_[i]) continue;
-    const auto w = W_.block(at_[i], first, k_[i], columns);
-    H += w.transpose() * w;
-  }
-  return H;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < in_.size(); ++i)
+    for (Eigen::Index a = 0; in_[i] && a < k_[i]; ++a) rows.push_back(at_[i] + a);
+  const Eigen::MatrixXd chosen = W_.middleCols(first, columns)(rows, Eigen::all);
+  return H + transposed_product(chosen, chosen);
 }
 
-Design::Moments Design::moments(Eigen::Index first, Eigen::Index columns) const {
+Design::Moments Design::moments(Eigen::Index first, Eigen::Index columns,
+                                Eigen::MatrixXd* products) const {
   Moments at;
   at.C = inverse_of_positive(information(first, columns));
-  at.seen.setZero(W_.rows(), widest_);
-  const Eigen::MatrixXd WC = W_.middleCols(first, columns) * at.C;
-  for (std::size_t i = 0; i < in_.size(); ++i)
-    at.seen.block(at_[i], 0, k_[i], k_[i]) =
-        WC.middleRows(at_[i], k_[i]) * W_.block(at_[i], first, k_[i], columns).transpose();
+  const auto W = W_.middleCols(first, columns);
+  Eigen::MatrixXd WC = transposed_product(W.transpose(), at.C);
+  at.seen = blocks_of(WC, W);
+  if (products) *products = std::move(WC);
   return at;
+}
+
+Eigen::MatrixXd Design::blocks_of(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& B) const {
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(W_.rows(), widest_);
+  if (widest_ == 1) {
+    blocks.col(0) = A.cwiseProduct(B).rowwise().sum();
+    return blocks;
+  }
+  for (std::size_t i = 0; i < in_.size(); ++i)
+    blocks.block(at_[i], 0, k_[i], k_[i]).noalias() =
+        A.middleRows(at_[i], k_[i]).lazyProduct(B.middleRows(at_[i], k_[i]).transpose());
+  return blocks;
 }
 
 void Design::refresh() {
   const Eigen::Index m = W_.cols(), b = objective_.nuisance;
-  all_ = moments(0, m);
+  Eigen::MatrixXd WC;
+  all_ = moments(0, m, &WC);
   if (objective_.criterion == Criterion::sigma) {
-    const Eigen::MatrixXd WC = W_ * all_.C, WCA = WC * objective_.weight;
     CAC_ = all_.C * objective_.weight * all_.C;
     trace_ = objective_.weight.cwiseProduct(all_.C).sum();
-    spread_.setZero(W_.rows(), widest_);
-    for (std::size_t i = 0; i < in_.size(); ++i)
-      spread_.block(at_[i], 0, k_[i], k_[i]) =
-          WCA.middleRows(at_[i], k_[i]) * WC.middleRows(at_[i], k_[i]).transpose();
+    spread_ = blocks_of(transposed_product(WC.transpose(), objective_.weight), WC);
   }
   if (objective_.criterion == Criterion::o1) {
     log_determinant_ = 2 * cholesky_root(information(0, m)).diagonal().array().log().sum();
     if (b > 0) {
-      nuisance_ = moments(m - b, b);
+      nuisance_ = moments(m - b, b, nullptr);
       log_determinant_ -= 2 * cholesky_root(information(m - b, b)).diagonal().array().log().sum();
     }
     // In the parameters' own units.
@@ -362,8 +371,19 @@ double Design::merit_with(const Eigen::MatrixXd& rows) const {
 void Design::replace(int candidate, const Eigen::MatrixXd& w) {
   const auto which = static_cast<std::size_t>(candidate);
   expects(!in_[which] && w.rows() == k_[which], "the candidate is not chosen");
-  W_.middleRows(at_[which], k_[which]) = w * scale_.cwiseInverse().asDiagonal();
-  refresh();
+  auto W = W_.middleRows(at_[which], k_[which]);
+  W = w * scale_.cwiseInverse().asDiagonal();
+  const auto block = [&](Eigen::MatrixXd& blocks) {
+    return blocks.block(at_[which], 0, k_[which], k_[which]);
+  };
+  const Eigen::MatrixXd WC = W * all_.C;
+  block(all_.seen) = WC * W.transpose();
+  if (objective_.criterion == Criterion::sigma)
+    block(spread_) = WC * objective_.weight * WC.transpose();
+  if (objective_.criterion == Criterion::o1 && objective_.nuisance > 0) {
+    const auto own = W.rightCols(objective_.nuisance);
+    block(nuisance_.seen) = own * nuisance_.C * own.transpose();
+  }
 }
 
 }  // namespace selfcal

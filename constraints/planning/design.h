@@ -70,7 +70,11 @@ class Design {
 
   void scale_columns();
   Eigen::MatrixXd information(Eigen::Index first, Eigen::Index columns) const;
-  Moments moments(Eigen::Index first, Eigen::Index columns) const;
+  /// W C of those columns to `products`, where that is asked for.
+  Moments moments(Eigen::Index first, Eigen::Index columns, Eigen::MatrixXd* products) const;
+  /// For each candidate its block of A B^T, in rows as W's.
+  Eigen::MatrixXd blocks_of(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                            const Eigen::Ref<const Eigen::MatrixXd>& B) const;
   void update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const;
   static Rise rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w, int sign);
   double merit_of_spectrum(const Eigen::MatrixXd& C) const;

@@ -1,6 +1,7 @@
 #include "constraints/sampling/newton.h"
 
 #include <cmath>
+#include <optional>
 
 #include "kinematics/linear_algebra.h"
 #include "kinematics/size.h"
@@ -9,8 +10,30 @@ namespace selfcal {
 namespace {
 
 constexpr int kNewtonSteps = 40;
+constexpr int kPatience = 8;          // steps in which no start comes half as near as it was
 constexpr double kLongestStep = 0.5;  // units of readings
 constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
+
+// Least diagonal of the factor of products of rows of length one: less is left to the slower way.
+constexpr double kIndependent = 1e-3;
+
+/// x of least length with A x = b, by the products of A's few rows; nothing where these are nearly
+/// dependent.
+std::optional<Eigen::VectorXd> by_products(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  using Square =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostEquations, kMostEquations>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostEquations, 1>;
+  const Column length = A.rowwise().norm();
+  if (!(length.minCoeff() > 0)) return std::nullopt;
+  const Column per = length.cwiseInverse();
+  const Square products =
+      per.asDiagonal() * Square(A.lazyProduct(A.transpose())) * per.asDiagonal();
+  const Eigen::LLT<Square> factor(products);
+  if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() > kIndependent))
+    return std::nullopt;
+  const Column right = per.cwiseProduct(b);
+  return A.transpose() * Column(per.cwiseProduct(Column(factor.solve(right))));
+}
 
 }  // namespace
 
@@ -43,12 +66,19 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
   in.groups = &truth_.groups[set_];
   method.evaluate(in, out_);
   for (const int j : held_) J_.col(j).setZero();
-  if (!method.constrains() || method.measures().empty()) return;
   const std::vector<Quantity> quantities = method.equations();
-  for (size_t a = 0; a < quantities.size(); ++a) {
-    if (quantities[a] == Quantity::length) continue;
-    out_.r.col(static_cast<Eigen::Index>(a)).setZero();
-    out_.G_now.middleCols(6 * static_cast<Eigen::Index>(a), 6).setZero();
+  const bool lengths_alone = method.constrains() && !method.measures().empty();
+  const Eigen::Index lanes = J_.rows() / 6;
+  GJ_.setZero(static_cast<Eigen::Index>(quantities.size()) * lanes, J_.cols());
+  for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(quantities.size()); ++a) {
+    if (lengths_alone && quantities[static_cast<std::size_t>(a)] != Quantity::length) {
+      out_.r.col(a).setZero();
+      continue;
+    }
+    for (Eigen::Index j = 0; j < J_.cols(); ++j)
+      for (Eigen::Index c = 0; c < 6; ++c)
+        GJ_.col(j).segment(a * lanes, lanes).array() +=
+            out_.G_now.col(6 * a + c).head(lanes) * J_.col(j).segment(c * lanes, lanes).array();
   }
 }
 
@@ -57,33 +87,43 @@ Eigen::VectorXd NewtonStep::miss(int lane, const Eigen::VectorXd& wanted) const 
 }
 
 Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
-  Eigen::MatrixXd GJ = Eigen::MatrixXd::Zero(miss.size(), J_.cols());
-  for (Eigen::Index a = 0; a < miss.size(); ++a)
-    for (Eigen::Index c = 0; c < 6; ++c)
-      GJ.row(a) += out_.G_now(lane, 6 * a + c) * J_.row(c * J_.rows() / 6 + lane);
-  if (miss.size() > 1) return least_squares(GJ, miss);
-  const double squared = GJ.squaredNorm();
-  if (squared == 0) return Eigen::VectorXd::Zero(J_.cols());
-  return GJ.row(0).transpose() * (miss[0] / squared);
+  const Eigen::Index lanes = J_.rows() / 6;
+  const Eigen::MatrixXd GJ = GJ_(Eigen::seqN(lane, miss.size(), lanes), Eigen::all);
+  if (const std::optional<Eigen::VectorXd> dq = by_products(GJ, miss)) return *dq;
+  return least_squares(GJ, miss);
 }
 
 std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
                                    ConfigurationBlock& block) {
   const Eigen::ArrayXd units = units_of_readings(robot_);
-  Lanes left = Lanes::Constant(kLanes, HUGE_VAL);
-  for (int at = 0; at < kNewtonSteps; ++at) {
+  Lanes left = Lanes::Constant(kLanes, HUGE_VAL), least = left;
+  std::vector<char> lost(kLanes, 0);
+  for (int at = 0, gained = 0; at < kNewtonSteps && at - gained <= kPatience; ++at) {
     evaluate(block);
+    int going = -1;
     for (int lane = 0; lane < kLanes; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      if (lost[l] || !closes(lane)) {
+        lost[l] = 1;
+        left[lane] = HUGE_VAL;
+        // Loops that do not close are the dearest ones.
+        if (going >= 0) block.q.row(lane) = block.q.row(going);
+        continue;
+      }
+      going = lane;
       const Eigen::VectorXd off = miss(lane, wanted);
-      left[lane] = closes(lane) ? off.norm() : HUGE_VAL;
-      if (!closes(lane)) continue;  // lost
+      left[lane] = off.norm();
+      if (left[lane] < least[lane] / 2) {
+        least[lane] = left[lane];
+        gained = at;
+      }
       if (left[lane] < kExact / 10) continue;
       Eigen::VectorXd dq = step(lane, off);
       const double length = (dq.array() / units).matrix().norm();
       if (length > kLongestStep) dq *= kLongestStep / length;
       block.q.row(lane) += dq.transpose().array();
     }
-    if ((left < kExact / 10).count() >= enough) break;
+    if (going < 0 || (left < kExact / 10).count() >= enough) break;
   }
   std::vector<int> reached;
   for (int lane = 0; lane < kLanes; ++lane)

@@ -44,7 +44,7 @@ class NewtonStep {
   Locations X_;
   Closure closure_;
   PsiBlock psi_;
-  Eigen::MatrixXd J_;
+  Eigen::MatrixXd J_, GJ_;  ///< GJ_: as J_, a block of lanes for each equation
   MethodOutput out_;
 };
 
