@@ -138,8 +138,7 @@ Eigen::MatrixXd prior_covariance(const Robot& robot, const Eigen::MatrixXd& give
 Eigen::MatrixXd judged_poses(const Robot& robot, const Eigen::VectorXd& xi,
                              const Workspace& workspace) {
   if (workspace.box) {
-    Eigen::MatrixXd poses =
-        workspace_poses(robot, xi, workspace, {}, kJudgedPoses, kJudgedSeed);
+    Eigen::MatrixXd poses = workspace_poses(robot, xi, workspace, {}, kJudgedPoses, kJudgedSeed);
     if (poses.rows() > 0) return poses;
   }
   return closing_poses(robot, xi, random_poses(robot, nullptr, kJudgedPoses, kJudgedSeed));
