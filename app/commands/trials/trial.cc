@@ -27,8 +27,9 @@ void add_seal(CLI::App& app, int& status) {
       ->needs(make);
   command->add_option("--rows", arguments->rows, "LEAST-MOST, 120-400 by default")->needs(make);
   command
-      ->add_option("--robot", arguments->robot,
-                   "Robot with masses and limits, a platform or a delta; an arm for each by default")
+      ->add_option(
+          "--robot", arguments->robot,
+          "Robot with masses and limits, a platform or a delta; an arm for each by default")
       ->needs(make);
   command->add_option("--out", arguments->out, "Folder of the trials")->required();
   command->callback([arguments, &status] { status = seal_trials(*arguments); });
