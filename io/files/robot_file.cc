@@ -3,6 +3,7 @@
 #include "io/files/robot_file.h"
 
 #include "io/files/file.h"
+#include "io/files/utf8.h"
 #include "io/files/yaml.h"
 #include "kinematics/make_robot.h"
 
@@ -26,12 +27,7 @@ Result<std::unique_ptr<Robot>> robot_of(std::string_view text, const std::string
   return robot;
 }
 
-bool looks_like_xml(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && text[first] == '<';
-}
+bool looks_like_xml(std::string_view text) { return first_of(text) == '<'; }
 
 std::string robot_text(const Robot& robot, const Eigen::VectorXd& xi) {
   return write_yaml(robot.text().describe(xi));

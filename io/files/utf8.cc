@@ -49,6 +49,12 @@ bool is_text(std::string_view bytes) {
   return true;
 }
 
+char first_of(std::string_view text) {
+  if (text.starts_with(kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first == std::string_view::npos ? '\0' : text[first];
+}
+
 std::string_view Utf8Pieces::take(std::string_view piece) {
   if (form_ == Form::as_it_stands) return piece;
   rest_ += piece;

@@ -10,6 +10,9 @@ namespace selfcal {
 /// text must be: it ends up in names, and names in JSON.
 bool is_text(std::string_view bytes);
 
+/// What a text begins with, after its byte order mark and blanks: '<' of XML; 0 of an empty one.
+char first_of(std::string_view text);
+
 /// Pieces of a file as UTF-8 without a byte order mark: UTF-16 behind either of its marks (RFC
 /// 2781, as spreadsheets and trackers export it) is converted, anything else is as it stands. What
 /// is no UTF-16 becomes what is no text.

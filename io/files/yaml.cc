@@ -146,6 +146,9 @@ Result<Node> parse_yaml(std::string_view text, const std::string& name) {
   Converter converter(name);
   Problems& problems = converter.problems();
   if (!is_text(text)) return bad_input(name + ": expected UTF-8 text, got other bytes");
+  if (first_of(text) == '<')
+    return bad_input(name + ":1: is XML where YAML is expected; `selfcal robot convert " + name +
+                     "` makes a robot file of a URDF");
   try {
     Node node = parse_document(marked(text), converter);
     if (!problems.any()) return node;

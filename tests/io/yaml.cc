@@ -95,6 +95,9 @@ TEST(Yaml, RefusesAFileWithoutAMapping) {
   EXPECT_EQ(yaml_error("# nothing\n"), "f.yaml: is empty");
   EXPECT_EQ(yaml_error("- 1\n- 2\n"), "f.yaml:1: expected `key: value` lines");
   EXPECT_EQ(yaml_error("text\n"), "f.yaml:1: expected `key: value` lines");
+  EXPECT_EQ(yaml_error("\xEF\xBB\xBF\n<?xml version=\"1.0\"?>\n<robot name=\"a\"/>\n"),
+            "f.yaml:1: is XML where YAML is expected; `selfcal robot convert f.yaml` makes a robot "
+            "file of a URDF");
   // yaml-cpp reads one document after the other here, and never comes to the end.
   for (const char* text : {", [", ",srrv:", ","})
     EXPECT_THAT(yaml_error(text), HasSubstr("f.yaml:1: is not valid YAML")) << text;
