@@ -11,7 +11,7 @@
 #include "io/dds/names.h"
 #include "io/dds/senders.h"
 #include "tests/bridge/controller.h"
-#include "tests/support/cell.h"
+#include "tests/support/bridged_session.h"
 #include "tests/support/program.h"
 
 namespace selfcal {
@@ -125,26 +125,9 @@ TEST(BridgedSession, TouchesThroughAControllerOfRosAndImprovesTheRobot) {
   options.touches = 12;
   Cell cell(options);
   RosRobot robot(cell);
-  Running bridge({"bridge", cell.folder / "config.yaml", "--action", kArm, "--touch", "touch",
-                  "--acceleration", "3000"},
-                 cell.folder / "bridge.log");
-  cell.start_service();
-  ASSERT_TRUE(cell.start_session());
-  ASSERT_TRUE(cell.until([&] { return !cell.results.empty() || cell.in_state("fault"); }));
-  ASSERT_FALSE(cell.in_state("fault")) << cell.statuses.back().why << cell.log();
-  EXPECT_TRUE(bridge.alive());
-  std::size_t taken = 0, all = 0;
-  for (const TouchRecord& touch : must(cell.store()->touches(1))) {
-    ++all;
-    taken += touch.outcome == TouchOutcome::taken;
-  }
-  std::printf("%zu of %zu touches taken, %d goals, %d of them cancelled; %s, %.3g to %.3g mm\n",
-              taken, all, robot.goals(), robot.cancelled(), cell.results.back().answer.c_str(),
-              1e3 * cell.results.back().check_before, 1e3 * cell.results.back().check_after);
-  EXPECT_GE(taken, 60u);
-  EXPECT_EQ(cell.results.back().answer, "improved");
+  const std::size_t taken = calibrate_through_bridge(cell, kArm);
+  std::printf("%d goals, %d of them cancelled\n", robot.goals(), robot.cancelled());
   EXPECT_GE(robot.cancelled(), static_cast<int>(taken)) << "each touch ends by a cancelled goal";
-  EXPECT_EQ(bridge.end(SIGTERM), 0);
 }
 
 TEST(BridgeCommand, RefusesATouchWhereTheKernelStampsTheTrigger) {

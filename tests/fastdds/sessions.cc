@@ -5,6 +5,7 @@
 
 #include "tests/fastdds/cdr.h"
 #include "tests/fastdds/robot.h"
+#include "tests/support/bridged_session.h"
 #include "tests/support/program.h"
 #include "tests/support/text.h"
 
@@ -130,27 +131,9 @@ TEST(FastDds, ADriverCalibratesItsRobotAndSeesWhatTheServiceTells) {
 TEST(FastDds, AControllerCalibratesItsRobotThroughTheBridge) {
   Cell cell(options_of("fastbridge"));
   FastController robot(cell, kArm, "touch");
-  Running bridge({"bridge", cell.folder / "config.yaml", "--action", kArm, "--touch", "touch",
-                  "--acceleration", "3000"},
-                 cell.folder / "bridge.log");
-  cell.start_service();
-  ASSERT_TRUE(cell.start_session());
-  ASSERT_TRUE(cell.until([&] { return !cell.results.empty() || cell.in_state("fault"); }));
-  ASSERT_FALSE(cell.in_state("fault"))
-      << cell.statuses.back().why << cell.log() << text_of(cell.folder / "bridge.log");
-  EXPECT_TRUE(bridge.alive());
-  std::size_t taken = 0;
-  for (const TouchRecord& touch : must(cell.store()->touches(1)))
-    taken += touch.outcome == TouchOutcome::taken;
-  std::printf(
-      "a controller on Fast DDS: %zu touches taken, %d goals, %d cancelled; %s, %.3g to "
-      "%.3g mm\n",
-      taken, robot.moves(), robot.stopped(), cell.results.back().answer.c_str(),
-      1e3 * cell.results.back().check_before, 1e3 * cell.results.back().check_after);
-  EXPECT_GE(taken, 60u);
-  EXPECT_EQ(cell.results.back().answer, "improved");
+  const std::size_t taken = calibrate_through_bridge(cell, kArm);
+  std::printf("a controller on Fast DDS: %d goals, %d cancelled\n", robot.moves(), robot.stopped());
   EXPECT_GE(robot.stopped(), static_cast<int>(taken)) << "each touch ends by a cancelled goal";
-  EXPECT_EQ(bridge.end(SIGTERM), 0);
 }
 
 TEST(FastDds, AControllersRefusalIsToldByName) {
