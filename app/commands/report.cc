@@ -22,15 +22,36 @@ struct ReportArguments {
   std::string where, out = "report.html";
 };
 
+/// What to do about a result that improves the robot, once something was decided; empty before.
+std::string_view next_of(ResultDecision decision) {
+  switch (decision) {
+    case ResultDecision::none:
+      return "";
+    case ResultDecision::candidate:
+      return "It waits for a person: look at the changes, then `selfcal command accept` or "
+             "`reject`.";
+    case ResultDecision::applying:
+    case ResultDecision::applied:
+      return "It was accepted and applied: `selfcal history` shows which parameters are in use, "
+             "`selfcal command rollback` goes back to those before.";
+    case ResultDecision::rejected:
+      return "It was rejected: the parameters before it stay.";
+    case ResultDecision::replaced:
+      return "A newer result took its place before anybody had decided.";
+    case ResultDecision::rolled_back:
+      return "It was applied and given up afterwards: the parameters before it are back.";
+  }
+  return "";
+}
+
 /// What the store has of the session beside its rows.
-Result<nlohmann::ordered_json> session_json(Store& store, const SessionRecord& record) {
+nlohmann::ordered_json session_json(const SessionRecord& record,
+                                    const std::optional<ResultRecord>& result) {
   nlohmann::ordered_json json = {{"number", record.id},
                                  {"kind", record.kind},
                                  {"when", date_time(record.started_ms)},
                                  {"reason", record.reason}};
-  const auto result = store.result(record.id);
-  if (!result) return tl::unexpected(result.error());
-  if (*result) json["decision"] = to_string((*result)->decision);
+  if (result) json["decision"] = to_string(result->decision);
   return json;
 }
 
@@ -56,10 +77,11 @@ Result<void> write_page(const ReportArguments& arguments) {
   if (!store) return tl::unexpected(store.error());
   const auto rows = session_rows(**store, arguments.session, source->robot_text);
   if (!rows) return tl::unexpected(rows.error());
-  const auto session = session_json(**store, rows->record);
-  if (!session) return tl::unexpected(session.error());
+  const auto result = (*store)->result(rows->record.id);
+  if (!result) return tl::unexpected(result.error());
+  const nlohmann::ordered_json session = session_json(rows->record, *result);
   if (rows->record.kind == to_string(SessionKind::cause))
-    return write_file_atomically(arguments.out, cause_page(*rows, *session));
+    return write_file_atomically(arguments.out, cause_page(*rows, session));
   Engagements found;
   {
     ProgressLine line;
@@ -70,7 +92,10 @@ Result<void> write_page(const ReportArguments& arguments) {
   const PageSubject subject{*rows->robot, found.data,
                             "session " + std::to_string(arguments.session), unix_now_ms()};
   nlohmann::ordered_json data = identification_data(subject, found.solution);
-  data["session"] = *session;
+  data["session"] = session;
+  if (*result && found.solution.verdict.answer == Answer::improved)
+    if (const std::string_view next = next_of((*result)->decision); !next.empty())
+      data["verdict"]["next"] = {next};
   return write_file_atomically(arguments.out, page_of(data));
 }
 

@@ -57,7 +57,9 @@ TEST_F(Tutorials, LeadFromABareRobotToACalibration) {
   const Ran ran = follow("nightly.md");
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_NE(ran.out.find("improved"), std::string::npos) << ran.out;
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "cell/session-1.html"));
+  const std::string page = text_of(folder_ / "cell/session-1.html");
+  EXPECT_NE(page.find("It waits for a person"), std::string::npos);
+  EXPECT_EQ(page.find("then use calibrated.robot.yaml"), std::string::npos);
 }
 
 TEST_F(Tutorials, FindTheCauseOfAGap) {
