@@ -95,12 +95,6 @@ bool FastWriter::reply(std::string bytes, const rtps::SampleIdentity& request) {
   return writer_->write(&bytes, beside);
 }
 
-int FastWriter::matched() const {
-  fast::PublicationMatchedStatus status;
-  writer_->get_publication_matched_status(status);
-  return status.current_count;
-}
-
 int FastReader::matched() const {
   fast::SubscriptionMatchedStatus status;
   reader_->get_subscription_matched_status(status);

@@ -30,7 +30,6 @@ class FastWriter {
   bool write(std::string bytes, std::int64_t stamp);
   /// As a service's reply to a request.
   bool reply(std::string bytes, const eprosima::fastrtps::rtps::SampleIdentity& request);
-  int matched() const;
 
  private:
   eprosima::fastdds::dds::DataWriter* writer_;
