@@ -36,4 +36,7 @@ struct Parameter {
   }
 };
 
+/// True for parameters of the links and gears, which the maker gives tolerances for.
+inline bool is_own(const Parameter& p) { return p.part == Part::link || p.part == Part::gear; }
+
 }  // namespace selfcal

@@ -247,7 +247,6 @@ class Adjustment {
 }  // namespace
 
 bool is_placed(const Parameter& p) { return p.part == Part::base || p.part == Part::tool; }
-bool is_own(const Parameter& p) { return p.part == Part::link || p.part == Part::gear; }
 
 Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
                 const Eigen::VectorXd& variance) {

@@ -33,8 +33,6 @@ struct Adjusted {
 
 /// True for parameters of base and tool frames, whose priors say where things were put up.
 bool is_placed(const Parameter& p);
-/// True for parameters of the links and gears, which the maker gives tolerances for.
-bool is_own(const Parameter& p);
 
 /// `variance` of the parameters is that of their posterior with `prior`.
 Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,

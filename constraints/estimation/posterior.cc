@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "constraints/identifiability/given_doubt.h"
 #include "constraints/methods/plane.h"
 #include "kinematics/linear_algebra.h"
 
@@ -15,11 +16,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kMotionColumns = 6;
-/// Of a gear ratio without a tolerance: tooth counts are exact, a ball screw or a belt less so.
-constexpr double kHeldRatio = 2e-5;
 constexpr double kExact = 1e-12;  ///< m or rad: of what is exact
-/// Of a probe's radius without a tolerance: a micrometre or two where a ball has millimetres.
-constexpr double kBall = 1e-3;
 
 /// A set whose place is given: the system of its rows, and 1 over the sigma of each motion of it.
 struct GivenPlace {
@@ -43,9 +40,8 @@ class Information {
     for (int i = 0; i < equations_.robot_columns(); ++i) {
       const Parameter& p = parameters[static_cast<size_t>(i)];
       const bool held = adjusted_.candidate[i] && !adjusted_.prior.free[i];
-      if (!adjusted_.prior.free[i] && !held && p.tolerance > 0 && is_own(p))
-        add(i, 1 / (p.part == Part::gear && !p.free ? std::min(kHeldRatio, p.tolerance)
-                                                    : p.tolerance));
+      const double doubt = doubt_of_fixed(p);
+      if (!adjusted_.prior.free[i] && !held && doubt > 0) add(i, 1 / doubt);
     }
   }
 
@@ -54,11 +50,9 @@ class Information {
     for (int s = 0; s < static_cast<int>(sets.size()); ++s) {
       if (equations_.plan(s).items.empty()) continue;
       const std::vector<KnownLength> known = sets[s].method->known_lengths();
-      const bool plane = sets[s].method->touches() == TouchedSurface::plane;
+      const bool opposite = touched_from_other_side(s);
       for (size_t i = 0; i < known.size(); ++i) {
-        const double stated = plane ? sets[s].given.place : sets[s].given.length;
-        const double alone = stated >= 0 ? stated : kBelieved * std::abs(known[i].value);
-        const double sigma = std::hypot(known[i].by_row ? alone : 0, plane ? by_probe(s) : 0);
+        const double sigma = doubt_of_length(sets[s], known[i], opposite);
         if (sigma > 0)
           add(static_cast<int>(R_.cols()) - 1 - equations_.known_lengths() +
                   equations_.known_at(s) + static_cast<int>(i),
@@ -98,16 +92,11 @@ class Information {
   }
 
  private:
-  /// What a probe that is larger than given does to the distance of a plane (m, 1 sigma): once to
-  /// one that is known, twice to that from another one that was touched from the other side,
-  /// nothing to that from one on the same side.
-  double by_probe(int set) const {
+  /// Of a plane that is a known distance from another one, by a probe that has a size.
+  bool touched_from_other_side(int set) const {
     const Set& of = equations_.data().sets[static_cast<size_t>(set)];
-    const double radius = probe_radius(*of.method);
-    if (radius <= 0) return 0;
-    const double doubt = of.given.length >= 0 ? of.given.length : kBall * radius;
-    if (of.reference < 0) return doubt;
-    return mean_normal(set).dot(mean_normal(of.reference)) < 0 ? 2 * doubt : 0;
+    return of.reference >= 0 && probe_radius(*of.method) > 0 &&
+           mean_normal(set).dot(mean_normal(of.reference)) < 0;
   }
 
   Eigen::Vector3d mean_normal(int set) const {
@@ -152,16 +141,11 @@ class Information {
     for (int row = 0; row < rows.rows(); ++row)
       if (rows.set[static_cast<size_t>(row)] != set) alone.outlier[static_cast<size_t>(row)] = 1;
     const Set& at = equations_.data().sets[static_cast<size_t>(set)];
-    // The distance of a plane is a length that is known, and in doubt as such.
-    const bool centre = at.method->touches() != TouchedSurface::plane;
-    const double place = !centre               ? 0
-                         : at.given.place >= 0 ? at.given.place
-                                               : kBelieved * distance(set);
-    const double turn = at.given.turn >= 0 ? at.given.turn : kBelieved;
+    const double place = doubt_of_centre(at, distance(set)), turn = doubt_of_turn(at);
     GivenPlace given{Eigen::VectorXd(kMotionColumns),
                      equations_.linearise(adjusted_.fitted.state, alone, true).R};
     for (int i = 0; i < kMotionColumns; ++i) {
-      const double sigma = i < 3 ? place : centre ? 0 : turn;
+      const double sigma = i < 3 ? place : turn;
       given.weight[i] = 1 / std::max(sigma, kExact);
     }
     places_.push_back(std::move(given));

@@ -7,16 +7,12 @@
 
 namespace selfcal {
 
-/// What is given without a tolerance of its own (a length, a ratio, a place, a direction) is
-/// believed to one part in ten thousand.
-inline constexpr double kBelieved = 1e-4;
-
 /// Covariance of columns() at `adjusted.fitted`: of the free unknowns, and of the robot's
 /// parameters that are fixed within their tolerances (Schmidt's considered parameters, each in no
 /// more doubt than the rows leave it), with known lengths, planes, normals and centres in doubt
-/// beside them. `R` is whitened, with the columns beside the unknowns. With `considered` false what
-/// was given is exact. A length held for the scale is as free as the maker's tolerances leave the
-/// scale.
+/// beside them (given_doubt.h). `R` is whitened, with the columns beside the unknowns. With
+/// `considered` false what was given is exact. A length held for the scale is as free as the
+/// maker's tolerances leave the scale.
 Eigen::MatrixXd posterior(const Equations& equations, const Adjusted& adjusted,
                           const Eigen::MatrixXd& R, bool considered = true);
 

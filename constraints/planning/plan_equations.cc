@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "constraints/identifiability/given_doubt.h"
 #include "constraints/planning/touch_choice.h"
 
 namespace selfcal {
@@ -29,7 +30,8 @@ std::vector<Scale> PlanEquations::scale(const std::vector<Set>& sets) const {
 Eigen::VectorXd PlanEquations::tolerance() const {
   Eigen::VectorXd list = Eigen::VectorXd::Constant(columns_, std::sqrt(kPlaceVariance));
   Eigen::Index i = 0;
-  for (const Parameter& each : robot_.parameters()) list[i++] = each.free ? each.tolerance : 0;
+  for (const Parameter& each : robot_.parameters())
+    list[i++] = each.free ? each.tolerance : doubt_of_fixed(each);
   return list;
 }
 

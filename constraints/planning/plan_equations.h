@@ -31,7 +31,8 @@ class PlanEquations {
   /// Whitened rows that no configuration carries (a known distance between groups).
   Eigen::MatrixXd of_none(const DataSet& data) const;
   /// 1 sigma of each column before anything is measured: the makers' tolerances of the robot's
-  /// parameters (0 of those that are not free), a metre or radian of the others.
+  /// parameters (of those that are fixed how far they are believed), a metre or radian of the
+  /// others.
   Eigen::VectorXd tolerance() const;
 
  private:

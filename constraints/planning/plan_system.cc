@@ -87,7 +87,7 @@ void PlanSystem::take_columns(const Pool& pool, const Workspace& workspace, int 
   for (int c = 0; c < static_cast<int>(equations_.columns()); ++c) {
     const bool own = c >= static_cast<int>(robot_columns());
     const auto at = static_cast<std::size_t>(c);
-    if (own || (free[at] && tolerance_[c] > 0)) free_.push_back(c);
+    if (own || tolerance_[c] > 0) open_.push_back(c);
     if (own || rank.status[at] == Status::identified) identified_.push_back(c);
   }
   parameters_ = rank.total();
@@ -112,15 +112,19 @@ void PlanSystem::take_weight(const Workspace& workspace, const Eigen::MatrixXd& 
 }
 
 void PlanSystem::take_prior() {
-  const auto count = static_cast<Eigen::Index>(free_.size());
+  const auto count = static_cast<Eigen::Index>(open_.size());
   prior_ = Eigen::MatrixXd::Identity(count, count);
   if (request_.prior.rows() == 0) return;
   const Eigen::Index robot =
-      std::ranges::count_if(free_, [&](int c) { return c < static_cast<int>(robot_columns()); });
-  const std::vector<int> columns(free_.begin(), free_.begin() + robot);
+      std::ranges::count_if(open_, [&](int c) { return c < static_cast<int>(robot_columns()); });
+  const std::vector<int> columns(open_.begin(), open_.begin() + robot);
+  Eigen::MatrixXd C = request_.prior(columns, columns);
+  // What the matrix takes as exact is believed no further than without it.
+  for (Eigen::Index i = 0; i < robot; ++i)
+    if (C(i, i) <= 0) C(i, i) = std::pow(tolerance_[columns[i]], 2);
   const Eigen::VectorXd per = tolerance_(columns).cwiseInverse();
   prior_.topLeftCorner(robot, robot) =
-      inverse_of_covariance(per.asDiagonal() * request_.prior(columns, columns) * per.asDiagonal());
+      inverse_of_covariance(per.asDiagonal() * C * per.asDiagonal());
 }
 
 std::string PlanSystem::lacking() const {
@@ -129,7 +133,7 @@ std::string PlanSystem::lacking() const {
 }
 
 const std::vector<int>& PlanSystem::columns(Criterion criterion) const {
-  return criterion == Criterion::sigma ? free_ : identified_;
+  return criterion == Criterion::sigma ? open_ : identified_;
 }
 
 Objective PlanSystem::objective(Criterion criterion) const {
@@ -140,7 +144,7 @@ Objective PlanSystem::objective(Criterion criterion) const {
   objective.prior = given_.transpose() * given_;
   if (criterion == Criterion::sigma) objective.weight = weight_(chosen, chosen);
   objective.prior = objective.prior(chosen, chosen).eval();
-  const Eigen::VectorXd per = tolerance_(free_).cwiseInverse();
+  const Eigen::VectorXd per = tolerance_(open_).cwiseInverse();
   if (criterion == Criterion::sigma)
     objective.prior += per.asDiagonal() * prior_ * per.asDiagonal();
   return objective;
@@ -170,16 +174,16 @@ Eigen::MatrixXd PlanSystem::all_rows(const DataSet& data, const std::vector<Unit
   return stacked(parts, equations_.columns());
 }
 
-/// WᵀW of the free columns, each over its tolerance, so that the priors are ones.
+/// WᵀW of the open columns, each over its tolerance, so that the priors are ones.
 Eigen::MatrixXd PlanSystem::priced_information(const Eigen::MatrixXd& W) const {
-  const Eigen::VectorXd unit = tolerance_(free_);
-  const Eigen::MatrixXd priced = W(Eigen::all, free_) * unit.asDiagonal();
+  const Eigen::VectorXd unit = tolerance_(open_);
+  const Eigen::MatrixXd priced = W(Eigen::all, open_) * unit.asDiagonal();
   return priced.transpose() * priced;
 }
 
 Eigen::MatrixXd PlanSystem::priced_weight() const {
-  const Eigen::VectorXd unit = tolerance_(free_);
-  return unit.asDiagonal() * weight_(free_, free_) * unit.asDiagonal();
+  const Eigen::VectorXd unit = tolerance_(open_);
+  return unit.asDiagonal() * weight_(open_, open_) * unit.asDiagonal();
 }
 
 double PlanSystem::sigma_beyond(const DataSet& data, const std::vector<Unit>& units) const {

@@ -35,8 +35,9 @@ class PlanSystem {
   /// Why nothing can be planned; empty where it can.
   std::string lacking() const;
 
-  /// Those of the equations' columns that the criterion looks at: the free parameters with their
-  /// priors for sigma, the identified ones without for indices; then all other unknowns.
+  /// Those of the equations' columns that the criterion looks at: the parameters that are not
+  /// exact, with their priors, for sigma, the identified ones without for indices; then all other
+  /// unknowns.
   const std::vector<int>& columns(Criterion criterion) const;
   Objective objective(Criterion criterion) const;
   /// Whitened rows of each unit, of columns(criterion).
@@ -65,9 +66,9 @@ class PlanSystem {
   Eigen::MatrixXd given_;   ///< whitened rows of what is known beside the units
   Eigen::MatrixXd weight_;  ///< of all columns; without rows: no pose was found
   Eigen::VectorXd tolerance_;
-  Eigen::MatrixXd prior_;  ///< information of the free columns beforehand, each over its tolerance
+  Eigen::MatrixXd prior_;  ///< information of the open columns beforehand, each over its tolerance
   std::vector<double> most_;
-  std::vector<int> free_, identified_;
+  std::vector<int> open_, identified_;
   int parameters_ = 0;
   bool aligned_ = false;
 };

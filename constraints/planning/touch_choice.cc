@@ -8,6 +8,7 @@
 #include <set>
 
 #include "constraints/identifiability/endpoint_sigma.h"
+#include "constraints/identifiability/given_doubt.h"
 #include "constraints/methods/shared/unit_normal.h"
 #include "constraints/planning/better_places.h"
 #include "constraints/planning/detmax.h"
@@ -21,43 +22,85 @@ namespace {
 constexpr double kNoise = 2e-5;          // m, where a set does not say its own
 constexpr double kAngleNoise = 2e-5;     // rad, as well
 constexpr double kLeastVariance = 1e-9;  // of a column's own, in any direction
+constexpr double kLeastSeen = 1e-9;      // of the largest, of a motion that no row sees
 constexpr int kTouchSweeps = 1;          // a session waits for its plan
 constexpr int kJudgedPoses = 300;        // at which the end position is judged
 constexpr unsigned long long kJudgedSeed = 1;
 
-/// What is unknown of a surface or a socket.
+/// What is not known exactly of a surface or a socket.
 struct PlaceUnknowns {
   int column = 0;          ///< first of three
   Eigen::Vector3d normal;  ///< that the plane's unknowns belong to
 };
 
+/// The set whose surface or sockets are those of set `s`.
+int place_of(const std::vector<Set>& sets, int s) {
+  return sets[s].reference < 0 ? s : sets[s].reference;
+}
+
 /// Columns of the surfaces and sockets, after those of the robot.
 class Columns {
  public:
-  Columns(int first, const std::vector<Set>& sets) : next_(first), sets_(sets) {}
+  Columns(int first, const std::vector<Set>& sets) : first_(first), sets_(sets) {}
+
+  /// Takes the columns of the candidate's surface or socket in.
+  void add(const PossibleTouch& candidate) {
+    (void)of(candidate);
+    (void)step_of(candidate);
+  }
 
   /// That of the candidate's surface or socket; two faces that are a known distance apart are one
   /// place, and have one normal though their ways out are opposite.
-  const PlaceUnknowns& of(const PossibleTouch& candidate) {
-    const int reference = sets_[candidate.set].reference;
+  PlaceUnknowns of(const PossibleTouch& candidate) {
+    const int place = place_of(sets_, candidate.set);
     const auto [found, added] =
-        at_.try_emplace({reference < 0 ? candidate.set : reference, candidate.group},
-                        PlaceUnknowns{next_, candidate.outward});
-    if (added) next_ += 3;
+        at_.try_emplace({place, candidate.group}, PlaceUnknowns{end(), candidate.outward});
+    if (added) {
+      const Set& set = sets_[place];
+      const bool known = set.method->place_known();
+      const double turn = known ? std::pow(doubt_of_turn(set), 2) : kPlaceVariance;
+      variances_.insert(variances_.end(), 2, turn);
+      variances_.push_back(known ? of_lengths(set, false) : kPlaceVariance);
+    }
     return found->second;
   }
-  int end() const { return next_; }
+
+  /// That of the step from the face that the candidate's is a known distance from; -1 without.
+  int step_of(const PossibleTouch& candidate) {
+    const Set& set = sets_[candidate.set];
+    if (set.reference < 0 || candidate.group >= 0) return -1;
+    const bool opposite = of(candidate).normal.dot(candidate.outward) < 0;
+    const auto [found, added] = step_.try_emplace(candidate.set, end());
+    if (added) variances_.push_back(of_lengths(set, opposite));
+    return found->second;
+  }
+
+  bool is_step(Eigen::Index column) const {
+    return std::ranges::any_of(step_, [&](const auto& each) { return each.second == column; });
+  }
+  int end() const { return first_ + static_cast<int>(variances_.size()); }
+  /// 1 sigma² of each beforehand.
+  const std::vector<double>& variances() const { return variances_; }
 
  private:
-  int next_;
+  static double of_lengths(const Set& set, bool opposite) {
+    double variance = 0;
+    for (const KnownLength& each : set.method->known_lengths())
+      variance += std::pow(each.sigma, 2) + std::pow(doubt_of_length(set, each, opposite), 2);
+    return variance;
+  }
+
+  int first_;
   const std::vector<Set>& sets_;
+  std::vector<double> variances_;
   std::map<std::pair<int, int>, PlaceUnknowns> at_;
+  std::map<int, int> step_;
 };
 
-/// Rows of a candidate in the unknowns of its surface or socket, and of the robot, whose body moves
-/// with `psi`.
-Eigen::MatrixXd touch_row(const PossibleTouch& each, const PlaceUnknowns& nuisance, int columns,
-                          const Eigen::MatrixXd& psi, const Eigen::Vector3d& p) {
+/// Rows of a candidate in the unknowns of its surface or socket, of the step from another face
+/// (`step`, -1 without), and of the robot, whose body moves with `psi`.
+Eigen::MatrixXd touch_row(const PossibleTouch& each, const PlaceUnknowns& nuisance, int step,
+                          int columns, const Eigen::MatrixXd& psi, const Eigen::Vector3d& p) {
   const bool socket = each.group >= 0;
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(socket ? 3 : 1, columns);
   const Eigen::MatrixXd moves = psi.topRows<3>();
@@ -66,6 +109,7 @@ Eigen::MatrixXd touch_row(const PossibleTouch& each, const PlaceUnknowns& nuisan
     W.middleCols(nuisance.column, 3) = -Eigen::Matrix3d::Identity();
   else
     W.middleCols(nuisance.column, 3) << p.transpose() * tangents(nuisance.normal), -1;
+  if (step >= 0) W(0, step) = -1;
   return W;
 }
 
@@ -87,7 +131,7 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
                                      const std::vector<Set>& sets,
                                      const std::vector<PossibleTouch>& candidates,
                                      Columns& columns) {
-  for (const PossibleTouch& each : candidates) columns.of(each);
+  for (const PossibleTouch& each : candidates) columns.add(each);
   const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
   std::vector<Eigen::MatrixXd> rows;
   ConfigurationBlock block{Eigen::ArrayXXd(kLanes, static_cast<int>(robot.joints().size())), 0};
@@ -110,7 +154,8 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
       if (set.method->planned() == Planned::lock)
         rows.push_back(lock_rows(columns.of(each), columns.end(), moves) / angle_noise(set));
       else
-        rows.push_back(touch_row(each, columns.of(each), columns.end(), moves, X.p(lane)) /
+        rows.push_back(touch_row(each, columns.of(each), columns.step_of(each), columns.end(),
+                                 moves, X.p(lane)) /
                        touch_noise(set));
     }
   }
@@ -118,17 +163,21 @@ std::vector<Eigen::MatrixXd> rows_of(const Robot& robot, const Eigen::VectorXd& 
 }
 
 /// Of each column before any touch, `given` of the robot's parameters (without rows: the makers'
-/// tolerances); zero of what is known.
-Eigen::MatrixXd prior_covariance(const Robot& robot, const Eigen::MatrixXd& given, int columns) {
+/// tolerances); zero of what is known exactly.
+Eigen::MatrixXd prior_covariance(const Robot& robot, const Eigen::MatrixXd& given,
+                                 const Columns& columns) {
   const auto parameters = static_cast<Eigen::Index>(robot.parameters().size());
-  Eigen::MatrixXd C = kPlaceVariance * Eigen::MatrixXd::Identity(columns, columns);
-  if (given.rows() > 0) {
-    C.topLeftCorner(parameters, parameters) = given;
-    return C;
-  }
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(columns.end(), columns.end());
+  if (given.rows() > 0) C.topLeftCorner(parameters, parameters) = given;
   for (Eigen::Index i = 0; i < parameters; ++i) {
     const Parameter& each = robot.parameters()[static_cast<std::size_t>(i)];
-    C(i, i) = each.free ? each.tolerance * each.tolerance : 0;
+    if (!each.free && C(i, i) <= 0) C(i, i) = std::pow(doubt_of_fixed(each), 2);
+    if (each.free && given.rows() == 0) C(i, i) = std::pow(each.tolerance, 2);
+  }
+  Eigen::Index at = parameters;
+  for (const double variance : columns.variances()) {
+    C(at, at) = variance;
+    ++at;
   }
   return C;
 }
@@ -170,28 +219,33 @@ Kinds kinds_of(const std::vector<PossibleTouch>& candidates, const std::vector<i
   return kinds;
 }
 
+/// Ratios that are held and steps between faces: touches hardly differ in what these make of the
+/// end position, and a choice among them is as good, and quicker, with both taken as exact.
+enum class Given { exact, doubted };
+
 /// Designs of touches for the end position, in the columns that are not known; `weight` is of the
 /// robot's parameters.
 class TouchDesigns {
  public:
   TouchDesigns(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                const std::vector<PossibleTouch>& candidates, const KnownBefore& known,
-               const Eigen::MatrixXd& weight)
+               const Eigen::MatrixXd& weight, Given given)
       : robot_(robot),
         xi_(xi),
         sets_(sets),
         columns_(static_cast<int>(robot.parameters().size()), sets) {
-    for (const PossibleTouch& each : candidates) columns_.of(each);
-    for (const PossibleTouch& each : known.made) columns_.of(each);
-    const Eigen::MatrixXd covariance = prior_covariance(robot, known.prior, columns_.end());
+    for (const PossibleTouch& each : candidates) columns_.add(each);
+    for (const PossibleTouch& each : known.made) columns_.add(each);
+    const Eigen::MatrixXd covariance = prior_covariance(robot, known.prior, columns_);
     for (Eigen::Index c = 0; c < covariance.rows(); ++c)
-      if (covariance(c, c) > 0) open_.push_back(c);
+      if (covariance(c, c) > 0 && (given == Given::doubted || !is_given(c))) open_.push_back(c);
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(covariance.rows(), covariance.rows());
     all.topLeftCorner(weight.rows(), weight.cols()) = weight;
     objective_.criterion = Criterion::sigma;
     objective_.prior = inverse_of_covariance(covariance(open_, open_));
     objective_.weight = all(open_, open_);
-    objective_.nuisance = columns_.end() - weight.rows();
+    objective_.nuisance =
+        std::ranges::count_if(open_, [&](Eigen::Index c) { return c >= weight.rows(); });
     for (const Eigen::MatrixXd& W : rows(known.made)) objective_.prior += W.transpose() * W;
   }
 
@@ -206,6 +260,12 @@ class TouchDesigns {
   }
 
  private:
+  bool is_given(Eigen::Index column) const {
+    const auto& parameters = robot_.parameters();
+    const auto at = static_cast<std::size_t>(column);
+    return at < parameters.size() ? !parameters[at].free : columns_.is_step(column);
+  }
+
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
   const std::vector<Set>& sets_;
@@ -222,7 +282,7 @@ Eigen::MatrixXd weight_of(const Robot& robot, const Eigen::VectorXd& xi,
   EndpointQuestion question;
   question.robot = &robot;
   question.xi = xi;
-  question.unseen = Eigen::MatrixXd::Identity(6, 6);
+  question.unseen = unseen_by_touches(robot, xi, sets, candidates);
   question.point_unknown = std::ranges::none_of(
       candidates, [&](const PossibleTouch& each) { return sets[each.set].method->sees_point(); });
   question.poses = judged_poses(robot, xi, workspace);
@@ -292,6 +352,23 @@ Eigen::MatrixXd inverse_of_covariance(const Eigen::MatrixXd& C) {
          by.asDiagonal();
 }
 
+Eigen::MatrixXd unseen_by_touches(const Robot& robot, const Eigen::VectorXd& xi,
+                                  const std::vector<Set>& sets,
+                                  const std::vector<PossibleTouch>& touches) {
+  Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(6, 6);  // of the motions that rows would tell
+  for (const PossibleTouch& each : touches) {
+    if (!sets[place_of(sets, each.set)].method->place_known()) continue;
+    const Eigen::Vector3d p = locate(robot, xi, each.q).p;
+    Eigen::Matrix<double, 6, 1> row;
+    row << each.outward, p.cross(each.outward);
+    seen += row * row.transpose();
+  }
+  const Symmetric eigen = symmetric_eigen(seen);
+  const double least = kLeastSeen * std::max(1.0, eigen.values.maxCoeff());
+  const Eigen::Index unseen = (eigen.values.array() <= least).count();
+  return eigen.vectors.leftCols(unseen);  // the values come in increasing order
+}
+
 double touch_noise(const Set& set) { return set.noise > 0 ? set.noise : kNoise; }
 
 double angle_noise(const Set& set) { return set.noise_angle > 0 ? set.noise_angle : kAngleNoise; }
@@ -305,7 +382,7 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
   if (candidates.empty()) return choice;
   const Kinds kinds = kinds_of(candidates, counts.fit);
   TouchDesigns designs(robot, xi, sets, candidates, known,
-                       weight_of(robot, xi, sets, candidates, workspace));
+                       weight_of(robot, xi, sets, candidates, workspace), Given::exact);
   Design design = designs.of(candidates, kinds.of);
   std::vector<int> wanted = counts.fit;
   choose_one_by_one(design, kinds, wanted, kinds.share);
@@ -333,7 +410,8 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
                                    const std::vector<PossibleTouch>& touches,
                                    const Eigen::MatrixXd& weight, const Progress& progress,
                                    const Eigen::MatrixXd& prior) {
-  Design design = TouchDesigns(robot, xi, sets, touches, {prior, {}}, weight).of(touches, {});
+  Design design =
+      TouchDesigns(robot, xi, sets, touches, {prior, {}}, weight, Given::doubted).of(touches, {});
   std::vector<int> all(touches.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);
@@ -349,7 +427,7 @@ Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const Eigen::MatrixXd& prior) {
   Columns columns(static_cast<int>(robot.parameters().size()), sets);
   const std::vector<Eigen::MatrixXd> rows = rows_of(robot, xi, sets, touches, columns);
-  Eigen::MatrixXd C = prior_covariance(robot, prior, columns.end());
+  Eigen::MatrixXd C = prior_covariance(robot, prior, columns);
   for (const Eigen::MatrixXd& W : rows)
     for (Eigen::Index a = 0; a < W.rows(); ++a) {
       const Eigen::VectorXd gain = C * W.row(a).transpose();

@@ -85,8 +85,15 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
                                    const Eigen::MatrixXd& weight, const Progress& progress = {},
                                    const Eigen::MatrixXd& prior = {});
 
+/// Orthonormal motions of the world (6 x k, shift then turn) that the touches cannot see, for their
+/// places are not given (see gauge.h).
+Eigen::MatrixXd unseen_by_touches(const Robot& robot, const Eigen::VectorXd& xi,
+                                  const std::vector<Set>& sets,
+                                  const std::vector<PossibleTouch>& touches);
+
 /// Covariance of the robot's parameters after the touches, from their priors and each set's noise
-/// (20 um where a set says none); the surfaces and sockets are unknown.
+/// (20 um where a set says none); surfaces and sockets are unknown where they are not given, and
+/// what is given is in doubt (given_doubt.h).
 Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
                                  const std::vector<PossibleTouch>& touches,

@@ -223,7 +223,7 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   question.robot = &robot;
   question.xi = xi;
   question.covariance = covariance_after(robot, xi, sets, touches, prior);
-  question.unseen = Eigen::MatrixXd::Identity(6, 6);
+  question.unseen = unseen_by_touches(robot, xi, sets, touches);
   question.point_unknown = std::ranges::none_of(
       targets, [&](const TouchTarget& each) { return sets[each.set].method->sees_point(); });
   question.poses = random_poses(robot, nullptr, kPoses, kSeed);

@@ -186,17 +186,16 @@ TEST(ConfigurationPlan, GoesOnFromACovarianceAsFromTheRowsThatGaveIt) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
   for (const Eigen::MatrixXd& w : system.equations().of_units(first.data, first.units))
     information += w.leftCols(parameters).transpose() * w.leftCols(parameters);
-  std::vector<int> free;
+  const Eigen::VectorXd tolerance = system.equations().tolerance();
+  std::vector<int> open;
   for (int i = 0; i < static_cast<int>(parameters); ++i)
-    if (robot->parameters()[static_cast<std::size_t>(i)].free) free.push_back(i);
-  Eigen::MatrixXd H = information(free, free);
-  for (std::size_t k = 0; k < free.size(); ++k)
-    H(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
-        std::pow(robot->parameters()[static_cast<std::size_t>(free[k])].tolerance, -2);
+    if (tolerance[i] > 0) open.push_back(i);
+  Eigen::MatrixXd H = information(open, open);
+  H.diagonal() += tolerance(open).cwiseAbs2().cwiseInverse();
   PlanRequest by_rows = request, by_matrix = request;
   by_rows.pool.taken = first.data;
   by_matrix.pool.prior = Eigen::MatrixXd::Zero(parameters, parameters);
-  by_matrix.pool.prior(free, free) = Eigen::MatrixXd(H.inverse());
+  by_matrix.pool.prior(open, open) = Eigen::MatrixXd(H.inverse());
   const double rows = plan_configurations(*robot, values(*robot), by_rows).sigma_before;
   const double matrix = plan_configurations(*robot, values(*robot), by_matrix).sigma_before;
   EXPECT_NEAR(matrix, rows, 1e-3 * rows);

@@ -6,6 +6,7 @@
 
 #include "constraints/equations/equations.h"
 #include "constraints/identifiability/endpoint_sigma.h"
+#include "constraints/identifiability/given_doubt.h"
 #include "constraints/planning/touch_choice.h"
 #include "constraints/sampling/configurations.h"
 #include "constraints/sampling/random_poses.h"
@@ -43,7 +44,9 @@ Eigen::MatrixXd information(const PlannedCell& cell, const std::vector<Eigen::Ve
   for (Eigen::Index i = 0; i < columns; ++i) {
     const bool nuisance = i >= equations.robot_columns();
     const Parameter* each = nuisance ? nullptr : &rx90().parameters()[i];
-    const double sigma = nuisance ? 1 : each->free ? each->tolerance : 1e-9;
+    const double sigma = nuisance     ? 1
+                         : each->free ? each->tolerance
+                                      : std::max(1e-9, doubt_of_fixed(*each));
     A(i, i) += 1 / (sigma * sigma);
   }
   return A;
@@ -132,6 +135,50 @@ TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
   EXPECT_GT(without.endpoint.median, 3 * with.endpoint.median);
   EXPECT_GT(without.workspace.median, 3 * with.workspace.median);
   EXPECT_LT(with.workspace.rms, with.endpoint.rms);
+}
+
+TEST(TouchPlan, KnowsAPlaneThatIsGivenAsFarAsItIsBelieved) {
+  PlannedCell cell = table_and_wall(20);
+  cell.options.check = 0;
+  const TouchPlan plan = cell.plan();
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<int> set;
+  std::vector<PossibleTouch> touches;
+  for (const PlannedTouch& each : plan.touches) {
+    rows.push_back(each.touch);
+    set.push_back(each.set);
+    touches.push_back({each.touch, each.set, -1, cell.targets[each.set].outward});
+  }
+  const auto expected = [&] {
+    return covariance_after(rx90(), values(rx90()), cell.sets, touches);
+  };
+  const auto unseen = [&] {
+    return unseen_by_touches(rx90(), values(rx90()), cell.sets, touches).cols();
+  };
+  const Eigen::MatrixXd unknown = expected();
+  EXPECT_EQ(unseen(), 6);
+  Problems problems;
+  Node entry = Node::map();
+  entry.set("method", Node::of(std::string("plane")));
+  // a x + b y + c z + 1 = 0 of the table, z = 0.15 m
+  entry.set("plane", Node::of(std::vector<double>{0, 0, -1 / 0.15}));
+  cell.sets[0].method = make_set(cell.sets[0].name, entry, problems).method;
+  ASSERT_FALSE(problems.any());
+  EXPECT_EQ(unseen(), 3);  // a table places the robot's height and tilt
+  cell.sets[0].given = {0, 0, 0};
+  const Eigen::MatrixXd exact = information(cell, rows, set).inverse(), told = expected();
+  cell.sets[0].given = {1e-3, 1e-3, 0};
+  const Eigen::MatrixXd doubted = expected();
+  double better = 0;
+  for (Eigen::Index i = 0; i < told.rows(); ++i) {
+    const Parameter& each = rx90().parameters()[i];
+    if (!each.free) continue;
+    EXPECT_NEAR(std::sqrt(told(i, i) / exact(i, i)), 1, 1e-3) << each.name;
+    EXPECT_LE(told(i, i), 1.000001 * doubted(i, i)) << each.name;
+    EXPECT_LE(doubted(i, i), 1.000001 * unknown(i, i)) << each.name;
+    better = std::max(better, doubted(i, i) / told(i, i));
+  }
+  EXPECT_GT(better, 1.1);
 }
 
 TEST(TouchPlan, IsGivenUpWhileItsTouchesAreExchanged) {
