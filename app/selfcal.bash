@@ -24,7 +24,7 @@ _selfcal() {
     *:plan) words="--method --separate --step --unknown --lock --count --candidates --criterion --workspace --start --prior --further --spacing --longest --groups --noise --noise-angle --speed --target --seed --out --json --help" ;;
     *:simulate) words="--out --live --touches --truth --help" ;;
     2:robot) words="check convert --help" ;;
-    *:robot) words="--convention --base --tip --to --like --out --help" ;;
+    *:robot) words="--convention --base --tip --fixed --to --like --out --help" ;;
     2:data) words="check --help" ;;
     *:data) words="--help" ;;
     *:serve) words="--check --simulate --sessions --truth --log --help" ;;

@@ -86,6 +86,8 @@ int convert(const ConvertArguments& arguments) {
       (arguments.to == "urdf" || arguments.to == "mjcf") && !arguments.like.empty();
   if (ends && !looks_like_xml(*text) && !like_model)
     return wrong_usage("--base and --tip choose a chain of a URDF, and there is none");
+  if (!arguments.fixed.empty() && !is_urdf(*text))
+    return wrong_usage("--fixed is of the fixed joints of a URDF, and there is none");
   const auto robot = as_robot_file(*text, arguments);
   if (!robot) return tell(robot.error());
   const auto made = converted(*robot, arguments);
@@ -119,6 +121,11 @@ void add_robot_convert(CLI::App& robot, int& status) {
   command->add_option("--tip", arguments->ends.tip,
                       "Link of the URDF, or site or body of the model, that the chain ends at "
                       "(default: the only one)");
+  command
+      ->add_option("--fixed", arguments->fixed,
+                   "Fixed joints of the URDF: merge them into the frames beside them (default), or "
+                   "keep each as a whole pose, which a calibration may correct by itself")
+      ->check(CLI::IsMember({"merge", "keep"}));
   command
       ->add_option("--to", arguments->to,
                    "yaml: a robot file; urdf; mjcf: a model for MuJoCo; for controllers offsets: "

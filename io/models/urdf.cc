@@ -66,6 +66,7 @@ class Reduction {
                        found_.ends.base + "' and '" + found_.ends.tip + "'");
     chain().name = name_for(model_.getName());
     chain().X_WT = pose_in_base(found_.ends.tip);
+    name_fixed_joints();
     if (auto mimicked = add_mimicries(); !mimicked) return tl::unexpected(mimicked.error());
     add_masses();
     return std::move(found_);
@@ -144,7 +145,12 @@ class Reduction {
   Result<void> add(const urdf::Joint& joint, bool reversed) {
     const Isometry3d X_WC = pose_in_base(joint.child_link_name);
     found_.steps.push_back({joint.name, moves(joint), reversed, X_WC});
-    if (!moves(joint)) return {};
+    if (!moves(joint)) {
+      const Isometry3d far =
+          pose_in_base(reversed ? joint.parent_link_name : joint.child_link_name);
+      chain().fixed.push_back({name_for(joint.name), moving_.size(), far});
+      return {};
+    }
     const bool turns = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
     if (!turns && joint.type != urdf::Joint::PRISMATIC)
       return bad_input(place_of_joint(joint.name) + ": joint '" + joint.name +
@@ -166,6 +172,12 @@ class Reduction {
     chain().joints.push_back(added);
     moving_.push_back(&joint);
     return {};
+  }
+
+  /// After the moving joints, so that these keep their names.
+  void name_fixed_joints() {
+    for (FixedJoint& joint : chain().fixed)
+      while (!names_.insert(joint.name).second) joint.name += "_";
   }
 
   void add_limits(const urdf::Joint& joint, bool turns, ChainJoint& added) {

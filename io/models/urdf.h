@@ -26,7 +26,7 @@ struct UrdfStep {
 };
 
 struct UrdfChain {
-  JointChain chain;                  ///< W is the base, T the tip
+  JointChain chain;                  ///< W is the base, T the tip; with the fixed joints
   std::vector<UrdfStep> steps;       ///< from the base to the tip
   UrdfEnds ends;                     ///< as found
   std::vector<std::string> notices;  ///< what a person should know

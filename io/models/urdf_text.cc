@@ -64,15 +64,10 @@ bool unmoved(const Isometry3d& a, const Isometry3d& b) {
 std::vector<Isometry3d> corrected_links(const UrdfChain& read, const CorrectedChain& corrected,
                                         std::vector<std::string>& left_out) {
   std::vector<Isometry3d> poses;
-  Isometry3d moved = corrected.base;  // what carries the link, from where it was to where it is
-  size_t joint = 0;
-  for (const UrdfStep& step : read.steps) {
-    if (step.moves) {
-      const Isometry3d& X = corrected.chain.joints[joint++].X_WJ;
-      moved = X * step.X_WC.inverse();
-    }
-    poses.push_back(moved * step.X_WC);
-  }
+  size_t joint = 0, fixed = 0;
+  for (const UrdfStep& step : read.steps)
+    poses.push_back(step.moves ? corrected.chain.joints[joint++].X_WJ
+                               : corrected.chain.fixed[fixed++].X_WF);
   if (!read.steps.back().moves)
     poses.back() = corrected.chain.X_WT;
   else if (!unmoved(poses.back(), corrected.chain.X_WT))

@@ -111,9 +111,10 @@ Frame whole_pose(const std::string& name, const Isometry3d& X) {
   return frame;
 }
 
-/// `name`, or one like it that no joint has.
-std::string free_name(std::string name, const JointChain& chain) {
-  while (std::ranges::find(chain.joints, name, &ChainJoint::name) != chain.joints.end())
+/// `name`, or one like it that no frame has.
+std::string free_name(std::string name, const serial::Model& model, const JointChain& chain) {
+  while (std::ranges::find(chain.joints, name, &ChainJoint::name) != chain.joints.end() ||
+         std::ranges::find(model.frames, name, &Frame::name) != model.frames.end())
     name += "_";
   return name;
 }
@@ -124,14 +125,57 @@ void add_mimicry(const JointChain& chain, serial::Model& model) {
   if (std::ranges::none_of(chain.joints, &mimics)) return;
   const Coupling coupling = coupling_of(chain);
   model.coupling = coupling.matrix;
+  const std::vector<int> moving = serial::moving_frames(model);
   for (size_t j = 0; j < chain.joints.size(); ++j) {
-    Frame& frame = model.frames[j + 1];  // after the base
+    Frame& frame = model.frames[moving[j]];
     frame.value[frame.motion == serial::Motion::revolute ? serial::kTheta : serial::kR] +=
         coupling.offset[static_cast<Eigen::Index>(j)];
     if (!mimics(chain.joints[j])) continue;
     frame.lower = -kStill;
     frame.upper = kStill;
   }
+}
+
+/// One frame of the robot to be: a moving joint, or a fixed one that is kept.
+struct Station {
+  const ChainJoint* joint = nullptr;  ///< none: fixed
+  std::string name;
+  Isometry3d own;  ///< z along the axis
+  AxisLine line() const { return {own.translation(), own.linear().col(2)}; }
+};
+
+std::vector<Station> stations_of(const JointChain& chain, FixedJoints fixed) {
+  std::vector<Station> stations;
+  auto next = chain.fixed.begin();
+  const auto end = fixed == FixedJoints::kept ? chain.fixed.end() : next;
+  for (size_t j = 0; j <= chain.joints.size(); ++j) {
+    for (; next != end && next->behind <= j; ++next)
+      stations.push_back({nullptr, next->name, next->X_WF});
+    if (j == chain.joints.size()) break;
+    const ChainJoint& joint = chain.joints[j];
+    stations.push_back({&joint, joint.name, axis_frame(joint)});
+  }
+  return stations;
+}
+
+/// A frame that stands at `at` and follows F, by way of A, which `leading` leads to, where it
+/// moves.
+Frame frame_at(const Station& here, const Stand& at, const Isometry3d& F, const Isometry3d& A,
+               const Frame& leading) {
+  if (!here.joint) {
+    const Vector3d z = here.line().z;
+    Isometry3d X = Isometry3d::Identity();
+    X.linear() << at.x, z.cross(at.x), z;
+    X.translation() = at.o;
+    return whole_pose(here.name, F.inverse() * X);
+  }
+  Frame frame = named_frame(here.name, here.joint->motion);
+  frame.value = leading.value;
+  turn_on(A, at, frame);
+  frame.lower = here.joint->lower;
+  frame.upper = here.joint->upper;
+  frame.mass = here.joint->mass;
+  return frame;
 }
 
 }  // namespace
@@ -163,38 +207,39 @@ Coupling coupling_of(const JointChain& chain) {
   return coupling;
 }
 
-serial::Model frames_of(const JointChain& chain) {
+serial::Model frames_of(const JointChain& chain, FixedJoints fixed) {
   expects(!chain.joints.empty(), "a chain has a joint");
   serial::Model model;
   model.name = chain.name;
-  model.frames.push_back(whole_pose(free_name("base", chain), axis_frame(chain.joints.front())));
-  const auto line = [&](size_t j) {
-    const Isometry3d X = axis_frame(chain.joints[j]);
-    return AxisLine{X.translation(), X.linear().col(2)};
-  };
-  Isometry3d A = serial::pose_in_parent(model.frames.front(), 0), F = A;
+  const std::vector<Station> stations = stations_of(chain, fixed);
+  Isometry3d F = Isometry3d::Identity();
+  if (stations.front().joint) {
+    model.frames.push_back(whole_pose(free_name("base", model, chain), stations.front().own));
+    F = serial::pose_in_parent(model.frames.front(), 0);
+  }
+  Isometry3d A = F;
   Frame leading = named_frame("", serial::Motion::fixed);
-  for (size_t j = 0; j < chain.joints.size(); ++j) {
-    const ChainJoint& joint = chain.joints[j];
-    Frame frame = named_frame(joint.name, joint.motion);
-    frame.value = leading.value;
-    const bool last = j + 1 == chain.joints.size();
-    const Isometry3d own = axis_frame(joint);
-    const Stand at = last ? Stand{own.translation(), own.linear().col(0)}
-                          : stand(line(j), line(j + 1), A, joint.x.value_or(A.linear().col(0)));
-    turn_on(A, at, frame);
+  for (size_t i = 0; i < stations.size(); ++i) {
+    const Station& here = stations[i];
+    const Station* next =
+        i + 1 < stations.size() && stations[i + 1].joint ? &stations[i + 1] : nullptr;
+    if (!here.joint) A = here.own;
+    const Vector3d before = A.linear().col(0);
+    const Stand at = next ? stand(here.line(), next->line(), A,
+                                  here.joint ? here.joint->x.value_or(before) : before)
+                          : Stand{here.own.translation(), here.own.linear().col(0)};
+    Frame frame = frame_at(here, at, F, A, leading);
     F = F * serial::pose_in_parent(frame, 0);
-    frame.lower = joint.lower;
-    frame.upper = joint.upper;
-    frame.mass = joint.mass;
-    if (joint.mass) frame.com = (F.inverse() * (joint.X_WJ * joint.com)).unaryExpr(&rounded_length);
+    if (frame.mass)
+      frame.com = (F.inverse() * (here.joint->X_WJ * here.joint->com)).unaryExpr(&rounded_length);
     model.frames.push_back(frame);
-    if (last) break;
+    if (!next) continue;
     leading.value.setZero();
-    lead_on(F, line(j + 1), at.parallel, leading);
+    lead_on(F, next->line(), at.parallel, leading);
     A = F * serial::pose_in_parent(leading, 0);
   }
-  model.frames.push_back(whole_pose(free_name("tool", chain), F.inverse() * chain.X_WT));
+  if (stations.back().joint)
+    model.frames.push_back(whole_pose(free_name("tool", model, chain), F.inverse() * chain.X_WT));
   add_mimicry(chain, model);
   for (Frame& frame : model.frames) frame.nominal = frame.value;
   return model;

@@ -22,10 +22,11 @@ serial::Model as_made(serial::Model model) {
   return model;
 }
 
-/// Poses of the base, of each joint's frame and of the tool's end; joints at `variables`.
+/// Poses of the base, of each frame and of the tool's end; joints at `variables`.
 struct Placement {
   Isometry3d base = Isometry3d::Identity();
   std::vector<Isometry3d> joints;
+  std::vector<FixedJoint> fixed;             ///< every frame that does not move
   Isometry3d tool = Isometry3d::Identity();  ///< in the last joint's frame
 };
 
@@ -37,7 +38,10 @@ Placement place(const serial::Model& model, const Eigen::VectorXd& variables) {
     const auto joint = static_cast<Eigen::Index>(at.joints.size());
     if (moves && joint == 0) at.base = X;
     X = X * serial::pose_in_parent(frame, moves ? variables[joint] : 0);
-    if (moves) at.joints.push_back(X);
+    if (moves)
+      at.joints.push_back(X);
+    else
+      at.fixed.push_back({frame.name, at.joints.size(), X});
   }
   at.tool = at.joints.back().inverse() * X;
   return at;
@@ -107,6 +111,23 @@ std::string unlike(const JointChain& chain, const serial::Model& robot) {
   return {};
 }
 
+/// The fixed joints of the chain, each carried along by the joint before it, or where the robot's
+/// own frame of that name stands.
+void correct_fixed(const JointChain& original, const Placement& made, const Placement& now,
+                   const Isometry3d& X_WR, CorrectedChain& corrected) {
+  for (FixedJoint& joint : corrected.chain.fixed) {
+    const Isometry3d X_WF = joint.X_WF;
+    const size_t j = joint.behind;
+    joint.X_WF =
+        j == 0 ? corrected.base * X_WF
+               : corrected.chain.joints[j - 1].X_WJ * original.joints[j - 1].X_WJ.inverse() * X_WF;
+    for (size_t f = 0; f < made.fixed.size(); ++f)
+      if (made.fixed[f].name == joint.name && made.fixed[f].behind == j)
+        joint.X_WF =
+            X_WR * now.fixed[f].X_WF * made.fixed[f].X_WF.inverse() * X_WR.inverse() * X_WF;
+  }
+}
+
 }  // namespace
 
 CorrectedChain corrected_chain(const JointChain& original, const serial::Model& robot) {
@@ -126,6 +147,8 @@ CorrectedChain corrected_chain(const JointChain& original, const serial::Model& 
       corrected.left_out.push_back("the base, which is another than the chain's: " +
                                    size_of(made.base.inverse() * now.base));
     for (Isometry3d& X : now.joints) X = back * X;
+    for (size_t f = 0; f < now.fixed.size(); ++f)
+      now.fixed[f].X_WF = now.fixed[f].behind == 0 ? made.fixed[f].X_WF : back * now.fixed[f].X_WF;
     now.base = made.base;
   }
   if (found.off > kSameAxis) {
@@ -143,7 +166,11 @@ CorrectedChain corrected_chain(const JointChain& original, const serial::Model& 
   if (!same_tool && difference(made.tool, now.tool) > 0)
     corrected.left_out.push_back("the tool, which is another than the chain's end: " +
                                  size_of(made.tool.inverse() * now.tool));
+  for (size_t f = 0; !same_tool && f < now.fixed.size(); ++f)
+    if (now.fixed[f].behind == original.joints.size())
+      now.fixed[f].X_WF = now.joints.back() * made.joints.back().inverse() * made.fixed[f].X_WF;
   corrected.chain.X_WT = X_WN * (same_tool ? now.tool : end);
+  correct_fixed(original, made, now, found.X_WR, corrected);
   return corrected;
 }
 

@@ -35,20 +35,34 @@ struct ChainJoint {
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< m, of this mass, in J
 };
 
+/// A fixed joint of the chain, which a robot file may merge or keep.
+struct FixedJoint {
+  std::string name;                                        ///< that of no other
+  size_t behind = 0;                                       ///< how many moving joints are before it
+  Eigen::Isometry3d X_WF = Eigen::Isometry3d::Identity();  ///< with all joints at zero
+};
+
 struct JointChain {
   std::string name;
-  std::vector<ChainJoint> joints;                          ///< from the base on
+  std::vector<ChainJoint> joints;  ///< from the base on
+  std::vector<FixedJoint> fixed;   ///< likewise; the last of those behind the last joint is T
   Eigen::Isometry3d X_WT = Eigen::Isometry3d::Identity();  ///< with all joints at zero
 };
 
 /// The frame whose z axis is the joint's: J itself where its axis is z.
 Eigen::Isometry3d axis_frame(const ChainJoint& joint);
 
+/// What becomes of fixed joints: part of the frames before and behind them, or a whole pose each.
+enum class FixedJoints { merged, kept };
+
 /// The chain in the frames of a serial robot: the base and the tool as whole poses, a frame for
 /// each joint by the common normals of neighbouring axes, by Hayati's parameter where these are
-/// parallel within kParallel. Angles within 1e-10 of quarter turns and lengths within 1e-11 of zero
-/// are these. The chain has a joint, and no mimicry leads to itself.
-serial::Model frames_of(const JointChain& chain);
+/// parallel within kParallel. A fixed joint that is kept is a whole pose: F as the chain has it,
+/// but for a turn about its z and a shift along it where a moving joint follows; those before the
+/// first joint and behind the last stand for the base and for the tool. Angles within 1e-10 of
+/// quarter turns and lengths within 1e-11 of zero are these. The chain has a joint, and no mimicry
+/// leads to itself.
+serial::Model frames_of(const JointChain& chain, FixedJoints fixed = FixedJoints::merged);
 
 /// What mimicry adds to the joint variables: coupling · readings + offset. The identity and zeros
 /// where no joint mimics.

@@ -76,10 +76,11 @@ TEST(CalibratedUrdf, PutsTheTipWhereTheCalibratedRobotHasIt) {
   std::mt19937_64 random(11);
   const auto read = read_urdf(kArm, "arm.urdf", {});
   ASSERT_TRUE(read) << read.error().what;
-  const auto nominal = robot_of(robot_file_of(*read), "nominal.yaml");
-  ASSERT_TRUE(nominal);
   PoseGap worst;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 40; ++i) {
+    const FixedJoints fixed = i % 2 == 0 ? FixedJoints::merged : FixedJoints::kept;
+    const auto nominal = robot_of(robot_file_of(*read, fixed), "nominal.yaml");
+    ASSERT_TRUE(nominal);
     const std::string text = robot_text(**nominal, moved_values(**nominal, random));
     const auto robot = robot_of(text, "calibrated.yaml");
     ASSERT_TRUE(robot);
@@ -97,6 +98,31 @@ TEST(CalibratedUrdf, PutsTheTipWhereTheCalibratedRobotHasIt) {
   EXPECT_LT(worst.length, kAsGood);
   EXPECT_LT(worst.angle, kAsGood);
   std::printf("calibrated URDF: %.1e m, %.1e rad at most\n", worst.length, worst.angle);
+}
+
+/// The URDF with what moved one frame of the robot that keeps its fixed joints.
+std::string urdf_with_moved(const std::string& frame, int field, double by) {
+  const auto read = read_urdf(kArm, "arm.urdf", {});
+  serial::Model model = frames_of(read->chain, FixedJoints::kept);
+  const auto moved = std::ranges::find(model.frames, frame, &serial::Frame::name);
+  Eigen::VectorXd value = moved->value;
+  value[field] += by;
+  serial::set_values(*moved, value);
+  return urdf_like(kArm, "arm.urdf", *read, corrected_chain(read->chain, model))->text;
+}
+
+TEST(CalibratedUrdf, CorrectsAFixedJointInItsOwnOrigin) {
+  const auto origin = [](const std::string& text, const std::string& joint) {
+    return urdf::parseURDF(text)->getJoint(joint)->parent_to_joint_origin_transform.position;
+  };
+  for (const std::string frame : {"stand", "weld", "end"}) {
+    const std::string made = urdf_with_moved(frame, serial::kZ, 0.002);
+    for (const std::string joint : {"stand", "j1", "j2", "j3", "weld", "j4", "j5", "end"}) {
+      const urdf::Vector3 before = origin(kArm, joint), after = origin(made, joint);
+      const double moved = std::hypot(after.x - before.x, after.y - before.y, after.z - before.z);
+      EXPECT_NEAR(moved, joint == frame ? 0.002 : 0, kAsGood) << frame << " " << joint;
+    }
+  }
 }
 
 TEST(CalibratedUrdf, KeepsTheOriginsThatNothingMoves) {

@@ -143,6 +143,43 @@ TEST(Urdf, HasTheLocationsOfUrdfdomOnWhatOthersWrote) {
               worst.angle);
 }
 
+TEST(Urdf, KeepsFixedJointsAsWholePosesUnderTheirNames) {
+  const auto read = read_urdf(every_case(), "robot.urdf", {});
+  ASSERT_TRUE(read);
+  const serial::Model model = frames_of(read->chain, FixedJoints::kept);
+  std::vector<std::string> names;
+  for (const serial::Frame& frame : model.frames) {
+    names.push_back(frame.name);
+    EXPECT_EQ(frame.whole, frame.motion == serial::Motion::fixed) << frame.name;
+  }
+  EXPECT_THAT(names, testing::ElementsAre("j1", "j2", "j3", "j4", "j5", "j6", "j7", "j8", "j9",
+                                          "j10", "j11"));
+  // Where a joint follows, the link's frame turned about its z and shifted along it.
+  const auto theirs = urdf::parseURDF(every_case());
+  const auto at = serial::frame_poses(model, Eigen::VectorXd::Zero(8));
+  for (const int frame : {0, 5, 10}) {
+    const Eigen::Isometry3d link = urdf_pose(*theirs, "l" + std::to_string(frame + 1), {});
+    const Eigen::Isometry3d apart = link.inverse() * at[static_cast<size_t>(frame)];
+    EXPECT_LT((apart.linear().col(2) - Eigen::Vector3d::UnitZ()).norm(), kSame) << frame;
+    EXPECT_LT(apart.translation().head<2>().norm(), kSame) << frame;
+  }
+}
+
+TEST(Urdf, NamesAFixedJointLikeNoOther) {
+  std::string text = every_case();
+  const auto renamed = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find("<joint name='" + from + "'"), 13 + from.size() + 1,
+                 "<joint name='" + to + "'");
+  };
+  renamed("j1", "a b");
+  renamed("j6", "a_b");
+  const auto read = read_urdf(text, "robot.urdf", {});
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->chain.fixed.size(), 3u);
+  EXPECT_EQ(read->chain.fixed[0].name, "a_b");
+  EXPECT_EQ(read->chain.fixed[1].name, "a_b_");
+}
+
 TEST(Urdf, OfAUr10eIsItsMakersDhTable) {
   // ur_description's default_kinematics of the UR10e; the maker's table has alpha pi/2, 0, 0, pi/2,
   // -pi/2, 0, a 0, -0.6127, -0.57155, 0, 0, 0 and d 0.1807, 0, 0, 0.17415, 0.11985, 0.11655.

@@ -70,23 +70,26 @@ inline Eigen::Isometry3d pose_of(const Location& location) {
 }
 
 /// The robot file that the URDF's chain comes to.
-inline std::string robot_file_of(const UrdfChain& chain) {
-  return write_yaml(serial::write(frames_of(chain.chain)));
+inline std::string robot_file_of(const UrdfChain& chain, FixedJoints fixed = FixedJoints::merged) {
+  return write_yaml(serial::write(frames_of(chain.chain, fixed)));
 }
 
-/// Largest difference at `poses` random positions (up to 2 rad or m), the tip in the base.
+/// Largest difference at `poses` random positions (up to 2 rad or m), the tip in the base, of the
+/// robots with the fixed joints merged and kept.
 inline PoseGap gap_of_urdf(const std::string& text, const UrdfEnds& ends, int poses,
                            std::mt19937_64& random) {
   PoseGap gap;
   const auto chain = read_urdf(text, "robot.urdf", ends);
   EXPECT_TRUE(chain) << (chain ? "" : chain.error().what);
   if (!chain) return gap;
-  const auto robot = robot_of(robot_file_of(*chain), "robot.yaml");
-  EXPECT_TRUE(robot) << (robot ? "" : robot.error().what);
-  if (!robot) return gap;
+  const auto merged = robot_of(robot_file_of(*chain), "merged.yaml");
+  const auto kept = robot_of(robot_file_of(*chain, FixedJoints::kept), "kept.yaml");
+  EXPECT_TRUE(merged) << (merged ? "" : merged.error().what);
+  EXPECT_TRUE(kept) << (kept ? "" : kept.error().what);
+  if (!merged || !kept) return gap;
   const auto model = urdf::parseURDF(text);
   std::uniform_real_distribution<double> uniform(-2, 2);
-  const auto n = static_cast<Eigen::Index>((*robot)->joints().size());
+  const auto n = static_cast<Eigen::Index>((*merged)->joints().size());
   for (int i = 0; i < poses; ++i) {
     UrdfPositions q;
     Eigen::VectorXd readings = Eigen::VectorXd::Zero(n);
@@ -98,7 +101,8 @@ inline PoseGap gap_of_urdf(const std::string& text, const UrdfEnds& ends, int po
     }
     const Eigen::Isometry3d theirs =
         urdf_pose(*model, chain->ends.base, q).inverse() * urdf_pose(*model, chain->ends.tip, q);
-    gap.add(theirs, pose_of(locate(**robot, values(**robot), readings)));
+    for (const Robot* robot : {merged->get(), kept->get()})
+      gap.add(theirs, pose_of(locate(*robot, values(*robot), readings)));
   }
   return gap;
 }

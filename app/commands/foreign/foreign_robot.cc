@@ -24,7 +24,8 @@ Result<std::string> robot_file(const std::string& text, const std::string& origi
 
 Result<std::string> chain_file(const JointChain& chain, const std::string& origin,
                                const ForeignRobot& foreign) {
-  return robot_file(write_yaml(serial::write(frames_of(chain))), origin, foreign);
+  const FixedJoints fixed = foreign.fixed == "keep" ? FixedJoints::kept : FixedJoints::merged;
+  return robot_file(write_yaml(serial::write(frames_of(chain, fixed))), origin, foreign);
 }
 
 /// A model of MuJoCo's own, which its first element tells.
@@ -98,11 +99,14 @@ Result<std::string> from_urdf(const std::string& text, const ForeignRobot& forei
 
 void note(const std::string& what) { std::fprintf(stderr, "selfcal: note: %s\n", what.c_str()); }
 
+bool is_urdf(const std::string& text) { return looks_like_xml(text) && !is_mjcf(text); }
+
 bool is_table(const std::string& file) { return file.ends_with(".csv"); }
 
 Result<std::string> as_robot_file(const std::string& text, const ForeignRobot& foreign) {
   if (is_table(foreign.file)) return from_table(foreign);
-  if (looks_like_xml(text)) return is_mjcf(text) ? from_mjcf(foreign) : from_urdf(text, foreign);
+  if (is_urdf(text)) return from_urdf(text, foreign);
+  if (is_mjcf(text)) return from_mjcf(foreign);
   if (should_be_xml(foreign.file))
     return bad_input(foreign.file + ":1: no XML, which a URDF and a model for MuJoCo are");
   if (is_ur_kinematics(text, foreign)) return from_ur(text, foreign);

@@ -13,10 +13,14 @@ struct ForeignRobot {
   std::string file;
   std::string convention;  ///< of a table: standard or modified
   UrdfEnds ends;           ///< of a URDF or a model for MuJoCo
+  std::string fixed;       ///< of a URDF: merge or keep its fixed joints
 };
 
 /// A table of Denavit and Hartenberg's numbers, by its name.
 bool is_table(const std::string& file);
+
+/// Whether `text` is a URDF, and no other XML.
+bool is_urdf(const std::string& text);
 
 /// The robot file that `text`, which the file holds, comes to: a URDF, a model for MuJoCo,
 /// Universal Robots' kinematics, a table or a robot file. What they leave out is noted on standard
