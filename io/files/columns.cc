@@ -189,7 +189,10 @@ std::optional<RowFault> check_joint_columns(const Layout& layout, int joints) {
   }
   for (int joint = 1; joint <= joints; ++joint) {
     const std::string name = "q" + std::to_string(joint);
-    if (!layout.find(name)) return RowFault{"column '" + name + "' is missing: " + robot_has};
+    if (!layout.find(name))
+      return RowFault{"column '" + name + "' is missing: " + robot_has +
+                      "; what the file calls it, dataset.yaml says: columns: {" + name +
+                      ": HEADER [deg]}"};
   }
   return std::nullopt;
 }

@@ -60,6 +60,24 @@ TEST_F(RobotConvert, TakesAUrdfThereAndBack) {
   EXPECT_THAT(again.out, HasSubstr("d: 0.151, "));
 }
 
+TEST_F(RobotConvert, KeepsAFixedJointAndWritesWhatMovedItIntoItsOwnOrigin) {
+  const Ran there = convert("arm.urdf", kArmUrdf,
+                            "--tip tool0 --fixed keep --out " + in_folder("arm.robot.yaml"));
+  ASSERT_EQ(there.status, 0) << there.out;
+  std::string robot = text_of(in_folder("arm.robot.yaml"));
+  EXPECT_THAT(robot, HasSubstr("{name: flange, joint: fixed, xyz: [0.4, 0, 0]"));
+  replace(robot, "{name: weld, joint: fixed, xyz: [0.1, 0, 0], ",
+          "{name: weld, joint: fixed, xyz: [0.1, 0, 0.002], nominal: {xyz: [0.1, 0, 0]}, ");
+  const Ran back = convert("calibrated.robot.yaml", robot,
+                           "--to urdf --like " + in_folder("arm.urdf") + " --tip tool0");
+  ASSERT_EQ(back.status, 0) << back.out;
+  EXPECT_THAT(back.out, HasSubstr("xyz=\"0.1 0 0.002\""));
+  EXPECT_THAT(back.out, HasSubstr("xyz=\"0.05 0 0\""));
+  const Ran none = convert("calibrated.robot.yaml", robot, "--fixed keep");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.out, HasSubstr("--fixed is of the fixed joints of a URDF"));
+}
+
 TEST_F(RobotConvert, SaysWhatIsWrong) {
   EXPECT_THAT(convert("arm.urdf", kArmUrdf).out,
               HasSubstr("arm.urdf: has 2 ends: camera, tool0; choose one with --tip"));
