@@ -47,7 +47,8 @@ struct DiagnosisConstants {
   };
   struct Evidence {
     double right_sign = 0.95;  ///< prior, of the sign that physics allows; 0.5 to 1 [trials]
-    /// Share that survives below which a candidate says nothing; 1e-6 to 0.02 [habit]
+    /// Share beyond the nuisance parameters below which a candidate says nothing; 1e-6 to 0.02
+    /// [habit]
     double least_seen = 1e-3;
     int agreements = 3;             ///< rounds of noise and structure; 1 to 10 [cost]
     double worthwhile = 5;          ///< log evidence that a cause must bring; 2 to 10 [habit]
@@ -86,16 +87,17 @@ struct DiagnosisConstants {
     double least_p = 1e-6;            ///< that a tail is believed; 1e-9 to 1e-4 [habit]
   };
   /// Sessions that are simulated over the rows.
-  struct Practice {
+  struct Simulation {
     double with_none = 0.25, with_unknown = 0.15;  ///< shares of them; 0 to 0.5 [trials]
     /// Such a session has one cause: few pairs are as probable; 0 to 14 [cost]
     int extended_singles = 4;
     std::array<double, 3> visible = {0.5, 1.0, 2.0};  ///< over the noise; 0.25 to 4 [trials]
-    /// Share that survives below which calibration absorbs a cause; 0.02 to 0.3 [trials]
-    double least_survival = 0.15;
+    /// Share beyond the nuisance parameters below which calibration absorbs a cause; 0.02 to 0.3
+    /// [trials]
+    double least_beyond_nuisance = 0.15;
   };
-  /// How far the gap closes.
-  struct Closing {
+  /// Of a correction, on rows that were held out.
+  struct Validation {
     int passes = 4;                 ///< of growth and noise; 1 to 10 [cost]
     std::size_t most_effects = 60;  ///< 20 to 100 [cost]
     double most_grown = 2100;       ///< equations; 720 to 10000 [cost]
@@ -103,7 +105,7 @@ struct DiagnosisConstants {
     int most_tried = 4;   ///< 0 to 10 [cost]
     /// Probability that noise stays below; 1 - 1e-4 to 1 - 1e-8 [habit]
     double far = 1 - 1e-6;
-    /// A judging row's prediction has an error of its own; 1 to 2 [physics]
+    /// A validation row's prediction has an error of its own; 1 to 2 [physics]
     double beyond = 1.25;
     int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
     /// Before over floor below which nothing can be said; 1 to 1.2 [habit]
@@ -112,8 +114,8 @@ struct DiagnosisConstants {
   /// What a person is told.
   struct Report {
     int regions = 6, times = 6;  ///< 2 to 20 [habit]
-    /// Share that survives below which nothing can be said; 1e-3 to 0.1 [trials]
-    double least_survival = 0.02;
+    /// Share beyond the nuisance parameters below which nothing can be said; 1e-3 to 0.1 [trials]
+    double least_beyond_nuisance = 0.02;
     /// Of the usual largest, by two sigma: what is larger is no usual cause; 2 to 10 [physics]
     double far_beyond = 3;
     double beside = 0.5;     ///< least probability that is told beside the unknown [habit]
@@ -145,8 +147,8 @@ struct DiagnosisConstants {
   Evidence evidence;
   Shapes shapes;
   Naming naming;
-  Practice practice;
-  Closing closing;
+  Simulation simulation;
+  Validation validation;
   Report report;
 };
 

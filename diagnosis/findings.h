@@ -10,10 +10,11 @@
 #include "constraints/estimation/options.h"
 #include "constraints/methods/observations.h"
 #include "constraints/solution.h"
-#include "diagnosis/evidence/search.h"
+#include "diagnosis/evidence/hypothesis.h"
 #include "diagnosis/options.h"
 #include "diagnosis/validation/correction.h"
 #include "diagnosis/validation/gap.h"
+#include "kinematics/suppositions.h"
 
 namespace selfcal {
 
@@ -32,10 +33,11 @@ struct CauseResult {
   std::string effect;
   std::vector<std::string> where = {};
   double probability = 0;
-  double together = 0;   ///< of the verdict: with the known causes that cannot be told from it
-  double survival = 0;   ///< share of it that calibration cannot absorb
-  double rms_after = 0;  ///< m, on the judging rows with this cause alone; 0 where hardly probable
-  double visible = 0;    ///< rms of its visible part over the noise
+  double together = 0;  ///< of the verdict: with the known causes that cannot be told from it
+  double beyond_nuisance = 0;  ///< share of it that calibration cannot absorb
+  double rms_after =
+      0;               ///< m, on the validation rows with this cause alone; 0 where hardly probable
+  double visible = 0;  ///< rms of its visible part over the noise
   std::string shape = {};  ///< since when, how fast: "from 1840 s on"; empty where there is no such
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
@@ -91,14 +93,14 @@ struct Diagnosis {
   std::string problem;
   bool converged = true;  ///< the fits that the gap is taken between
   Gap gap;
-  std::vector<JudgedRow> judged;  ///< that the gap is the figures of
+  std::vector<ValidationRow> validation_rows;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
   std::vector<CauseResult> named;
   std::string why;     ///< the verdict in words
   double p_value = 1;  ///< of the verdict, or of what it was refused for; (1 + k) / (1 + B)
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
-  SimulationBasedCalibration practice;
+  SimulationBasedCalibration simulation;
   Where where;
   std::vector<Detectable> detectable;
   std::vector<Untestable> untestable;

@@ -20,7 +20,7 @@ inline std::string block_key(const ConfigurationBlock& block, Body body) {
     key.append(reinterpret_cast<const char*>(first), count * sizeof *first);
   };
   const auto add_all = [&](const auto& M) { add(M.data(), static_cast<std::size_t>(M.size())); };
-  const Conditions& c = block.conditions;
+  const MeasurementConditions& c = block.conditions;
   add(&block.count, 1);
   add(&body, 1);
   add_all(block.q);

@@ -19,7 +19,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kLooseness = 10;           ///< prior sigma over the largest usual size
-constexpr std::size_t kMostKept = 8 << 20;  ///< bytes of influences: thousands of rows
+constexpr std::size_t kMostKept = 8 << 20;  ///< bytes of regressors: thousands of rows
 
 bool same_text(const Node& a, const Node& b) {
   return a.kind == b.kind && a.text == b.text && a.keys == b.keys &&
@@ -161,7 +161,7 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
  private:
-  /// Of one lane: the influence of all effects side by side, and the body as seen from the tip.
+  /// Of one lane: the regressors of all effects side by side, and the body as seen from the tip.
   struct Deviation {
     Regressor by;
     Eigen::Vector3d arm;
@@ -178,10 +178,10 @@ class CorrectedRobot final : public Robot, public RobotText {
     return static_cast<Eigen::Index>(geometry_->parameters().size());
   }
 
-  Circumstances circumstances(const ConfigurationBlock& block, int lane) const {
-    const Conditions& c = block.conditions;
+  RegressorInput input_of(const ConfigurationBlock& block, int lane) const {
+    const MeasurementConditions& c = block.conditions;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    Circumstances at;
+    RegressorInput at;
     at.mechanics = statics() ? &statics()->mechanics() : nullptr;
     at.q = block.q.row(lane).matrix().transpose();
     at.poses = seen_poses(*geometry_, at.q);
@@ -206,13 +206,13 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
   /// Origin of the last moving link.
-  Eigen::Vector3d last_link(const Circumstances& at) const {
+  Eigen::Vector3d last_link(const RegressorInput& at) const {
     if (!at.mechanics)
       return selfcal::locate(*geometry_, values(*geometry_), at.q, Body::last_link).p;
     return at.poses[at.mechanics->link_of(static_cast<int>(joints().size()) - 1)].translation();
   }
 
-  Deviation deviation(const Circumstances& at, Body body) const {
+  Deviation deviation(const RegressorInput& at, Body body) const {
     const auto n = static_cast<Eigen::Index>(joints().size());
     const auto count = static_cast<Eigen::Index>(parameters_.size()) - geometry_parameters();
     Deviation all{{Eigen::MatrixXd::Zero(n, count), Eigen::MatrixXd::Zero(6, count)},
@@ -255,7 +255,7 @@ class CorrectedRobot final : public Robot, public RobotText {
         all.push_back(all.back());
         continue;
       }
-      Circumstances at = circumstances(block, lane);
+      RegressorInput at = input_of(block, lane);
       if (of_legs) see_legs(psi, work, lane, at);
       if (of_torques) see_torques(psi, work, lane, at);
       all.push_back(deviation(at, body));
@@ -266,7 +266,7 @@ class CorrectedRobot final : public Robot, public RobotText {
   /// `psi` and `work` (of the weights, per parameter) are those of the block's readings with the
   /// file's own values.
   void see_legs(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
-                Circumstances& at) const {
+                RegressorInput& at) const {
     const auto n = static_cast<Eigen::Index>(joints().size());
     at.legs.resize(6, n);
     at.leg_weights.resize(n);
@@ -280,7 +280,7 @@ class CorrectedRobot final : public Robot, public RobotText {
 
   /// The same of the joints' torques, of a machine that is no chain.
   void see_torques(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
-                   Circumstances& at) const {
+                   RegressorInput& at) const {
     Eigen::Matrix<double, 6, 1> wrench;
     wrench << at.wrench.force, at.wrench.moment;
     Eigen::RowVectorXd all = work.row(lane);
@@ -344,11 +344,11 @@ class CorrectedRobot final : public Robot, public RobotText {
 }  // namespace
 
 std::unique_ptr<Robot> correct(std::shared_ptr<const Robot> robot, const std::vector<Node>& entries,
-                               const Site& site, Problems& problems) {
+                               const MeasurementContext& context, Problems& problems) {
   robot = geometry_of(std::move(robot));
   std::vector<std::unique_ptr<Effect>> effects;
   for (const Node& entry : entries) {
-    auto effect = make_effect(entry, *robot, site, problems);
+    auto effect = make_effect(entry, *robot, context, problems);
     if (!effect) return nullptr;
     effects.push_back(std::move(effect));
   }

@@ -10,12 +10,12 @@
 namespace selfcal {
 
 /// `robot` with the effects that `entries` describe ({effect: joint_compliance, at: j2, c: 2e-6}),
-/// measured at `site`. Their parameters are called PLACE.NAME ("j2.c"), are not free unless asked
-/// for, and are held to nothing but ten times their usual size; of a second one at the place with
-/// the same ones they are PLACE.NAME_2. Effects that `robot` has already are replaced. Null after a
-/// problem.
+/// measured at `context`. Their parameters are called PLACE.NAME ("j2.c"), are not free unless
+/// asked for, and are held to nothing but ten times their usual size; of a second one at the place
+/// with the same ones they are PLACE.NAME_2. Effects that `robot` has already are replaced. Null
+/// after a problem.
 std::unique_ptr<Robot> correct(std::shared_ptr<const Robot> robot, const std::vector<Node>& entries,
-                               const Site& site, Problems& problems);
+                               const MeasurementContext& context, Problems& problems);
 
 /// The effects of a robot, in the order of their parameters; empty for geometry alone.
 std::vector<const Effect*> effects_of(const Robot& robot);

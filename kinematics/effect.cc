@@ -28,15 +28,15 @@ constexpr Family kFamilies[] = {
 
 }  // namespace
 
-int Site::find(std::string_view set) const {
+int MeasurementContext::find(std::string_view set) const {
   for (size_t s = 0; s < sets.size(); ++s)
     if (sets[s].name == set) return static_cast<int>(s);
   return -1;
 }
 
-bool Site::touched() const { return std::ranges::any_of(sets, &SiteSet::touch); }
+bool MeasurementContext::touched() const { return std::ranges::any_of(sets, &MeasuredSet::touch); }
 
-double Site::mean_temperature() const {
+double MeasurementContext::mean_temperature() const {
   if (temperatures.empty()) return 20;
   return std::accumulate(temperatures.begin(), temperatures.end(), 0.0) /
          static_cast<double>(temperatures.size());
@@ -69,8 +69,8 @@ int EffectPlan::leg() const {
 }
 
 int EffectPlan::set() const {
-  const int set = site.find(fields.text("at"));
-  if (set < 0 && !site.sets.empty()) fields.fail("at", "a set of the data set");
+  const int set = context.find(fields.text("at"));
+  if (set < 0 && !context.sets.empty()) fields.fail("at", "a set of the data set");
   return set;
 }
 
@@ -92,8 +92,8 @@ void EffectPlan::expect_place(std::string_view only) const {
   place = only;
 }
 
-std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const Site& site,
-                                    Problems& problems) {
+std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
+                                    const MeasurementContext& context, Problems& problems) {
   Fields fields(node, "effect", problems);
   const std::string name = fields.text("effect");
   std::string known;
@@ -102,7 +102,7 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const 
     if (family.name != name) continue;
     const size_t before = problems.list.size();
     std::string at = fields.text("at", "");
-    std::unique_ptr<Effect> effect = family.make({fields, robot, site, at});
+    std::unique_ptr<Effect> effect = family.make({fields, robot, context, at});
     if (problems.list.size() > before) return nullptr;
     effect->name_ = name;
     effect->at_ = std::move(at);

@@ -2,7 +2,7 @@
 //
 // It adds to the joint variables and to the location of the tip,
 //   joint variables += A v,   location of the tip += B v   (twist in the world frame, at the tip)
-// where v are the effect's own parameters and A, B (its influence) follow from the circumstances of
+// where v are the effect's own parameters and A, B (its regressor) follow from the conditions of
 // a configuration: load, direction of motion, temperature, time, touched surface. What is not
 // linear (a moment, a wave number, a time constant) is the effect's shape, given and not estimated
 // by the identification. A and B are taken at the geometry of the file: the difference is of second
@@ -23,8 +23,9 @@ namespace selfcal {
 
 class Robot;
 
-/// One configuration and what else held when its row was taken. What is not known is NaN.
-struct Circumstances {
+/// What an effect says its regressor of: one configuration and what held when its row was taken.
+/// What is not known is NaN.
+struct RegressorInput {
   const Mechanics* mechanics = nullptr;  ///< null of a robot without statics
   Eigen::VectorXd q;                     ///< readings (rad or m)
   /// Of the links, world, as the file has them; of a robot without statics the tool's alone.
@@ -53,7 +54,7 @@ struct Regressor {
 };
 
 /// One surface or target of a data set, as far as effects at it ask.
-struct SiteSet {
+struct MeasuredSet {
   std::string name;
   bool touch = false;                                ///< a flat surface was touched
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
@@ -61,9 +62,9 @@ struct SiteSet {
   bool lengths = false;  ///< an instrument measured positions or lengths
 };
 
-/// Where and when the rows were taken; empty for a robot outside a data set.
-struct Site {
-  std::vector<SiteSet> sets;
+/// Where and when the rows of a data set were taken; empty for a robot outside one.
+struct MeasurementContext {
+  std::vector<MeasuredSet> sets;
   std::vector<double> times, temperatures;  ///< s ascending, C: the record of the thermometer
   double begin = 0, end = 0;                ///< s, of the rows
   bool loads = false;                       ///< rows carry wrenches
@@ -97,17 +98,18 @@ class Effect {
   Node describe(const Eigen::VectorXd& v) const;
   /// True when the robot itself deviates, false when only its measurement does.
   virtual bool of_machine() const { return true; }
-  /// Asks for Circumstances::legs.
+  /// Asks for RegressorInput::legs.
   virtual bool of_legs() const { return false; }
-  /// Asks for Circumstances::torque.
+  /// Asks for RegressorInput::torque.
   virtual bool of_torques() const { return false; }
   /// What rows must have so that it can be seen: "temperatures that change".
   virtual std::string needs() const = 0;
   /// `into` is zero and of the right size.
-  virtual void regressor(const Circumstances& at, Regressor& into) const = 0;
+  virtual void regressor(const RegressorInput& at, Regressor& into) const = 0;
 
  protected:
-  friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const Site&, Problems&);
+  friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const MeasurementContext&,
+                                             Problems&);
   /// What describe() adds beside effect, at, named and the parameters.
   virtual void describe_shape(Node&) const {}
 
@@ -128,14 +130,15 @@ inline constexpr std::string_view kNoLegs = "no legs carry this kind of robot";
 struct EffectPlan {
   Fields& fields;
   const Robot& robot;
-  const Site& site;
+  const MeasurementContext& context;
   std::string& place;  ///< where it acts: `at` of the entry, empty where it says nothing
 
   /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
   int joint() const;
   /// The same of a robot with legs; without them it notes a problem and gives -1.
   int leg() const;
-  /// Index of the set called `at`; -1 outside a data set. Notes a problem when the site lacks it.
+  /// Index of the set called `at`; -1 outside a data set. Notes a problem when the context lacks
+  /// it.
   int set() const;
   /// Masses and links, for an effect that cannot do without; null of a robot that has none,
   /// after noting a problem: the effect is not made.
@@ -149,8 +152,8 @@ struct EffectPlan {
 
 /// The effect that an entry of a robot file's `effects` describes:
 /// {effect: joint_compliance, at: j2, c: 2.1e-6}. Null after a problem.
-std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot, const Site& site,
-                                    Problems& problems);
+std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
+                                    const MeasurementContext& context, Problems& problems);
 /// The effects that make_effect knows.
 std::vector<std::string_view> effect_names();
 

@@ -35,7 +35,7 @@ using Lanes = LaneArray<1>;
 
 /// What else held when the rows of a block were taken, a row a lane; NaN where it is not known. A
 /// matrix without rows is not known of any lane. Only effects ask for it.
-struct Conditions {
+struct MeasurementConditions {
   Eigen::MatrixXd wrench;    ///< lanes x 6, on the tool at the last frame's origin, in its axes
   Eigen::MatrixXd velocity;  ///< lanes x joints
   Eigen::MatrixXd normal;    ///< lanes x 3, outward, of the touched surface, world, unit
@@ -55,7 +55,7 @@ struct ConfigurationBlock {
   Eigen::ArrayXXd q;
   int count = 0;
   Eigen::ArrayXXd added = {};  ///< lanes x joints, to the joint variables; without rows: nothing
-  Conditions conditions = {};
+  MeasurementConditions conditions = {};
   /// About where the last link stands in the first lane, of a machine with loops: they are closed
   /// from there. Nothing: from the robot's home. Where it belongs to another assembly mode than
   /// home, no lane closes.

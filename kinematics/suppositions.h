@@ -16,7 +16,7 @@ namespace selfcal {
 /// What is asked about: the robot, the rows as far as effects ask, and how finely shapes are tried.
 struct Supposed {
   const Robot& robot;
-  const Site& site;
+  const MeasurementContext& context;
   bool warms = false;    ///< temperatures change
   bool normals = false;  ///< rows carry the touched surface's normal
   int most_waves = 0;    ///< a turn that are asked for one by one

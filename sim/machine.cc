@@ -97,22 +97,22 @@ Machine::Machine(const Scenario& scenario, std::shared_ptr<const Robot> robot, E
 /// From here on the true robot is the nominal one with what the model lacks.
 void Machine::add_effects(Problems& problems) {
   if (settings_.effects.empty()) return;
-  Site site;
-  site.end = kDrifts;
-  site.velocities = site.speeds = true;
-  for (const Set& set : sets_) site.sets.emplace_back().name = set.name;
+  MeasurementContext context;
+  context.end = kDrifts;
+  context.velocities = context.speeds = true;
+  for (const Set& set : sets_) context.sets.emplace_back().name = set.name;
   for (const TrueSurface& surface : surfaces_) {
-    SiteSet& set = site.sets[static_cast<std::size_t>(surface.set)];
+    MeasuredSet& set = context.sets[static_cast<std::size_t>(surface.set)];
     set.touch = true;
     set.centre = surface.within.centre;
     set.normal = surface.outward;
   }
   if (settings_.warming != 0)
     for (double t = 0; t <= 24 * 3600; t += 60) {
-      site.times.push_back(t);
-      site.temperatures.push_back(settings_.temperature + settings_.warming * t / 3600);
+      context.times.push_back(t);
+      context.temperatures.push_back(settings_.temperature + settings_.warming * t / 3600);
     }
-  std::shared_ptr<const Robot> robot = correct(robot_, settings_.effects, site, problems);
+  std::shared_ptr<const Robot> robot = correct(robot_, settings_.effects, context, problems);
   if (!robot) return;
   const Eigen::Index geometry = truth_.xi.size();
   const Eigen::VectorXd all = values(*robot);

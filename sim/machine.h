@@ -113,8 +113,8 @@ class Machine {
   double offset(const MotionRequest& request, int set);
   Random stream_of(const std::string& label) const;
   Eigen::ArrayXXd true_joints(const Eigen::ArrayXXd& readings) const;
-  Conditions conditions(const MotionRequest& request, const Trajectory& path,
-                        const TrueSurface& surface) const;
+  MeasurementConditions conditions(const MotionRequest& request, const Trajectory& path,
+                                   const TrueSurface& surface) const;
   void hang_payload(ConfigurationBlock& block) const;
 
   Scenario scenario_;

@@ -62,12 +62,12 @@ double Machine::offset(const MotionRequest& request, int set) {
 }
 
 /// What else holds on a path that meets a surface.
-Conditions Machine::conditions(const MotionRequest& request, const Trajectory& path,
-                               const TrueSurface& surface) const {
+MeasurementConditions Machine::conditions(const MotionRequest& request, const Trajectory& path,
+                                          const TrueSurface& surface) const {
   const Eigen::VectorXd way = path.at(1) - path.at(0);
   const double most = way.cwiseAbs().maxCoeff();
   const double speed = most > 0 ? std::min(request.speed, settings_.speed) / most : 0;
-  Conditions held;
+  MeasurementConditions held;
   held.velocity = (speed * way).transpose().replicate(kLanes, 1);
   held.normal = surface.outward.transpose().replicate(kLanes, 1);
   held.temperature.setConstant(kLanes, celsius());

@@ -135,7 +135,7 @@ Result<void> print_history(Store& store, const HistoryArguments& arguments) {
 /// The accuracy that the newest readable session wants of the end position (m); 0 without one.
 double wanted(const std::vector<Past>& past) {
   for (const Past& each : past)
-    if (const auto meaning = read_meaning(each.session.config)) return meaning->target;
+    if (const auto meaning = read_decoding(each.session.config)) return meaning->target;
   return 0;
 }
 

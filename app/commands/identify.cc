@@ -16,7 +16,7 @@
 #include "app/report/summary.h"
 #include "constraints/estimation/controller_sigma.h"
 #include "constraints/estimation/engagements.h"
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 #include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/search/shapes.h"
 #include "io/files/data_set_file.h"
@@ -78,7 +78,7 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   std::erase_if(entries, [&](const Node& each) { return is_asked(each, arguments.effects); });
   entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
   std::shared_ptr<const Robot> corrected =
-      correct(geometry, entries, site_of(*geometry, data), problems);
+      correct(geometry, entries, context_of(*geometry, data), problems);
   if (!corrected) return tl::unexpected(problems.list.front());
   return corrected;
 }

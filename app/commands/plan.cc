@@ -10,8 +10,8 @@
 #include "app/commands/support/method_sets.h"
 #include "app/commands/support/prior_file.h"
 #include "app/commands/support/separating_rows.h"
-#include "app/report/next_words.h"
-#include "app/report/plan_words.h"
+#include "app/report/next_place_report.h"
+#include "app/report/plan_report.h"
 #include "app/report/progress_line.h"
 #include "io/files/file.h"
 #include "io/files/observations_csv.h"
@@ -151,7 +151,7 @@ int plan_for_robot(const PlanArguments& arguments) {
   if (arguments.json)
     json = plan_json(**robot, *request, plan, arguments.target);
   else
-    std::fputs(plan_words(**robot, *request, plan, arguments.target).c_str(), stdout);
+    std::fputs(plan_report(**robot, *request, plan, arguments.target).c_str(), stdout);
   if (!arguments.further.empty()) {
     auto next = next_request(**robot, arguments, plan.data);
     if (!next) return tell(next.error());
@@ -162,7 +162,7 @@ int plan_for_robot(const PlanArguments& arguments) {
     if (arguments.json)
       json["further"] = next_json(places);
     else
-      std::fputs(next_words(*next, places).c_str(), stdout);
+      std::fputs(next_place_report(*next, places).c_str(), stdout);
   }
   if (arguments.json) std::printf("%s\n", json.dump(1).c_str());
   return kDone;
@@ -189,7 +189,7 @@ int plan_for_cell(const PlanArguments& arguments) {
     json = cell_plan_json(*config, cell);
   else
     std::printf("%s: robot %s\n%s", config->id.c_str(), config->robot->name().c_str(),
-                cell_plan_words(*config, cell).c_str());
+                cell_plan_report(*config, cell).c_str());
   if (!arguments.further.empty() && cell.plan.unreached.empty()) {
     auto next = next_request(*config->robot, arguments, cell_plan_data(*config, cell));
     if (!next) return tell(next.error());
@@ -199,7 +199,7 @@ int plan_for_cell(const PlanArguments& arguments) {
     if (arguments.json)
       json["further"] = next_json(places);
     else
-      std::fputs(next_words(*next, places).c_str(), stdout);
+      std::fputs(next_place_report(*next, places).c_str(), stdout);
   }
   if (arguments.json) std::printf("%s\n", json.dump(1).c_str());
   return cell.reaches(*config) ? kDone : kAnswerIsNo;
@@ -212,7 +212,7 @@ int plan_to_separate(const PlanArguments& arguments) {
   if (!rows->steps.empty() && step > rows->steps.size())
     return wrong_usage("--step: the diagnosis asks for " + std::to_string(rows->steps.size()) +
                        " of them");
-  std::fputs(separating_words(*rows).c_str(), stdout);
+  std::fputs(separating_report(*rows).c_str(), stdout);
   if (rows->steps.empty()) return kAnswerIsNo;
   if (const auto written = write_rows(arguments, observations_text(rows->steps[step - 1].rows));
       !written)

@@ -124,7 +124,7 @@ void set_up_log(const std::string& level) {
 
 void run_sessions(Service& service, int sessions, DdsPoses* poses) {
   PoseAnswers answers;
-  while (!told_to_stop() && (sessions == 0 || service.situation().published < sessions)) {
+  while (!told_to_stop() && (sessions == 0 || service.extended_state().published < sessions)) {
     service.turn();
     if (!poses) continue;
     const Models& models = service.models();
@@ -218,7 +218,7 @@ int show_plan(const Config& config) {
   ProgressLine line;
   const CellPlan cell =
       plan_cell(config, [&](std::string_view stage, double share) { line.show(stage, share); });
-  std::fputs(cell_plan_words(config, cell).c_str(), stdout);
+  std::fputs(cell_plan_report(config, cell).c_str(), stdout);
   return cell.reaches(config) ? kDone : kAnswerIsNo;
 }
 

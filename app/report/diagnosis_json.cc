@@ -28,7 +28,7 @@ Json of_gap(const Gap& gap) {
   };
   add(gap.closed, "closed_fraction", "closed_interval");
   add(gap.closed_all, "closed_all", "closed_all_interval");
-  json["judged_on"] = gap.judged_on;
+  json["judged_on"] = gap.validated_on;
   json["rows"] = gap.rows;
   json["false_rows"] = gap.false_rows;
   const Rms& all = gap.with_false_rows;
@@ -63,7 +63,7 @@ Json of_candidate(const CauseResult& cause) {
                        {"probability", finite(cause.probability)},
                        {"p_value", finite(cause.p_value)},
                        {"rms_after", cause.rms_after > 0 ? finite(cause.rms_after) : Json(nullptr)},
-                       {"survival", finite(cause.survival)},
+                       {"survival", finite(cause.beyond_nuisance)},
                        {"visible", finite(cause.visible)},
                        {"parameters", array_of(cause.parameters, of_value)},
                        {"confounded_with", cause.confounded_with}});
@@ -140,10 +140,10 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
                                   {"why", diagnosis.why}});
   json["verdict"]["named"] = array_of(diagnosis.named, of_named);
   json["candidates"] = array_of(diagnosis.candidates, of_candidate);
-  json["practice"] = Json::object({{"sessions", diagnosis.practice.sessions},
-                                   {"right", finite(diagnosis.practice.right)},
-                                   {"false_alarms", finite(diagnosis.practice.false_alarms)},
-                                   {"temperature", finite(diagnosis.practice.temperature)}});
+  json["practice"] = Json::object({{"sessions", diagnosis.simulation.sessions},
+                                   {"right", finite(diagnosis.simulation.right)},
+                                   {"false_alarms", finite(diagnosis.simulation.false_alarms)},
+                                   {"temperature", finite(diagnosis.simulation.temperature)}});
   json["where"] = of_where(diagnosis.where);
   json["detectable"] = array_of(diagnosis.detectable, [](const Detectable& each) {
     return Json::object({{"effect", each.effect},

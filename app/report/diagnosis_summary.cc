@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/report/format.h"
-#include "app/report/gap_words.h"
+#include "app/report/gap_report.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -26,7 +26,7 @@ std::string gap_lines(const Diagnosis& diagnosis) {
     text += printed(", %s mm with ", millimetres(gap.rms_all).c_str()) + found;
   text +=
       printed("; noise %s mm (rms, %d rows %s)\n", millimetres(gap.noise_floor).c_str(), gap.rows,
-              gap.judged_on == "folds" ? "judged by the others in turn" : "kept aside");
+              gap.validated_on == "folds" ? "judged by the others in turn" : "kept aside");
   if (const std::string closed = closed_in_words(diagnosis); !closed.empty())
     text += "     " + closed + "\n";
   if (const std::string left_out = false_rows_in_words(diagnosis); !left_out.empty())

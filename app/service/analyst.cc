@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/service/cause_search.h"
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 
 namespace selfcal {
 namespace {
@@ -50,10 +50,10 @@ bool Analyst::can_check() const {
 
 SessionRecord Analyst::new_record(const std::string& why) const {
   SessionRecord record;
-  record.kind = std::string(to_string(c_.situation.kind));
+  record.kind = std::string(to_string(c_.extended_state.kind));
   record.reason = why;
   record.model_hash = c_.models.hash();
-  record.config = meaning_text(c_.config, c_.ports.encoders->scales());
+  record.config = decoding_text(c_.config, c_.ports.encoders->scales());
   record.config_hash = c_.config_hash();
   record.started_ms = c_.unix_ms();
   const auto sessions = c_.store.sessions(1);
@@ -62,12 +62,12 @@ SessionRecord Analyst::new_record(const std::string& why) const {
 }
 
 void Analyst::plan(const std::string& why) {
-  if (c_.situation.stored) return plan_round();
+  if (c_.extended_state.stored) return plan_round();
   const SessionRecord record = new_record(why);
   TouchPlanOptions options = c_.config.plan;
   options.seed = record.seed;
   const std::vector<TouchTarget> targets =
-      c_.situation.kind == SessionKind::check
+      c_.extended_state.kind == SessionKind::check
           ? shared_out(lasting(c_.config.sets, c_.config.targets), c_.config.schedule.check_touches)
           : targets_of_round({});
   auto touches = std::make_shared<TouchPlan>();
@@ -104,7 +104,7 @@ void Analyst::analyse() {
   if (collector_.session().kind() == SessionKind::cause) return c_.put(Event::What::computed);
   const bool check = collector_.session().kind() == SessionKind::check;
   data_ = std::make_shared<DataSet>(rows_of(*c_.models.active(), collector_.session(),
-                                            collector_.meaning(),
+                                            collector_.decoding(),
                                             check ? Parts::all_check : Parts::as_planned));
   if (!check) {
     const std::string few = too_few(*data_);
@@ -138,9 +138,9 @@ void Analyst::join_base() {
   for (const SessionRecord& each : behind) {
     const auto session = stored_session(each);
     if (!session) return gone();
-    const auto meaning = read_meaning(each.config);
-    if (!meaning) return c_.put(Event::What::computed, false, meaning.error().what);
-    DataSet rows = rows_of(*c_.models.active(), *session, *meaning);
+    const auto decoding = read_decoding(each.config);
+    if (!decoding) return c_.put(Event::What::computed, false, decoding.error().what);
+    DataSet rows = rows_of(*c_.models.active(), *session, *decoding);
     if (rows.rows.rows() == 0) continue;
     base_ = std::make_shared<DataSet>(base_ ? merged(*base_, rows) : std::move(rows));
   }
@@ -153,7 +153,7 @@ void Analyst::identify() {
   auto found = std::make_shared<Engagements>();
   computation_.start(
       [found, robot = c_.models.active(), data = data_](const Computation::Tell& tell) {
-        *found = identify_engagements(*on_site(robot, *data), *data, {}, tell);
+        *found = identify_engagements(*in_context(robot, *data), *data, {}, tell);
         return std::string();
       });
   when_computed_ = [this, found](const std::string& failure) {
@@ -169,7 +169,7 @@ void Analyst::identify() {
 
 /// What is judged then are the rows that were used, as they were used.
 void Analyst::keep_solution(Engagements found) {
-  const std::vector<int> steps = steps_of_rows(collector_.session(), collector_.meaning());
+  const std::vector<int> steps = steps_of_rows(collector_.session(), collector_.decoding());
   const auto configuration = [&](int row) { return std::to_string(steps[row] + 1); };
   for (const LockSlip& slip : found.solution.slips)
     c_.tell("warning", slip.lock + " (set " + slip.set + "): the lock slipped by " +
@@ -208,8 +208,8 @@ void Analyst::judge() {
   computation_.start([unchanged = unchanged_, then = check ? solution_ : nullptr,
                       robot = c_.models.active(), data = data_,
                       base = base_](const Computation::Tell& tell) {
-    *unchanged = judge_as_it_is(*on_site(robot, *data), *data, tell);
-    if (then) *then = judge_as_it_is(*on_site(robot, *base), *base, tell);
+    *unchanged = judge_as_it_is(*in_context(robot, *data), *data, tell);
+    if (then) *then = judge_as_it_is(*in_context(robot, *base), *base, tell);
     return std::string();
   });
   when_computed_ = [this, check](const std::string& failure) {

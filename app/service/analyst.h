@@ -19,7 +19,7 @@ class Analyst {
 
   /// A quick check has something to compare with.
   bool can_check() const;
-  /// A session of the situation's kind, which begins once it is planned; of one that is in the
+  /// A session of the state's kind, which begins once it is planned; of one that is in the
   /// store a further round.
   void plan(const std::string& why);
   /// The rows of what was collected.

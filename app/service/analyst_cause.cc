@@ -8,7 +8,7 @@
 #include "app/report/diagnosis_json.h"
 #include "app/service/analyst.h"
 #include "app/service/cause_search.h"
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/solution_json.h"
 
@@ -32,8 +32,8 @@ struct Analyst::CauseFindings {
 };
 
 std::optional<SessionRecord> Analyst::base() const {
-  const std::int64_t own = c_.situation.stored ? collector_.session().record.id
-                                               : std::numeric_limits<std::int64_t>::max();
+  const std::int64_t own = c_.extended_state.stored ? collector_.session().record.id
+                                                    : std::numeric_limits<std::int64_t>::max();
   return base_of_cause(c_.store, c_.models.hash(), c_.config_hash(), own);
 }
 
@@ -46,17 +46,17 @@ void Analyst::diagnose(const std::string& why) {
   const auto record = base();
   if (!record) return lost();
   const auto full = stored_session(*record);
-  const auto meaning = read_meaning(record->config);
-  if (!full || !meaning) return lost();
-  const bool begun = c_.situation.stored;
+  const auto decoding = read_decoding(record->config);
+  if (!full || !decoding) return lost();
+  const bool begun = c_.extended_state.stored;
   const Robot& active = *c_.models.active();
-  data_ = std::make_shared<DataSet>(rows_of(active, *full, *meaning));
+  data_ = std::make_shared<DataSet>(rows_of(active, *full, *decoding));
   if (begun) {
     if (!c_.stored(c_.store.set_state(collector_.session().record.id, SessionState::collected,
                                       c_.unix_ms())))
       return;
     const DataSet more =
-        rows_of(active, collector_.session(), collector_.meaning(), Parts::all_fit);
+        rows_of(active, collector_.session(), collector_.decoding(), Parts::all_fit);
     if (more.rows.rows() > 0) *data_ = merged(*data_, more);
   }
   const int made = begun ? static_cast<int>(collector_.session().plan.size()) : 0;
@@ -76,7 +76,7 @@ void Analyst::diagnose(const std::string& why) {
     if (!diagnosis.problem.empty()) return diagnosis.problem;
     if (options.possible && !diagnosis.next.empty()) return std::string();
     found->corrected = corrected_model(*robot, *data, diagnosis, tell);
-    if (found->corrected) found->unchanged = judge_as_it_is(*on_site(robot, *data), *data, tell);
+    if (found->corrected) found->unchanged = judge_as_it_is(*in_context(robot, *data), *data, tell);
     return std::string();
   });
   when_computed_ = [this, found, why](const std::string& failure) {
@@ -88,7 +88,7 @@ void Analyst::diagnose(const std::string& why) {
 void Analyst::keep_findings(const std::string& why, CauseFindings& found) {
   const std::vector<NextStep>& next = found.diagnosis.next;
   if (!next.empty() && !next.front().chosen.empty()) return touch_more(why, found);
-  if (!c_.situation.stored) {
+  if (!c_.extended_state.stored) {
     SessionRecord record = new_record(why);
     const auto id = c_.store.begin(record, {});
     if (!c_.stored(id)) return;
@@ -116,8 +116,9 @@ void Analyst::touch_more(const std::string& why, const CauseFindings& found) {
     ordered.touches.push_back(std::move(each));
   }
   const std::vector<StepRecord> steps = steps_of(ordered, c_.config.sets);
-  Session session = c_.situation.stored ? collector_.session() : Session{new_record(why), {}, {}};
-  if (c_.situation.stored) {
+  Session session =
+      c_.extended_state.stored ? collector_.session() : Session{new_record(why), {}, {}};
+  if (c_.extended_state.stored) {
     if (!c_.stored(c_.store.extend(session.record.id, steps))) return;
   } else {
     const auto id = c_.store.begin(session.record, steps);

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "constraints/estimation/identification.h"
+#include "constraints/measurement_context.h"
 #include "constraints/planning/other_approach.h"
-#include "constraints/site.h"
 #include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
@@ -190,7 +190,7 @@ std::optional<CorrectedModel> corrected_model(const Robot& active, const DataSet
   if (named.empty() || !diagnosis.model) return std::nullopt;
   Problems problems;
   const std::shared_ptr<const Robot> robot =
-      correct(geometry_of(diagnosis.model), entries_of(named), site_of(active, data), problems);
+      correct(geometry_of(diagnosis.model), entries_of(named), context_of(active, data), problems);
   expects(robot != nullptr, "what was named is effects that the robot can have");
   Options options;
   for (const Parameter& each : robot->parameters())

@@ -30,9 +30,9 @@ Collector::Collector(ServiceContext& context)
 }
 
 void Collector::open(Session session) {
-  auto meaning = read_meaning(session.record.config);
-  if (!meaning) return c_.put(Event::What::planned, false, meaning.error().what);
-  meaning_ = std::move(*meaning);
+  auto decoding = read_decoding(session.record.config);
+  if (!decoding) return c_.put(Event::What::planned, false, decoding.error().what);
+  decoding_ = std::move(*decoding);
   session_ = std::move(session);
   collecting_since_ = c_.now;
   touches_this_run_ = 0;
@@ -117,7 +117,7 @@ void Collector::announce_plan() {
 /// through home.
 void Collector::tell_way(int step, Event& event) const {
   if (step >= static_cast<int>(session_.plan.size())) return;
-  event.via_home = session_.plan[step].via_home || step > c_.situation.step + 1;
+  event.via_home = session_.plan[step].via_home || step > c_.extended_state.step + 1;
   event.way = static_cast<int>(session_.plan[step].way.size());
 }
 
@@ -131,21 +131,23 @@ bool Collector::touched_loaded() const {
 
 int Collector::lock_of(int step) const {
   if (step >= static_cast<int>(session_.plan.size())) return 0;
-  const int set = set_index(meaning_, session_.plan[step].set);
-  return meaning_.sets[set].method->planned() == Planned::lock ? set + 1 : 0;
+  const int set = set_index(decoding_, session_.plan[step].set);
+  return decoding_.sets[set].method->planned() == Planned::lock ? set + 1 : 0;
 }
 
-const TouchRecord* Collector::read() { return c_.situation.engaged ? read_visit() : read_touch(); }
+const TouchRecord* Collector::read() {
+  return c_.extended_state.engaged ? read_visit() : read_touch();
+}
 
 /// The readings at rest, with the edge that confirmed the lock.
 const TouchRecord* Collector::read_visit() {
   expects(senses_.closing().has_value() && !senses_.samples().empty(),
           "a lock is confirmed at rest");
   TouchRecord visit;
-  visit.step = c_.situation.step;
+  visit.step = c_.extended_state.step;
   visit.edge = senses_.closing()->time;
   visit.before = visit.after = senses_.samples().last();
-  const TouchDecision decided = decide_on_visit(*c_.models.active(), reading_of(visit, meaning_));
+  const TouchDecision decided = decide_on_visit(*c_.models.active(), reading_of(visit, decoding_));
   visit.outcome = decided.outcome;
   visit.why = decided.why;
   return keep(std::move(visit));
@@ -153,19 +155,20 @@ const TouchRecord* Collector::read_visit() {
 
 const TouchRecord* Collector::read_touch() {
   expects(senses_.closing().has_value(), "a touch is read behind its edge");
-  expects(c_.situation.step < static_cast<int>(session_.plan.size()), "a touch is of the plan");
+  expects(c_.extended_state.step < static_cast<int>(session_.plan.size()),
+          "a touch is of the plan");
   const Nanoseconds edge = senses_.closing()->time;
   if (!senses_.closing()->timed)
     return outlier("the trigger's edge got lost, and with it the moment of the touch");
   const auto around = senses_.samples().around(edge - nanoseconds(c_.config.touch.delay));
   if (!around) return outlier("no encoder readings just before and after the edge");
   TouchRecord touch;
-  touch.step = c_.situation.step;
+  touch.step = c_.extended_state.step;
   touch.edge = edge;
   std::tie(touch.before, touch.after) = *around;
-  const Reading reading = reading_of(touch, meaning_);
+  const Reading reading = reading_of(touch, decoding_);
   const TouchDecision decided =
-      decide_on_touch(*c_.models.active(), session_, meaning_, session_.plan[touch.step], reading,
+      decide_on_touch(*c_.models.active(), session_, decoding_, session_.plan[touch.step], reading,
                       c_.config.plan.search, c_.config.touch.tolerance);
   touch.outcome = decided.outcome;
   touch.why = decided.why;
@@ -174,7 +177,7 @@ const TouchRecord* Collector::read_touch() {
 
 const TouchRecord* Collector::outlier(const std::string& why) {
   TouchRecord touch;
-  touch.step = c_.situation.step;
+  touch.step = c_.extended_state.step;
   touch.outcome = TouchOutcome::outlier;
   touch.why = why;
   if (!senses_.samples().empty()) touch.before = touch.after = senses_.samples().last();

@@ -57,7 +57,7 @@ class Collector {
   const SensorFrontEnd& senses() const { return senses_; }
   const Reflex& reflex() const { return reflex_; }
   const Session& session() const { return session_; }
-  const Decoding& meaning() const { return meaning_; }
+  const Decoding& decoding() const { return decoding_; }
   /// Good touches that a configuration needs.
   int repeats() const;
   /// The first step that needs another touch.
@@ -90,7 +90,7 @@ class Collector {
   std::vector<double> asked_, reached_;  ///< readings: target of the last move, of the last that
                                          ///< ended
   Session session_;
-  Decoding meaning_;
+  Decoding decoding_;
   Nanoseconds collecting_since_ = 0;
   int touches_this_run_ = 0;
   bool recalled_ = false;  ///< the session is one of an earlier life

@@ -21,7 +21,7 @@ std::string because(const std::string& what, const std::string& why) {
 
 void Collector::listen() {
   senses_.listen(c_.now, c_.events);
-  if (!may_move(c_.situation.state)) return;
+  if (!may_move(c_.extended_state.state)) return;
   const auto broken = [&](const std::string& why) { c_.put(Event::What::broken, false, why); };
   if (!senses_.encoders_alive(c_.now))
     broken(because("no encoder reading for " + format_number(c_.config.silence) + " s",
@@ -54,7 +54,7 @@ std::string Collector::missing() const {
     return because("no encoder readings come in", c_.ports.encoders->trouble());
   if (const std::string strangers = two_senders(); !strangers.empty()) return strangers;
   if (std::string others = rivals(); !others.empty()) return others;
-  if (c_.situation.unfinished && !*senses_.at_rest()) return "the robot moves";
+  if (c_.extended_state.unfinished && !*senses_.at_rest()) return "the robot moves";
   if (senses_.samples().last().joints != joints)
     return "the encoders give " + std::to_string(senses_.samples().last().joints) +
            " joints, the robot has " + std::to_string(joints);
@@ -63,7 +63,7 @@ std::string Collector::missing() const {
   if (!senses_.closed()) return because("the trigger's level is not known", trouble);
   if (!trouble.empty()) return trouble;
   if (senses_.trigger().chatters) return kChatters;
-  if (*senses_.closed() && !c_.situation.unfinished)
+  if (*senses_.closed() && !c_.extended_state.unfinished)
     return "the trigger is closed while the robot stands: in contact, stuck, or inverted (`active` "
            "of a GPIO line)";
   return {};
@@ -83,11 +83,13 @@ std::string Collector::beyond_limits() const {
 }
 
 void Collector::check_rest() {
-  if (c_.situation.state != ServiceState::collecting || c_.situation.phase != Phase::settle) return;
+  if (c_.extended_state.state != ServiceState::collecting ||
+      c_.extended_state.phase != Phase::settle)
+    return;
   if (senses_.at_rest() != true || !senses_.closing()) return;
-  if (c_.situation.engaged) {
+  if (c_.extended_state.engaged) {
     // Readings of the configuration itself, not of the way there.
-    if (senses_.samples().last().time > c_.situation.since) c_.put(Event::What::at_rest);
+    if (senses_.samples().last().time > c_.extended_state.since) c_.put(Event::What::at_rest);
     return;
   }
   const Nanoseconds edge = senses_.closing()->time - nanoseconds(c_.config.touch.delay);
@@ -103,9 +105,9 @@ void Collector::check_stop() {
     return;
   }
   // Where the robot may move only the stop of a touch is still wanted; a move takes it back.
-  const bool touching =
-      c_.situation.state == ServiceState::collecting && c_.situation.phase == Phase::settle;
-  if (c_.now - stopped_ < kStopAgain || (may_move(c_.situation.state) && !touching)) return;
+  const bool touching = c_.extended_state.state == ServiceState::collecting &&
+                        c_.extended_state.phase == Phase::settle;
+  if (c_.now - stopped_ < kStopAgain || (may_move(c_.extended_state.state) && !touching)) return;
   stop("until it stands");
 }
 

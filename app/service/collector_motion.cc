@@ -23,17 +23,17 @@ std::optional<bool> stopped_by(MoveKind kind) {
 
 void Collector::make_move(Action::Do what) {
   using Do = Action::Do;
-  const StepRecord& step = session_.plan[c_.situation.step];
+  const StepRecord& step = session_.plan[c_.extended_state.step];
   const std::vector<double> home(c_.config.plan.home.begin(), c_.config.plan.home.end());
   const double travel = c_.config.speeds.travel;
   switch (what) {
     case Do::go_home:
       return move(MoveKind::travel, home, travel);
     case Do::go_along:
-      return move(MoveKind::travel, step.way[step.way.size() - c_.situation.way], travel);
+      return move(MoveKind::travel, step.way[step.way.size() - c_.extended_state.way], travel);
     case Do::go_to_start:
-      return c_.situation.closed ? move(MoveKind::retract, step.start, touch_speed(step))
-                                 : move(MoveKind::travel, step.start, travel);
+      return c_.extended_state.closed ? move(MoveKind::retract, step.start, touch_speed(step))
+                                      : move(MoveKind::travel, step.start, travel);
     case Do::go_touch:
       return move(step.group.empty() ? MoveKind::touch : MoveKind::seat, step.end,
                   touch_speed(step));
@@ -53,10 +53,10 @@ void Collector::make_move(Action::Do what) {
 
 std::string Collector::label() const {
   int attempt = 0;
-  for (const TouchRecord& touch : session_.touches) attempt += touch.step == c_.situation.step;
-  return std::to_string(session_.record.id) + "/" + std::to_string(c_.situation.step) + "." +
-         std::to_string(attempt) + " " + session_.plan[c_.situation.step].set +
-         (is_loaded(c_.situation.step) ? kWithPayload : "");
+  for (const TouchRecord& touch : session_.touches) attempt += touch.step == c_.extended_state.step;
+  return std::to_string(session_.record.id) + "/" + std::to_string(c_.extended_state.step) + "." +
+         std::to_string(attempt) + " " + session_.plan[c_.extended_state.step].set +
+         (is_loaded(c_.extended_state.step) ? kWithPayload : "");
 }
 
 double Collector::touch_speed(const StepRecord& step) const {
@@ -74,7 +74,7 @@ void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) 
   request.id = ++motion_id_;
   request.kind = kind;
   request.label = kind == MoveKind::lock
-                      ? meaning_.sets[lock_of(c_.situation.step) - 1].method->lock()
+                      ? decoding_.sets[lock_of(c_.extended_state.step) - 1].method->lock()
                       : label();
   request.q = q;
   request.speed = speed;
@@ -88,7 +88,7 @@ void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) 
 }
 
 void Collector::release() {
-  if (c_.situation.state == ServiceState::collecting)
+  if (c_.extended_state.state == ServiceState::collecting)
     return move(MoveKind::release, reached_, c_.config.speeds.travel);
   const MotionRequest request{.id = ++motion_id_,
                               .kind = MoveKind::release,

@@ -1,5 +1,5 @@
 // What the parts of the service share: the configuration, the world outside, the parameters in use,
-// the situation, and the events on their way to the transition.
+// the state, and the events on their way to the transition.
 #pragma once
 
 #include <deque>
@@ -28,7 +28,7 @@ struct ServiceContext {
   Store& store;
   Journal& journal;
   Models models;
-  Situation situation = {};
+  ExtendedState extended_state = {};
   Usage use = {};
   std::deque<Event> events = {};
   Nanoseconds now = 0;  ///< of the turn

@@ -36,15 +36,15 @@ StatusMessage Reporter::status() const {
   status.robot = c_.config.id;
   status.model_hash = c_.models.hash();
   status.version = SELFCAL_VERSION;
-  status.state = to_string(c_.situation.state);
-  status.phase = to_string(c_.situation.phase);
-  status.hardware = hardware_may(c_.situation.state, c_.situation.phase);
-  status.why = c_.situation.why;
-  status.session = c_.situation.session;
-  status.kind = c_.situation.session > 0 ? to_string(c_.situation.kind) : "";
+  status.state = to_string(c_.extended_state.state);
+  status.phase = to_string(c_.extended_state.phase);
+  status.hardware = hardware_may(c_.extended_state.state, c_.extended_state.phase);
+  status.why = c_.extended_state.why;
+  status.session = c_.extended_state.session;
+  status.kind = c_.extended_state.session > 0 ? to_string(c_.extended_state.kind) : "";
   status.active = c_.models.name();
   status.active_since_ms = c_.models.since_ms();
-  status.candidate = c_.situation.candidate;
+  status.candidate = c_.extended_state.candidate;
   status.next_due_ms =
       next_due(c_.config.schedule, c_.use.since, status.unix_ms, utc_offset(status.unix_ms));
   status.temperature = collector_.senses().celsius().value_or(std::nan(""));
@@ -53,14 +53,15 @@ StatusMessage Reporter::status() const {
 
 void Reporter::report() {
   // The phases of a touch change ten times a second; a subscriber needs the last, not each.
-  const bool changed = c_.situation.state != told_.state || c_.situation.why != told_.why ||
-                       c_.situation.candidate != told_.candidate ||
-                       c_.models.name() != told_active_;
+  const bool changed =
+      c_.extended_state.state != told_.state || c_.extended_state.why != told_.why ||
+      c_.extended_state.candidate != told_.candidate || c_.models.name() != told_active_;
   const bool second = c_.now - last_report_ >= kSecond;
   if (changed || second) {
     c_.messenger.publish(status());
-    supervisor_.status(std::string(to_string(c_.situation.state)) + ": " + c_.situation.why);
-    told_ = c_.situation;
+    supervisor_.status(std::string(to_string(c_.extended_state.state)) + ": " +
+                       c_.extended_state.why);
+    told_ = c_.extended_state;
     told_active_ = c_.models.name();
   }
   if (const auto now = analyst_.progress(); now && now->stage != last_stage_)
@@ -73,8 +74,8 @@ void Reporter::progress(const TouchRecord* touch, const std::string& note) {
   ProgressMessage progress;
   progress.unix_ms = c_.unix_ms();
   progress.robot = c_.config.id;
-  if (c_.situation.state == ServiceState::planning) {  // what is planned has no number yet
-    progress.kind = to_string(c_.situation.kind);
+  if (c_.extended_state.state == ServiceState::planning) {  // what is planned has no number yet
+    progress.kind = to_string(c_.extended_state.kind);
     progress.seconds_left = progress.residual = std::nan("");
     progress.note = note;
     return c_.messenger.publish(progress);
@@ -98,7 +99,7 @@ void Reporter::progress(const TouchRecord* touch, const std::string& note) {
         collector_.lock_of(touch->step) == 0) {  // of a lock there is no length
       const Session recent = lately(session, touch->step);
       const Robot& robot = *c_.models.active();
-      const DataSet rows = rows_of(robot, recent, collector_.meaning(), Parts::all_fit);
+      const DataSet rows = rows_of(robot, recent, collector_.decoding(), Parts::all_fit);
       progress.residual = running_residual(robot, rows).value_or(std::nan(""));
     }
   }

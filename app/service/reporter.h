@@ -48,7 +48,7 @@ class Reporter {
   std::size_t damage_told_ = 0;           ///< of Store::met
   std::uint64_t refused_commands_ = 0;
   Nanoseconds last_report_ = 0, last_health_ = 0;
-  Situation told_;  ///< as last published
+  ExtendedState told_;  ///< as last published
   std::string told_active_, last_levels_, last_stage_;
 };
 

@@ -41,16 +41,17 @@ std::vector<HealthMessage> Reporter::health() const {
 
 HealthMessage Reporter::health_of_service() const {
   const std::string strangers = collector_.two_senders();
-  const bool fault = c_.situation.state == ServiceState::fault;
-  const Health level = fault || !strangers.empty() ? Health::error
-                       : c_.situation.unfinished   ? Health::warn
-                                                   : Health::ok;
+  const bool fault = c_.extended_state.state == ServiceState::fault;
+  const Health level = fault || !strangers.empty()    ? Health::error
+                       : c_.extended_state.unfinished ? Health::warn
+                                                      : Health::ok;
   return {
       "selfcal: service",
       level,
-      with_trouble(std::string(to_string(c_.situation.state)) + ": " + c_.situation.why, strangers),
-      {{"hardware", std::string(hardware_may(c_.situation.state, c_.situation.phase))},
-       {"session", std::to_string(c_.situation.session)},
+      with_trouble(std::string(to_string(c_.extended_state.state)) + ": " + c_.extended_state.why,
+                   strangers),
+      {{"hardware", std::string(hardware_may(c_.extended_state.state, c_.extended_state.phase))},
+       {"session", std::to_string(c_.extended_state.session)},
        {"unsent", std::to_string(c_.messenger.unsent())},
        {"refused_commands", std::to_string(refused_commands_)}}};
 }
@@ -74,7 +75,8 @@ HealthMessage Reporter::health_of_encoders() const {
 
 HealthMessage Reporter::health_of_trigger() const {
   const auto closed = collector_.senses().closed();
-  const bool contact = c_.situation.state == ServiceState::collecting || c_.situation.unfinished;
+  const bool contact =
+      c_.extended_state.state == ServiceState::collecting || c_.extended_state.unfinished;
   const TriggerNews& trigger = collector_.senses().trigger();
   const std::string& trouble = trigger.trouble;
   const Health level = !closed                                     ? Health::error
@@ -127,9 +129,9 @@ HealthMessage Reporter::health_of_store() const {
 HealthMessage Reporter::health_of_calibration() const {
   const bool unexplained = analyst_.last_check() && !analyst_.last_check()->explained;
   const bool wrong = !c_.models.refused().empty();
-  const bool warn = unexplained || c_.situation.candidate || c_.models.session() == 0;
+  const bool warn = unexplained || c_.extended_state.candidate || c_.models.session() == 0;
   std::string message = wrong ? c_.models.refused() : c_.models.name() + " is active";
-  if (c_.situation.candidate) message += "; a result waits: accept or reject";
+  if (c_.extended_state.candidate) message += "; a result waits: accept or reject";
   if (unexplained) message += "; the last check was not explained";
   const auto age_ms = c_.models.since_ms() == 0 ? 0 : c_.unix_ms() - c_.models.since_ms();
   return {"selfcal: calibration",

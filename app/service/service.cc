@@ -18,8 +18,8 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
       analyst_(c_, collector_),
       reporter_(c_, collector_, analyst_, damaged) {
   c_.now = test_began_ = last_turn_ = began_ = c_.ports.clock->now();
-  c_.situation.since = c_.now;
-  c_.situation.why = "testing encoders, trigger and store";
+  c_.extended_state.since = c_.now;
+  c_.extended_state.why = "testing encoders, trigger and store";
   testing_ = true;
   if (!damaged.empty())
     c_.tell("error", "the store was damaged: " + damaged);
@@ -27,11 +27,11 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
     reporter_.recall_damage();
   if (!c_.models.refused().empty()) c_.tell("error", c_.models.refused());
   const auto unfinished = c_.store.unfinished();
-  if (c_.stored(unfinished)) c_.situation.unfinished = unfinished->has_value();
+  if (c_.stored(unfinished)) c_.extended_state.unfinished = unfinished->has_value();
   finish_interrupted_apply();
   recall();
-  c_.situation.candidate = c_.models.candidate();
-  if (c_.situation.unfinished) {  // of an earlier life, told to stop until it stands
+  c_.extended_state.candidate = c_.models.candidate();
+  if (c_.extended_state.unfinished) {  // of an earlier life, told to stop until it stands
     collector_.expect_motion();
     collector_.stop("the service has started");
   }
@@ -64,24 +64,24 @@ void Service::handle_events() {
     const Event event = std::move(c_.events.front());
     c_.events.pop_front();
     if (event.what == Event::What::moved) collector_.arrived();
-    Transition transition = step(c_.situation, event, c_.config.limits);
-    const bool held = c_.situation.held;
-    const auto wanted = c_.situation.wanted;
-    c_.situation = std::move(transition.next);
-    if (c_.situation.held != held)
-      c_.stored(c_.store.remember("held", c_.situation.held ? "yes" : ""));
+    Transition transition = step(c_.extended_state, event, c_.config.limits);
+    const bool held = c_.extended_state.held;
+    const auto wanted = c_.extended_state.wanted;
+    c_.extended_state = std::move(transition.next);
+    if (c_.extended_state.held != held)
+      c_.stored(c_.store.remember("held", c_.extended_state.held ? "yes" : ""));
     // Before the command is answered: what was granted is not lost.
-    if (const auto& now = c_.situation.wanted; now != wanted)
+    if (const auto& now = c_.extended_state.wanted; now != wanted)
       c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
     for (const Action& action : transition.actions) act(action);
   }
 }
 
 Nanoseconds Service::longest_wait() const {
-  switch (c_.situation.state) {
+  switch (c_.extended_state.state) {
     case ServiceState::collecting:
       // An edge ends the wait early where the trigger can say so.
-      return c_.situation.phase == Phase::touch || c_.situation.phase == Phase::settle
+      return c_.extended_state.phase == Phase::touch || c_.extended_state.phase == Phase::settle
                  ? 8 * kMillisecond
                  : 20 * kMillisecond;
     case ServiceState::idle:
@@ -100,7 +100,7 @@ void Service::begin_test() {
 
 /// Two services of one robot would both move it: neither does.
 void Service::check_rivals() {
-  if (testing_ || c_.situation.state == ServiceState::fault) return;
+  if (testing_ || c_.extended_state.state == ServiceState::fault) return;
   if (std::string others = collector_.rivals(); !others.empty())
     c_.put(Event::What::broken, false, std::move(others));
 }
@@ -114,12 +114,12 @@ void Service::check_self() {
   event.what = Event::What::self_tested;
   event.ok = why.empty();
   event.why = why;
-  event.resume = c_.config.resume && !c_.situation.tested && c_.now - began_ < kResumeWithin;
+  event.resume = c_.config.resume && !c_.extended_state.tested && c_.now - began_ < kResumeWithin;
   c_.put(std::move(event));
 }
 
 void Service::check_schedule() {
-  if (c_.situation.state != ServiceState::idle || !c_.config.schedule.any()) return;
+  if (c_.extended_state.state != ServiceState::idle || !c_.config.schedule.any()) return;
   if (c_.now - last_due_ < kSecond) return;
   last_due_ = c_.now;
   const std::int64_t unix_ms = c_.unix_ms();
@@ -141,8 +141,9 @@ void Service::check_schedule() {
 
 /// Writing may take long: not while the robot is to be stopped at a touch.
 void Service::remember() {
-  const bool touching = c_.situation.state == ServiceState::collecting &&
-                        (c_.situation.phase == Phase::touch || c_.situation.phase == Phase::settle);
+  const bool touching =
+      c_.extended_state.state == ServiceState::collecting &&
+      (c_.extended_state.phase == Phase::touch || c_.extended_state.phase == Phase::settle);
   if (c_.now - last_remembered_ < kRemember || touching) return;
   last_remembered_ = c_.now;
   c_.remember_use();
@@ -151,9 +152,9 @@ void Service::remember() {
 void Service::recall() {
   // What cannot be read must not let the robot begin by itself.
   const auto held = c_.store.remembered("held");
-  c_.situation.held = !held || *held == "yes";
+  c_.extended_state.held = !held || *held == "yes";
   if (const auto wanted = c_.store.remembered("wanted"); wanted)
-    c_.situation.wanted = kind_of(*wanted);
+    c_.extended_state.wanted = kind_of(*wanted);
   const auto line = c_.store.remembered("use");
   Since& since = c_.use.since;
   long long unix_ms = 0;
@@ -170,8 +171,8 @@ void Service::recall() {
 }
 
 void Service::shut_down() {
-  if (may_move(c_.situation.state)) collector_.stop("the service is shutting down");
-  if (c_.situation.engaged) collector_.release();
+  if (may_move(c_.extended_state.state)) collector_.stop("the service is shutting down");
+  if (c_.extended_state.engaged) collector_.release();
   c_.remember_use();
   c_.tell("info", "shut down");
   reporter_.stopping();

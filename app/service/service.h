@@ -23,7 +23,7 @@ class Service {
   /// Stops motion and tells so; the session goes on after the next start.
   void shut_down();
 
-  const Situation& situation() const { return c_.situation; }
+  const ExtendedState& extended_state() const { return c_.extended_state; }
   const Models& models() const { return c_.models; }
 
  private:

@@ -53,7 +53,7 @@ void Service::act(const Action& action) {
     case Do::refuse:
       return answer(action);
     case Do::tell:
-      return c_.tell(c_.situation.state == ServiceState::fault ? "error" : "info", action.why);
+      return c_.tell(c_.extended_state.state == ServiceState::fault ? "error" : "info", action.why);
   }
 }
 

@@ -31,7 +31,7 @@ void Service::handle_command(const CommandMessage& command) {
     return refuse(command,
                   "a cause is looked for in what a full session of this robot and configuration "
                   "leaves, and there is none: start one");
-  // What came in before the command is handled first, so that it meets the situation as it is.
+  // What came in before the command is handled first, so that it meets the state as it is.
   handle_events();
   command_ = command;
   Event event;

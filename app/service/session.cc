@@ -78,9 +78,9 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
 
 }  // namespace
 
-int set_index(const Decoding& meaning, const std::string& name) {
-  for (std::size_t s = 0; s < meaning.sets.size(); ++s)
-    if (meaning.sets[s].name == name) return static_cast<int>(s);
+int set_index(const Decoding& decoding, const std::string& name) {
+  for (std::size_t s = 0; s < decoding.sets.size(); ++s)
+    if (decoding.sets[s].name == name) return static_cast<int>(s);
   return 0;
 }
 
@@ -93,7 +93,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& readings) {
                                            static_cast<Eigen::Index>(readings.size()));
 }
 
-std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales) {
+std::string decoding_text(const Config& config, const std::vector<EncoderScale>& scales) {
   Node node = config.description;
   node.set("delay", Node::of(config.touch.delay));
   if (config.causes.payload) node.set("payload", Node::of(*config.causes.payload));
@@ -113,37 +113,37 @@ std::string meaning_text(const Config& config, const std::vector<EncoderScale>& 
 }
 
 std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales) {
-  return sha256_hex(meaning_text(config, scales) + write_yaml(config.transports) +
+  return sha256_hex(decoding_text(config, scales) + write_yaml(config.transports) +
                     config.robot->text().identity());
 }
 
-Result<Decoding> read_meaning(const std::string& text) {
+Result<Decoding> read_decoding(const std::string& text) {
   const Result<Node> node = parse_yaml(text, "session");
   if (!node) return tl::unexpected(node.error());
   Result<std::vector<Set>> sets = sets_of(text);
   if (!sets) return tl::unexpected(sets.error());
-  Decoding meaning;
-  meaning.sets = std::move(*sets);
+  Decoding decoding;
+  decoding.sets = std::move(*sets);
   Problems problems;
   Fields fields(*node, "session", problems);
-  meaning.target = fields.number("target");
+  decoding.target = fields.number("target");
   if (const Node* workspace = fields.node("workspace"))
-    meaning.workspace = read_workspace(*workspace, problems);
-  meaning.delay = fields.number("delay");
-  meaning.payload = fields.number("payload", 0.0);
+    decoding.workspace = read_workspace(*workspace, problems);
+  decoding.delay = fields.number("delay");
+  decoding.payload = fields.number("payload", 0.0);
   if (const Node* list = fields.node("encoders"))
     for (const Node& each : list->items) {
       Fields scale(each, "encoder", problems);
-      meaning.scales.push_back({scale.number("step"), std::llround(scale.number("zero"))});
+      decoding.scales.push_back({scale.number("step"), std::llround(scale.number("zero"))});
     }
   const Node* outward = fields.node("outward");
-  for (const Set& set : meaning.sets) {
+  for (const Set& set : decoding.sets) {
     std::optional<Eigen::VectorXd> way;
     if (outward) way = Fields(*outward, "outward", problems).numbers(set.name, 3);
-    meaning.outward.push_back(way ? Eigen::Vector3d(*way) : Eigen::Vector3d::UnitZ());
+    decoding.outward.push_back(way ? Eigen::Vector3d(*way) : Eigen::Vector3d::UnitZ());
   }
   if (problems.any()) return bad_input(problems);
-  return meaning;
+  return decoding;
 }
 
 std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets) {
@@ -217,9 +217,9 @@ int steps_put_aside(const Session& session, int repeats, int attempts) {
   return static_cast<int>(std::ranges::count(states, StepState::lost));
 }
 
-Reading reading_of(const TouchRecord& touch, const Decoding& meaning) {
-  return reading_between(touch.before, touch.after, touch.edge - nanoseconds(meaning.delay),
-                         meaning.scales);
+Reading reading_of(const TouchRecord& touch, const Decoding& decoding) {
+  return reading_between(touch.before, touch.after, touch.edge - nanoseconds(decoding.delay),
+                         decoding.scales);
 }
 
 namespace {
@@ -232,13 +232,13 @@ struct Engagement {
 
 /// The set of each touch, negative of one to be left out; `sets` gains those of later engagements.
 std::vector<int> sets_of_touches(const std::vector<const TouchRecord*>& touches,
-                                 const std::vector<StepRecord>& plan, const Decoding& meaning,
+                                 const std::vector<StepRecord>& plan, const Decoding& decoding,
                                  std::vector<Set>& sets) {
   std::vector<int> list;
   std::map<int, std::map<Nanoseconds, Engagement>> locks;
   for (const TouchRecord* touch : touches) {
     const StepRecord& step = plan[touch->step];
-    list.push_back(set_index(meaning, step.set));
+    list.push_back(set_index(decoding, step.set));
     if (sets[list.back()].method->planned() != Planned::lock) continue;
     Engagement& engagement = locks[list.back()][touch->edge];
     ++engagement.rows;
@@ -265,7 +265,7 @@ struct RowTouches {
   std::vector<int> repeat, set;
 };
 
-RowTouches touches_of_rows(const Session& session, const Decoding& meaning,
+RowTouches touches_of_rows(const Session& session, const Decoding& decoding,
                            std::vector<Set>& sets) {
   std::vector<const TouchRecord*> good;
   std::vector<int> repeat;
@@ -274,7 +274,7 @@ RowTouches touches_of_rows(const Session& session, const Decoding& meaning,
     good.insert(good.end(), of_step.begin(), of_step.end());
     repeat.insert(repeat.end(), of_step.size(), of_step.size() > 1 ? step.index : -1);
   }
-  const std::vector<int> set = sets_of_touches(good, session.plan, meaning, sets);
+  const std::vector<int> set = sets_of_touches(good, session.plan, decoding, sets);
   RowTouches rows;
   for (std::size_t i = 0; i < good.size(); ++i) {
     if (set[i] < 0) continue;
@@ -287,40 +287,40 @@ RowTouches touches_of_rows(const Session& session, const Decoding& meaning,
 
 }  // namespace
 
-std::vector<int> steps_of_rows(const Session& session, const Decoding& meaning) {
-  std::vector<Set> sets = meaning.sets;
+std::vector<int> steps_of_rows(const Session& session, const Decoding& decoding) {
+  std::vector<Set> sets = decoding.sets;
   std::vector<int> steps;
-  for (const TouchRecord* touch : touches_of_rows(session, meaning, sets).touches)
+  for (const TouchRecord* touch : touches_of_rows(session, decoding, sets).touches)
     steps.push_back(touch->step);
   return steps;
 }
 
-DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning, Parts parts) {
+DataSet rows_of(const Robot& robot, const Session& session, const Decoding& decoding, Parts parts) {
   DataSet data;
-  data.sets = meaning.sets;
-  data.target = meaning.target;
-  data.workspace = meaning.workspace;
-  auto [rows, repeat, sets] = touches_of_rows(session, meaning, data.sets);
+  data.sets = decoding.sets;
+  data.target = decoding.target;
+  data.workspace = decoding.workspace;
+  auto [rows, repeat, sets] = touches_of_rows(session, decoding, data.sets);
   Observations& out = data.rows;
   size_rows(out, static_cast<Eigen::Index>(rows.size()),
-            static_cast<Eigen::Index>(meaning.scales.size()));
+            static_cast<Eigen::Index>(decoding.scales.size()));
   out.repeat = std::move(repeat);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const StepRecord& step = session.plan[rows[i]->step];
-    const int set = sets[i], configured = set_index(meaning, step.set);
+    const int set = sets[i], configured = set_index(decoding, step.set);
     const auto row = static_cast<Eigen::Index>(i);
-    const Reading reading = reading_of(*rows[i], meaning);
+    const Reading reading = reading_of(*rows[i], decoding);
     out.q.row(row) = reading.q.transpose();
-    out.normal.row(row) = meaning.outward[configured].transpose();
+    out.normal.row(row) = decoding.outward[configured].transpose();
     out.velocity.row(row) = reading.dq.transpose();
     out.temperature[row] = rows[i]->temperature;
     out.time[row] = i == 0 ? 0 : out.time[row - 1] + seconds_between(*rows[i - 1], *rows[i]);
     const double noise = touch_noise(data.sets[set]);
     out.noise_factor[row] = std::hypot(
-        1, speed_out(robot, reading, meaning.outward[configured]) * reading.sigma_time / noise);
+        1, speed_out(robot, reading, decoding.outward[configured]) * reading.sigma_time / noise);
     if (step.loaded) {
       if (out.wrench.rows() == 0) out.wrench.setZero(out.q.rows(), 6);
-      out.wrench.row(row) = wrench_of(robot, reading.q, meaning.payload);
+      out.wrench.row(row) = wrench_of(robot, reading.q, decoding.payload);
     }
     out.set.push_back(set);
     out.group.push_back(group_index(data.sets[set], step.group));
@@ -347,14 +347,14 @@ DataSet joined(const DataSet& base, const DataSet& check) {
   return data;
 }
 
-TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
+TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& decoding,
                               const StepRecord& step, const Reading& reading, double search,
                               double tolerance) {
   if (const std::string why = robot.has_loops() ? cannot_stand(robot, reading.q) : ""; !why.empty())
     return {TouchOutcome::outlier, why};
-  const int set = set_index(meaning, step.set);
+  const int set = set_index(decoding, step.set);
   const auto out_by = [&](const Eigen::VectorXd& from) {
-    return meaning.outward[set].dot(endpoint(robot, reading.q) - endpoint(robot, from));
+    return decoding.outward[set].dot(endpoint(robot, reading.q) - endpoint(robot, from));
   };
   const double early = out_by(vector_of(step.touch));
   if (early > search)
@@ -362,7 +362,7 @@ TouchDecision decide_on_touch(const Robot& robot, const Session& session, const 
             "touched " + format_number(std::round(early * 1e5) / 100) + " mm before the surface"};
   const auto good = good_touches(session, step.index);
   for (const TouchRecord* other : good) {
-    const double apart = std::abs(out_by(reading_of(*other, meaning).q));
+    const double apart = std::abs(out_by(reading_of(*other, decoding).q));
     if (apart > tolerance)
       return {TouchOutcome::differs,
               "differs by " + format_number(std::round(apart * 1e6)) + " um from the one before"};

@@ -33,15 +33,15 @@ struct Decoding {
 /// Readings as the store and the ports have them, as a vector.
 Eigen::VectorXd vector_of(const std::vector<double>& readings);
 
-/// Text of the meaning of the touches that a session is going to make, and back.
-std::string meaning_text(const Config& config, const std::vector<EncoderScale>& scales);
-Result<Decoding> read_meaning(const std::string& text);
+/// Text of the decoding of the touches that a session is going to make, and back.
+std::string decoding_text(const Config& config, const std::vector<EncoderScale>& scales);
+Result<Decoding> read_decoding(const std::string& text);
 /// Of all that changes what the touches mean: sets, robot, where readings and edges come from and
 /// what their counts stand for. Rows of sessions with different ones do not belong together.
 std::string config_hash(const Config& config, const std::vector<EncoderScale>& scales);
 
 /// Of a set by its name; that of the first where there is none.
-int set_index(const Decoding& meaning, const std::string& name);
+int set_index(const Decoding& decoding, const std::string& name);
 
 /// The plan as the store keeps it.
 std::vector<StepRecord> steps_of(const TouchPlan& plan, const std::vector<Set>& sets);
@@ -54,7 +54,7 @@ int next_step(const Session& session, int repeats, int attempts);
 int steps_put_aside(const Session& session, int repeats, int attempts);
 
 /// Joint readings at the edge of a touch.
-Reading reading_of(const TouchRecord& touch, const Decoding& meaning);
+Reading reading_of(const TouchRecord& touch, const Decoding& decoding);
 
 /// The rows that the good touches make, in the order of the plan, with speed, time and temperature.
 /// With `all_check` every row only judges, with `all_fit` every row identifies. A row's noise is
@@ -64,11 +64,11 @@ Reading reading_of(const TouchRecord& touch, const Decoding& meaning);
 /// than kFewestOfLock rows, two of them to fit, is left out beside one that has more.
 inline constexpr int kFewestOfLock = 4;
 enum class Parts { as_planned, all_check, all_fit };
-DataSet rows_of(const Robot& robot, const Session& session, const Decoding& meaning,
+DataSet rows_of(const Robot& robot, const Session& session, const Decoding& decoding,
                 Parts parts = Parts::as_planned);
 
 /// The step of the plan that each of these rows comes from.
-std::vector<int> steps_of_rows(const Session& session, const Decoding& meaning);
+std::vector<int> steps_of_rows(const Session& session, const Decoding& decoding);
 
 /// The fit rows of `base` and the rows of `check` as rows that judge; both have the same sets.
 DataSet joined(const DataSet& base, const DataSet& check);
@@ -79,7 +79,7 @@ struct TouchDecision {
   TouchOutcome outcome = TouchOutcome::taken;
   std::string why;
 };
-TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& meaning,
+TouchDecision decide_on_touch(const Robot& robot, const Session& session, const Decoding& decoding,
                               const StepRecord& step, const Reading& reading, double search,
                               double tolerance);
 

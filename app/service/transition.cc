@@ -6,7 +6,7 @@
 
 namespace selfcal {
 
-Transition step(const Situation& now, const Event& event, const Limits& limits) {
+Transition step(const ExtendedState& now, const Event& event, const Limits& limits) {
   return TransitionStep(now, event, limits).run();
 }
 

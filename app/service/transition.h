@@ -1,4 +1,4 @@
-// The service's behaviour as a pure function: situation and event to the next situation and what is
+// The service's behaviour as a pure function: state and event to the next state and what is
 // to be done. It reads no clock, no port and no file; every moment comes in with the event.
 //
 //   self-test → idle → planning → collecting ⟲ (approach → touch → settle → retract)
@@ -35,7 +35,8 @@ struct Limits {
   int most_failures = 5;  ///< touches put aside in a row, before the session stops
 };
 
-struct Situation {
+/// The state, and what its transitions depend on beside it.
+struct ExtendedState {
   ServiceState state = ServiceState::self_test;
   Phase phase = Phase::none;
   Nanoseconds since = 0;  ///< state or phase entered
@@ -118,7 +119,7 @@ struct Action {
     stop,     ///< motion, now; `why`
     give_up,  ///< whatever is being computed
     test,     ///< begin the self-test
-    plan,     ///< a session of the situation's kind, full or check, or a further round of it
+    plan,     ///< a session of the state's kind, full or check, or a further round of it
     resume,   ///< the unfinished session
     go_home,
     go_along,  ///< to the next place of the step's way
@@ -149,10 +150,10 @@ struct Action {
 };
 
 struct Transition {
-  Situation next;
+  ExtendedState next;
   std::vector<Action> actions;
 };
 
-Transition step(const Situation& now, const Event& event, const Limits& limits);
+Transition step(const ExtendedState& now, const Event& event, const Limits& limits);
 
 }  // namespace selfcal

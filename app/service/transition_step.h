@@ -1,4 +1,4 @@
-// One transition in the making: what the event makes of the situation, topic by topic.
+// One transition in the making: what the event makes of the state, topic by topic.
 //
 //   transition.cc             which event goes where; entering a state, faults
 //   transition_sessions.cc    the self-test, and how a session begins or goes on
@@ -18,7 +18,7 @@ namespace selfcal {
 
 class TransitionStep {
  public:
-  TransitionStep(const Situation& now, const Event& event, const Limits& limits)
+  TransitionStep(const ExtendedState& now, const Event& event, const Limits& limits)
       : s_(now), event_(event), limits_(limits) {}
 
   Transition run();
@@ -100,7 +100,7 @@ class TransitionStep {
   bool longer_than(Nanoseconds limit) const { return event_.now - s_.since > limit; }
   void late(Nanoseconds limit, const std::string& what);
 
-  Situation s_;
+  ExtendedState s_;
   const Event& event_;
   const Limits& limits_;
   std::vector<Action> actions_;

@@ -6,35 +6,35 @@
 
 namespace selfcal {
 
-Connections::Place::Place(Place&& other) noexcept
+Connections::Slot::Slot(Slot&& other) noexcept
     : connections_(std::exchange(other.connections_, nullptr)), entry_(other.entry_) {}
 
-Connections::Place::~Place() {
+Connections::Slot::~Slot() {
   if (!connections_) return;
   const std::lock_guard lock(connections_->mutex_);
   connections_->entries_.erase(entry_);
 }
 
-void Connections::Place::waits() {
+void Connections::Slot::waits() {
   const std::lock_guard lock(connections_->mutex_);
   entry_->waiting = true;
   entry_->since = Clock::now();
 }
 
-void Connections::Place::works() {
+void Connections::Slot::works() {
   const std::lock_guard lock(connections_->mutex_);
   entry_->waiting = false;
 }
 
-Connections::Place Connections::enter(int socket) {
+Connections::Slot Connections::enter(int socket) {
   const std::lock_guard lock(mutex_);
   return {*this, entries_.insert(entries_.end(), {socket, true, Clock::now()})};
 }
 
 bool Connections::push_one_out() {
   const std::lock_guard lock(mutex_);
-  Place::Entry* longest = nullptr;
-  for (Place::Entry& each : entries_)
+  Slot::Entry* longest = nullptr;
+  for (Slot::Entry& each : entries_)
     if (each.waiting && (!longest || each.since < longest->since)) longest = &each;
   if (!longest) return false;
   longest->waiting = false;  // once is enough
@@ -44,7 +44,7 @@ bool Connections::push_one_out() {
 
 void Connections::cut_off() {
   const std::lock_guard lock(mutex_);
-  for (const Place::Entry& each : entries_) ::shutdown(each.socket, SHUT_RDWR);
+  for (const Slot::Entry& each : entries_) ::shutdown(each.socket, SHUT_RDWR);
 }
 
 std::size_t Connections::count() const {

@@ -1,7 +1,7 @@
 // The connections that are open, of which only so many may be.
 //
-// One that comes when all places are taken pushes out the one that has kept us waiting longest: a
-// crowd of slow or silent ones takes no place from those who ask and read.
+// One that comes when all slots are taken pushes out the one that has kept us waiting longest: a
+// crowd of slow or silent ones takes no slot from those who ask and read.
 #pragma once
 
 #include <chrono>
@@ -14,12 +14,12 @@ class Connections {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A place, given back with its ticket.
-  class Place {
+  /// One of the connections that are served at once, given back with its ticket.
+  class Slot {
    public:
-    Place(Place&& other) noexcept;
-    Place& operator=(Place&&) = delete;
-    ~Place();
+    Slot(Slot&& other) noexcept;
+    Slot& operator=(Slot&&) = delete;
+    ~Slot();
     /// From now on we wait for the peer, or it for us.
     void waits();
     void works();
@@ -31,14 +31,14 @@ class Connections {
       bool waiting = true;
       Clock::time_point since;
     };
-    Place(Connections& connections, std::list<Entry>::iterator entry)
+    Slot(Connections& connections, std::list<Entry>::iterator entry)
         : connections_(&connections), entry_(entry) {}
     Connections* connections_;
     std::list<Entry>::iterator entry_;
   };
 
-  /// Notes `socket`, which must stay open while the place is held.
-  Place enter(int socket);
+  /// Notes `socket`, which must stay open while the slot is held.
+  Slot enter(int socket);
   /// Cuts off the connection that has been waited for longest; false when none is waited for.
   bool push_one_out();
   /// Cuts off all.
@@ -47,7 +47,7 @@ class Connections {
 
  private:
   mutable std::mutex mutex_;
-  std::list<Place::Entry> entries_;
+  std::list<Slot::Entry> entries_;
 };
 
 }  // namespace selfcal

@@ -32,8 +32,8 @@ WebClock::time_point in_seconds(double seconds) {
 /// A connection with a deadline for each request and each response.
 class TimedStream final : public httplib::Stream {
  public:
-  TimedStream(int socket, Connections::Place& place, const ServerLimits& limits)
-      : socket_(socket), place_(place), limits_(limits) {
+  TimedStream(int socket, Connections::Slot& slot, const ServerLimits& limits)
+      : socket_(socket), slot_(slot), limits_(limits) {
     std::array<char, NI_MAXHOST> host{};
     sockaddr_storage peer{};
     socklen_t size = sizeof peer;
@@ -45,7 +45,7 @@ class TimedStream final : public httplib::Stream {
 
   /// Waits for a request's first byte; false when the peer has gone or the time is over.
   bool begins(double longest) {
-    place_.waits();
+    slot_.waits();
     left_ = limits_.request;
     if (from_ == to_ && !wait_for(POLLIN, in_seconds(longest))) return false;
     read_end_ = in_seconds(limits_.request_seconds);
@@ -74,7 +74,7 @@ class TimedStream final : public httplib::Stream {
   ssize_t write(const char* from, std::size_t size) override {
     if (!write_end_) {
       write_end_ = in_seconds(limits_.response_seconds);
-      place_.waits();
+      slot_.waits();
     }
     if (!wait_for(POLLOUT, *write_end_)) return -1;
     return ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -98,7 +98,7 @@ class TimedStream final : public httplib::Stream {
   }
 
   int socket_;
-  Connections::Place& place_;
+  Connections::Slot& slot_;
   const ServerLimits& limits_;
   std::string peer_;
   std::array<char, 4096> buffer_{};
@@ -246,15 +246,15 @@ class HttpServer final : public WebServer, private httplib::Server {
   // Of httplib::Server; the body of every thread of the crew.
   bool process_and_close_socket(socket_t socket) override {
     {
-      Connections::Place place = connections_.enter(socket);
-      TimedStream stream(socket, place, limits_);
+      Connections::Slot slot = connections_.enter(socket);
+      TimedStream stream(socket, slot, limits_);
       bool more = true, closed = false;
       double wait = limits_.request_seconds;
       for (std::size_t i = 0; i < kRequests && more && !closed && !stopping_; ++i) {
         if (!stream.begins(wait)) break;
         wait = limits_.idle_seconds;
         more = process_request(stream, false, closed, [&](httplib::Request& request) {
-          place.works();
+          slot.works();
           request.headers.erase("Range");
           // Of a refused command the body is not read, and must not be taken for a request.
           if (request.method == "POST") closed = true;

@@ -66,7 +66,7 @@ class Adjustment {
     hold_scale(quietest() * adjusted_.before.at.R, adjusted_.before.state.xi);
     adjusted_.before.at = {};
     adjusted_.fitted = fit_all();
-    doubt();
+    multi_start();
     if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
     place_scale();
@@ -134,7 +134,7 @@ class Adjustment {
   /// A fit that strains the maker's tolerances, or does not converge, may sit in a wrong minimum:
   /// it is tried from the placed robot and from robots drawn from the tolerances, and the most
   /// probable one is kept.
-  void doubt() {
+  void multi_start() {
     const bool strained = widening(moved()) > 1;
     if (!options_.priors || (adjusted_.fitted.converged && !strained)) return;
     std::mt19937_64 random(options_.seed);

@@ -84,7 +84,7 @@ std::vector<Lost> lost_by_holding(const Robot& robot, const Identifiability& fre
 }  // namespace
 
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
-                          const std::vector<char>& candidate, int rows, unsigned long long seed,
+                          const std::vector<char>& free_mask, int rows, unsigned long long seed,
                           const std::vector<char>& used, const std::vector<int>& held) {
   DataSet data;
   std::vector<SampleRequest> requests;
@@ -108,15 +108,15 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   const Linearised at = equations.linearise(state, weighting);
   RankRule rule;
   rule.rows = at.equations;
-  StructuralRank result{identifiability(equations, at.R, state, candidate, rule),
+  StructuralRank result{identifiability(equations, at.R, state, free_mask, rule),
                         equations.nuisance_dimensions(),
                         {},
                         sampled.unreached};
-  const auto asked = static_cast<int>(std::count(candidate.begin(), candidate.end(), char{1}));
+  const auto asked = static_cast<int>(std::count(free_mask.begin(), free_mask.end(), char{1}));
   if (!robot.frame_motions(xi).empty())
-    result.lost = lost_directions(equations, at.R, state, candidate, asked - result.rank.total());
+    result.lost = lost_directions(equations, at.R, state, free_mask, asked - result.rank.total());
   if (held.empty() || !result.unreached.empty()) return result;
-  const StructuralRank free = structural(robot, sets, candidate, rows, seed, used);
+  const StructuralRank free = structural(robot, sets, free_mask, rows, seed, used);
   if (free.unreached.empty())
     for (Lost& lost : lost_by_holding(robot, free.rank, result.rank, held))
       result.lost.push_back(std::move(lost));
@@ -124,7 +124,7 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
 }
 
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
-                            const std::vector<char>& candidate) {
+                            const std::vector<char>& free_mask) {
   if (std::ranges::none_of(rank.status, [](Status status) {
         return status == Status::grouped || status == Status::no_effect;
       }))
@@ -133,7 +133,7 @@ std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Ident
   for (int row = 0; row < data.rows.rows(); ++row)
     if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
   constexpr int kRows = 80;
-  const Identifiability possible = structural(robot, data.sets, candidate, kRows, 1, used).rank;
+  const Identifiability possible = structural(robot, data.sets, free_mask, kRows, 1, used).rank;
   std::vector<Note> notes;
   for (size_t i = 0; i < robot.parameters().size(); ++i)
     if (possible.status[i] == Status::identified &&

@@ -25,11 +25,11 @@ struct StructuralRank {
 /// methods of `sets` (fresh random surfaces and groups), `rows` of each set that `used` marks (all
 /// when it is empty), the joints `held` locked at random readings.
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
-                          const std::vector<char>& candidate, int rows, unsigned long long seed,
+                          const std::vector<char>& free_mask, int rows, unsigned long long seed,
                           const std::vector<char>& used = {}, const std::vector<int>& held = {});
 
 /// Parameters identified structurally but not by `rank`, each with what is missing.
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
-                            const std::vector<char>& candidate);
+                            const std::vector<char>& free_mask);
 
 }  // namespace selfcal

@@ -134,14 +134,14 @@ int Identifiability::total() const {
 }
 
 Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
-                                const State& state, const std::vector<char>& candidate,
+                                const State& state, const std::vector<char>& free_mask,
                                 const RankRule& rule) {
   const Robot& robot = equations.robot();
   const int leading = equations.nuisance_columns();
   std::vector<int> order(leading);
   std::iota(order.begin(), order.end(), equations.robot_columns());
   for (const int p : robot.preference())
-    if (candidate[p]) order.push_back(p);
+    if (free_mask[p]) order.push_back(p);
   RankRule of_robot = rule;
   of_robot.least.assign(equations.columns(), rule.least_sigma);
   for (size_t i = 0; i < robot.parameters().size(); ++i) {

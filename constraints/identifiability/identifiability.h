@@ -39,7 +39,7 @@ std::vector<ColumnRank> rank_columns(const Eigen::MatrixXd& R, const std::vector
 
 /// Status and carriers of every parameter of the robot from R of `equations` at `state`;
 /// `rule.least` is filled in from the robot. Nuisance parameters carry by their values' names
-/// (S.nx), each with how far it moves. Parameters that `candidate` leaves out are fixed (or held)
+/// (S.nx), each with how far it moves. Parameters that `free_mask` leaves out are fixed (or held)
 /// and have no say.
 struct Identifiability {
   std::vector<Status> status;
@@ -47,7 +47,7 @@ struct Identifiability {
   int total() const;
 };
 Identifiability identifiability(const Equations& equations, const Eigen::MatrixXd& R,
-                                const State& state, const std::vector<char>& candidate,
+                                const State& state, const std::vector<char>& free_mask,
                                 const RankRule& rule);
 
 }  // namespace selfcal

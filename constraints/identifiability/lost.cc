@@ -151,11 +151,11 @@ class Finder {
 }  // namespace
 
 std::vector<Lost> lost_directions(const Equations& equations, const Eigen::MatrixXd& R,
-                                  const State& state, const std::vector<char>& candidate,
+                                  const State& state, const std::vector<char>& free_mask,
                                   int count) {
   std::vector<int> columns;
-  for (size_t i = 0; i < candidate.size(); ++i)
-    if (candidate[i]) columns.push_back(static_cast<int>(i));
+  for (size_t i = 0; i < free_mask.size(); ++i)
+    if (free_mask[i]) columns.push_back(static_cast<int>(i));
   if (count <= 0 || columns.empty()) return {};
   const Eigen::MatrixXd nuisance =
       R.middleCols(equations.robot_columns(), equations.nuisance_columns());

@@ -11,9 +11,9 @@
 namespace selfcal {
 
 /// The reasons for `count` directions that R (of structural rows, own unknowns being unknown) does
-/// not tell of the parameters in `candidate`; the counts sum to it.
+/// not tell of the parameters in `free_mask`; the counts sum to it.
 std::vector<Lost> lost_directions(const Equations& equations, const Eigen::MatrixXd& R,
-                                  const State& state, const std::vector<char>& candidate,
+                                  const State& state, const std::vector<char>& free_mask,
                                   int count);
 
 }  // namespace selfcal

@@ -92,8 +92,8 @@ Observations joined(const Observations& a, const Observations& b) {
   return all;
 }
 
-Conditions conditions(const Observations& data, const std::vector<int>& rows) {
-  Conditions at;
+MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows) {
+  MeasurementConditions at;
   at.wrench = picked(data.wrench, rows);
   at.velocity = picked(data.velocity, rows);
   at.normal = picked(data.normal, rows);

@@ -49,6 +49,6 @@ Observations taken(const Observations& data, const std::vector<int>& rows);
 Observations joined(const Observations& a, const Observations& b);
 
 /// What else held when `rows` were taken, a lane each.
-Conditions conditions(const Observations& data, const std::vector<int>& rows);
+MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows);
 
 }  // namespace selfcal

@@ -16,10 +16,11 @@ constexpr size_t kSearched = 3;    ///< candidates that the search puts together
 constexpr size_t kMostDifferences = 60;
 
 /// The candidate's values, as the hypothesis that holds it has them.
-std::vector<NamedValue> values_held(const EvidenceEvaluator& bench, const Changeable& changeable,
-                                    const Hypothesis& h, int candidate) {
+std::vector<NamedValue> values_held(const EvidenceEvaluator& evaluator,
+                                    const Changeable& changeable, const Hypothesis& h,
+                                    int candidate) {
   const MarginalLikelihood::Estimate estimate =
-      bench.marginal_likelihood(h.structure).estimate(bench.terms(h));
+      evaluator.marginal_likelihood(h.structure).estimate(evaluator.terms(h));
   std::vector<NamedValue> list;
   Eigen::Index at = 0;
   for (const int c : h.candidates)
@@ -35,7 +36,7 @@ std::vector<NamedValue> values_held(const EvidenceEvaluator& bench, const Change
 }
 
 /// What the search found: at most three at a time.
-void list_searched(const EvidenceEvaluator& bench, const Changeable& changeable,
+void list_searched(const EvidenceEvaluator& evaluator, const Changeable& changeable,
                    const Posterior& posterior, Comparison& result) {
   for (const Hypothesis& h : posterior.hypotheses)
     if (h.candidates.empty()) result.none += std::exp(h.log_weight);
@@ -49,23 +50,24 @@ void list_searched(const EvidenceEvaluator& bench, const Changeable& changeable,
       return std::ranges::count(each.candidates, c) > 0;
     });
     result.changes.push_back({list[c].effect, list[c].at, std::min(found->second, 1.0),
-                              values_held(bench, changeable, *h, c)});
+                              values_held(evaluator, changeable, *h, c)});
   }
 }
 
 /// More than the search puts together. Each is as probable as the
 /// whole with it is beside the whole without, structure as all of them are beside noise alone.
-void list_grown(const EvidenceEvaluator& bench, const Changeable& changeable, Hypothesis all,
+void list_grown(const EvidenceEvaluator& evaluator, const Changeable& changeable, Hypothesis all,
                 Comparison& result) {
   const auto weight = [&](Hypothesis h, int structure) {
     h.structure = structure;
-    return bench.log_weight(h);
+    return evaluator.log_weight(h);
   };
   const double plain = weight(all, 0);
   double noise = 0, structure = 0, best = plain;
-  for (int s = 0; s < bench.structures(); ++s) {
+  for (int s = 0; s < evaluator.structures(); ++s) {
     const double each = weight(all, s);
-    (bench.structure(s).kind == 0 ? noise : structure) += std::exp(std::min(each - plain, 500.0));
+    (evaluator.structure(s).kind == 0 ? noise : structure) +=
+        std::exp(std::min(each - plain, 500.0));
     if (each > best) all.structure = s;
     best = std::max(best, each);
   }
@@ -78,7 +80,7 @@ void list_grown(const EvidenceEvaluator& bench, const Changeable& changeable, Hy
     const double probability = 1 / (1 + std::exp(weight(less, all.structure) - best));
     if (probability >= kListedChange)
       result.changes.push_back({each.effect, each.at, probability,
-                                values_held(bench, changeable, all, all.candidates[i])});
+                                values_held(evaluator, changeable, all, all.candidates[i])});
   }
 }
 
@@ -87,18 +89,18 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
                  Comparison& result) {
   Hypothesis best;
   {
-    const EvidenceEvaluator bench = pair.bench(rows, rule);
-    const Posterior posterior = bench.search();
+    const EvidenceEvaluator evaluator = pair.evaluator(rows, rule);
+    const Posterior posterior = evaluator.search();
     best = posterior.hypotheses.front();
     if (best.candidates.size() < kSearched) {
-      list_searched(bench, pair.changes(), posterior, result);
+      list_searched(evaluator, pair.changes(), posterior, result);
       return best;
     }
   }
   rule.noise_is_known = true;
-  const EvidenceEvaluator bench = pair.bench(rows, rule);
-  best = bench.grow({best.candidates, 0, 0, best.sizes}, kMostDifferences);
-  list_grown(bench, pair.changes(), best, result);
+  const EvidenceEvaluator evaluator = pair.evaluator(rows, rule);
+  best = evaluator.grow({best.candidates, 0, 0, best.sizes}, kMostDifferences);
+  list_grown(evaluator, pair.changes(), best, result);
   return best;
 }
 

@@ -27,8 +27,7 @@ Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const D
                                      std::sqrt(noise_[s].angle / rows_[s])}
                              : Scale{};
   adjusted_ = adjust(equations_, free, progress);
-  every_ =
-      equations_.dense(adjusted_.fitted.state, noise_, std::vector<char>(put_aside_.size(), 0));
+  every_ = equations_.dense(adjusted_.fitted.state, noise_, std::vector<char>(outlier_.size(), 0));
   changes_ = changeable(equations_, every_.W, before, after, between);
 }
 
@@ -36,7 +35,7 @@ Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const D
 void Pair::fit_alone(const DataSet& part, const Options& options, const Progress& progress) {
   const Equations equations(*geometry_, part, Use::fit);
   const Fit fit = adjust(equations, options, progress).fitted;
-  put_aside_.insert(put_aside_.end(), fit.noise.outlier.begin(), fit.noise.outlier.end());
+  outlier_.insert(outlier_.end(), fit.noise.outlier.begin(), fit.noise.outlier.end());
   const std::vector<Scale> noise = pooled_noise(part, fit);
   for (size_t of = 0; of < fit.rows.size(); ++of) {
     if (fit.rows[of] == 0) continue;
@@ -77,7 +76,7 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
   return out;
 }
 
-EvidenceEvaluator Pair::bench(const DenseEquations& rows, const SearchRule& rule) const {
+EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, const SearchRule& rule) const {
   return EvidenceEvaluator(whitened(rows),
                            structures(both_.rows, rows, ends(*geometry_, both_.rows),
                                       rows.W(Eigen::all, reading_columns(*geometry_)),
@@ -93,7 +92,7 @@ std::vector<char> Pair::far_rows(const DenseEquations& rows, const Hypothesis& c
   const Whitened some = whitened(rows);
   const Eigen::VectorXd left = left_of(whitened(every_), some, with, free);
   return selfcal::far_rows(every_, left, static_cast<double>(some.A.cols() + free.size()),
-                           put_aside_.size(), most_rejected_);
+                           outlier_.size(), most_rejected_);
 }
 
 }  // namespace selfcal

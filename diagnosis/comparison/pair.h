@@ -7,7 +7,7 @@
 
 #include "constraints/estimation/adjustment.h"
 #include "diagnosis/comparison/changeable.h"
-#include "diagnosis/evidence/search.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
 
 namespace selfcal {
 
@@ -20,10 +20,10 @@ class Pair {
 
   const Changeable& changes() const { return changes_; }
   /// By row of both: false within its own data set.
-  const std::vector<char>& outlier() const { return put_aside_; }
+  const std::vector<char>& outlier() const { return outlier_; }
   /// Of large data sets every so many configurations of each: the smaller one's are worth more.
   DenseEquations weighed(const std::vector<char>& outlier) const;
-  EvidenceEvaluator bench(const DenseEquations& rows, const SearchRule& rule) const;
+  EvidenceEvaluator evaluator(const DenseEquations& rows, const SearchRule& rule) const;
   /// By row of both: what these changes, fitted to `rows`, leave of it is far beyond noise.
   std::vector<char> far_rows(const DenseEquations& rows, const Hypothesis& changes) const;
 
@@ -38,7 +38,7 @@ class Pair {
   const Equations equations_;
   std::vector<Scale> noise_;  ///< by set of both
   std::vector<double> rows_;  ///< by set of both, how many told its noise
-  std::vector<char> put_aside_;
+  std::vector<char> outlier_;
   Adjusted adjusted_;
   DenseEquations every_;
   Changeable changes_;

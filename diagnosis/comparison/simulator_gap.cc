@@ -11,13 +11,13 @@ namespace {
 constexpr int kMostFits = 50;
 constexpr double kFitted = 1e-12;  // m, rad: the last step's
 
-struct JudgedRows {
+struct ValidationPoses {
   std::vector<int> fit, check;
   bool apart = true;
 };
 
-JudgedRows judged_rows(const DataSet& data, int set, const ToolPoses& tool) {
-  JudgedRows rows;
+ValidationPoses poses_of_set(const DataSet& data, int set, const ToolPoses& tool) {
+  ValidationPoses rows;
   for (int row = 0; row < data.rows.rows(); ++row) {
     if (data.rows.set[row] != set || !tool[static_cast<std::size_t>(row)] ||
         data.rows.check[row] == kCopy)
@@ -94,7 +94,7 @@ SimulatorGap simulator_gap(const DataSet& data, const ToolPoses& tool) {
   double squares = 0;
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const Method& method = *data.sets[s].method;
-    const JudgedRows rows = judged_rows(data, static_cast<int>(s), tool);
+    const ValidationPoses rows = poses_of_set(data, static_cast<int>(s), tool);
     if (rows.fit.empty()) continue;
     if (!stands_alone(method)) {
       gap.sets.push_back(data.sets[s].name);

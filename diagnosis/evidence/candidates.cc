@@ -22,15 +22,15 @@ bool spreads(const Eigen::VectorXd& column, double least) {
 
 class Maker {
  public:
-  Maker(const Robot& robot, const DataSet& data, const Site& site)
-      : robot_(robot), data_(data), site_(site) {}
+  Maker(const Robot& robot, const DataSet& data, const MeasurementContext& context)
+      : robot_(robot), data_(data), context_(context) {}
 
   Candidates run() {
     for (size_t j = 0; j < robot_.joints().size(); ++j)
       take_of({.joint = static_cast<int>(j), .name = robot_.joints()[j].name});
     take_of({});
-    for (size_t s = 0; s < site_.sets.size(); ++s)
-      take_of({.set = static_cast<int>(s), .name = site_.sets[s].name});
+    for (size_t s = 0; s < context_.sets.size(); ++s)
+      take_of({.set = static_cast<int>(s), .name = context_.sets[s].name});
     spread_priors();
     return std::move(all_);
   }
@@ -41,7 +41,7 @@ class Maker {
     const DiagnosisConstants::Shapes& rules = kDiagnosis.shapes;
     const Supposed asked{
         .robot = robot_,
-        .site = site_,
+        .context = context_,
         .warms = warms(),
         .normals = data_.rows.normal.rows() > 0,
         .most_waves = rules.most_waves,
@@ -61,7 +61,7 @@ class Maker {
     }
   }
 
-  /// Where the robot or the site cannot have it, that is told.
+  /// Where the robot or the context cannot have it, that is told.
   void add(const Supposition& supposed, int joint) {
     Candidate candidate{.effect = supposed.effect, .at = supposed.at, .joint = joint};
     const auto made = static_cast<std::ptrdiff_t>(all_.made.size());
@@ -89,7 +89,7 @@ class Maker {
   std::string take(const Candidate& of, const EffectShape& shape, std::vector<int>& parameters,
                    Problems& problems) {
     all_.made.push_back({of.effect, of.at, shape});
-    const auto effect = make_effect(entry_of(all_.made.back()), robot_, site_, problems);
+    const auto effect = make_effect(entry_of(all_.made.back()), robot_, context_, problems);
     if (!effect) return {};
     for (size_t k = 0; k < effect->parameters().size(); ++k) parameters.push_back(parameters_++);
     return effect->needs();
@@ -161,7 +161,7 @@ class Maker {
 
   const Robot& robot_;
   const DataSet& data_;
-  const Site& site_;
+  const MeasurementContext& context_;
   Candidates all_;
   int parameters_ = 0;
 };
@@ -174,8 +174,8 @@ Candidates with_profiles(Candidates all) {
   return all;
 }
 
-Candidates candidates(const Robot& robot, const DataSet& data, const Site& site) {
-  return Maker(robot, data, site).run();
+Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context) {
+  return Maker(robot, data, context).run();
 }
 
 }  // namespace selfcal

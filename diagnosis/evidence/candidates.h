@@ -40,7 +40,7 @@ struct Candidates {
 /// The same with the profiles at the end of the list.
 Candidates with_profiles(Candidates all);
 
-/// Every candidate whose circumstances the rows carry.
-Candidates candidates(const Robot& robot, const DataSet& data, const Site& site);
+/// every candidate whose measurement context the rows carry.
+Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context);
 
 }  // namespace selfcal

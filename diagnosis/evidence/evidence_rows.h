@@ -15,7 +15,7 @@
 
 namespace selfcal {
 
-/// Columns of C that are weighed together: a workbench keeps their products.
+/// Columns of C that are weighed together: their products are kept.
 using Groups = std::vector<std::vector<int>>;
 
 /// Covariance of noise, and of one structure of what no known effect explains.

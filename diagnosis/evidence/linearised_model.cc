@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/rows.h"
@@ -40,14 +40,14 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
     : data_(data),
       most_rejected_(options.most_rejected),
       geometry_(with_mass_of_its_size(geometry_of(std::move(robot)))),
-      site_(site_of(*geometry_, data)),
-      candidates_(selfcal::candidates(*geometry_, data, site_)),
+      context_(context_of(*geometry_, data)),
+      candidates_(selfcal::candidates(*geometry_, data, context_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
       adjusted_(adjust(*equations_, geometry_options(options), progress)) {
   Problems problems;
   std::vector<Node> entries;
   for (const ShapedEffect& each : candidates_.made) entries.push_back(entry_of(each));
-  everything_ = correct(geometry_, entries, site_, problems);
+  everything_ = correct(geometry_, entries, context_, problems);
   expects(everything_ != nullptr, "every candidate is an effect that the robot can have");
   for (const Effect* effect : effects_of(*everything_))
     parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
@@ -58,7 +58,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
   all_ = all_equations_->dense(
       extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
       std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
-  put_aside_ = fitted.noise.outlier;
+  outlier_ = fitted.noise.outlier;
   left_ = all_.y;
   weigh(kDiagnosis.rows.most_weighed);
 
@@ -87,7 +87,7 @@ void LinearisedModel::weigh(double most) {
 
 std::vector<char> LinearisedModel::taking_part() const {
   std::vector<char> take = weighed_;
-  for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !put_aside_[row];
+  for (size_t row = 0; row < take.size(); ++row) take[row] = take[row] && !outlier_[row];
   return take;
 }
 
@@ -180,10 +180,10 @@ Eigen::VectorXd LinearisedModel::geometry_leaves(const Whitened& rows) const {
 
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
   std::vector<char> outlier =
-      far_rows(all_, residuals, static_cast<double>(nuisance_.columns.size()), put_aside_.size(),
+      far_rows(all_, residuals, static_cast<double>(nuisance_.columns.size()), outlier_.size(),
                most_rejected_);
-  if (outlier == put_aside_ && std::abs(variance - 1) < 0.1) return false;
-  put_aside_ = std::move(outlier);
+  if (outlier == outlier_ && std::abs(variance - 1) < 0.1) return false;
+  outlier_ = std::move(outlier);
   left_ = residuals;
   scale_ *= std::sqrt(variance);
   return true;

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "constraints/estimation/adjustment.h"
-#include "diagnosis/evidence/search.h"
+#include "diagnosis/evidence/candidates.h"
+#include "diagnosis/evidence/whitened.h"
 
 namespace selfcal {
 
@@ -27,7 +28,7 @@ class LinearisedModel {
 
   const Robot& geometry() const { return *geometry_; }
   const std::shared_ptr<const Robot>& shared_geometry() const { return geometry_; }
-  const Site& site() const { return site_; }
+  const MeasurementContext& context() const { return context_; }
   const Candidates& candidates() const { return candidates_; }
   const std::vector<EffectParameter>& parameters() const { return parameters_; }
   const Adjusted& adjusted() const { return adjusted_; }
@@ -37,7 +38,7 @@ class LinearisedModel {
   }
   const Equations& equations() const { return *equations_; }
 
-  /// The rows not put aside, with the noise `scale` times what the geometry's fit says.
+  /// The rows that are no outliers, with the noise `scale` times what the geometry's fit says.
   Whitened whitened() const;
   /// The same without any cause's columns.
   Whitened whitened_geometry() const;
@@ -53,7 +54,7 @@ class LinearisedModel {
   /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
   /// leverage.
   Eigen::VectorXd geometry_leaves(const Whitened& rows) const;
-  const std::vector<char>& outlier() const { return put_aside_; }
+  const std::vector<char>& outlier() const { return outlier_; }
   /// Times are places in the file: see DataSet.
   bool order_is_time() const { return data_.order_is_time; }
   /// As known so far, by set.
@@ -80,7 +81,7 @@ class LinearisedModel {
   void weigh(double most);
 
  private:
-  /// By row: weighed and not put aside.
+  /// By row: weighed and that are no outliers.
   std::vector<char> taking_part() const;
   /// Those equations of all(), with these columns of the effects.
   Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
@@ -90,7 +91,7 @@ class LinearisedModel {
   const DataSet& data_;
   double most_rejected_;
   std::shared_ptr<const Robot> geometry_, everything_;
-  Site site_;
+  MeasurementContext context_;
   Candidates candidates_;
   std::vector<EffectParameter> parameters_;
   std::unique_ptr<Equations> equations_, all_equations_;
@@ -98,10 +99,10 @@ class LinearisedModel {
   Nuisance nuisance_;
   DenseEquations all_;
   std::vector<int> quieter_;
-  std::vector<Scale> noise_;     ///< by set, at a scale of one
-  std::vector<char> weighed_;    ///< by row: takes part in choosing the causes
-  std::vector<char> put_aside_;  ///< by row of the data set
-  Eigen::VectorXd left_;         ///< by equation of all()
+  std::vector<Scale> noise_;   ///< by set, at a scale of one
+  std::vector<char> weighed_;  ///< by row: takes part in choosing the causes
+  std::vector<char> outlier_;  ///< by row of the data set
+  Eigen::VectorXd left_;       ///< by equation of all()
   double scale_ = 1;
   double least_ = 0;  ///< variance of the noise, at least, at a scale of one
 };

@@ -54,8 +54,8 @@ MarginalLikelihood::MarginalLikelihood(StructuredRows seen, DiscrepancyCovarianc
   const double least = rows.rows().least / fixed.structure.noise;
   if (least > 0) fixed.tail = NoiseTail(nu_);
   fixed_ = std::make_shared<const Fixed>(std::move(fixed));
-  of_rows_ = std::make_shared<const Views>(views_of(own, rows.rows().pull, true));
-  look_at_rows();
+  of_rows_ = std::make_shared<const Statistics>(statistics_of(own, rows.rows().pull, true));
+  condition_on_rows();
 }
 
 Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X) const {
@@ -67,51 +67,51 @@ Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X) co
   return scale * fixed_->seen.inverse_times(X - rows().A() * taken);
 }
 
-MarginalLikelihood::Views MarginalLikelihood::views_of(const Eigen::MatrixXd& Y) const {
+MarginalLikelihood::Statistics MarginalLikelihood::statistics_of(const Eigen::MatrixXd& Y) const {
   ObservedRows observed(rows(), Y, true);
-  return views_of(observed);
+  return statistics_of(observed);
 }
 
-MarginalLikelihood::Views MarginalLikelihood::views_of(ObservedRows& observed) const {
-  return views_of(observed, {}, true);
+MarginalLikelihood::Statistics MarginalLikelihood::statistics_of(ObservedRows& observed) const {
+  return statistics_of(observed, {}, true);
 }
 
 /// With the strain on the priors (columns of A; none where it has no rows) under each y: a cause
 /// relieves both.
-MarginalLikelihood::Views MarginalLikelihood::views_of(ObservedRows& observed,
-                                                       const Eigen::VectorXd& pull,
-                                                       bool with_causes) const {
+MarginalLikelihood::Statistics MarginalLikelihood::statistics_of(ObservedRows& observed,
+                                                                 const Eigen::VectorXd& pull,
+                                                                 bool with_causes) const {
   const StructuredRows& seen = fixed_->seen;
   const double scale = 1 / fixed_->structure.noise;
   observed.look_over(seen);
   Eigen::MatrixXd AY = scale * observed.AY(seen);
-  Views views;
-  views.yy = scale * observed.squares(seen);
+  Statistics statistics;
+  statistics.yy = scale * observed.squares(seen);
   if (pull.size() > 0) {
     AY.colwise() += rows().B().transpose() * pull;
-    views.yy.array() += pull.squaredNorm();
+    statistics.yy.array() += pull.squaredNorm();
   }
   const Eigen::MatrixXd half = solve_lower(fixed_->root, AY);
-  views.yy -= half.colwise().squaredNorm().transpose();
-  if (!with_causes) return views;
+  statistics.yy -= half.colwise().squaredNorm().transpose();
+  if (!with_causes) return statistics;
   // C'S^-1 (Y - A taken): the kernel sees what is left of Y at once.
   const Eigen::MatrixXd taken = solve_lower_transposed(fixed_->root, half);
-  views.g = observed.CY() - transposed_product(seen.noise->AC, taken);
+  statistics.g = observed.CY() - transposed_product(seen.noise->AC, taken);
   if (seen.kernel) {
     const Eigen::MatrixXd left =
         seen.hidden.asDiagonal() * (observed.UY() - seen.kernel->UA * taken);
-    views.g -= transposed_product(seen.kernel->UC, left);
+    statistics.g -= transposed_product(seen.kernel->UC, left);
   }
-  views.g *= scale;
-  return views;
+  statistics.g *= scale;
+  return statistics;
 }
 
-void MarginalLikelihood::look_at(const Views& views, Eigen::Index which) {
-  g_ = views.g.col(which);
-  yy_ = views.yy[which];
+void MarginalLikelihood::condition_on(const Statistics& statistics, Eigen::Index which) {
+  g_ = statistics.g.col(which);
+  yy_ = statistics.yy[which];
 }
 
-void MarginalLikelihood::look_at_rows() { look_at(*of_rows_, 0); }
+void MarginalLikelihood::condition_on_rows() { condition_on(*of_rows_, 0); }
 
 Eigen::MatrixXd MarginalLikelihood::products(const std::vector<int>& a) const {
   return transposed_product(beyond_geometry(rows().rows().C(Eigen::all, a)), rows().rows().C);
@@ -286,7 +286,7 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms,
 }
 
 Eigen::VectorXd MarginalLikelihood::log_evidences_of(ObservedRows& observed) const {
-  Eigen::VectorXd list = views_of(observed, {}, false).yy;
+  Eigen::VectorXd list = statistics_of(observed, {}, false).yy;
   for (double& each : list) each = constant_ + of_noise(each, nu_);
   return list;
 }

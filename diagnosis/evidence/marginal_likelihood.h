@@ -36,7 +36,7 @@ inline constexpr std::size_t kMostLooped = 64;
 struct Block {
   std::vector<int> columns;
   Eigen::VectorXd unit;            ///< prior sigma of each at a size of one
-  int group = -1;                  ///< its place in the workbench's groups; -1: it is in none
+  int group = -1;                  ///< its place among the groups; -1: it is in none
   std::vector<int> positive = {};  ///< places of those that physics allows no other sign
 };
 
@@ -52,26 +52,26 @@ class MarginalLikelihood {
   const DiscrepancyCovariance& structure() const { return fixed_->structure; }
   const EvidenceRows& rows() const { return *fixed_->seen.rows; }
 
-  /// What several y say, one a column, without a strain on the priors: made together, for then it
-  /// costs a tenth, and looked at one after the other.
-  struct Views {
+  /// Sufficient statistics of several y, one a column, without a strain on the priors: made
+  /// together, for then it costs a tenth, and conditioned on one after the other.
+  struct Statistics {
     Eigen::MatrixXd g;   ///< columns of C x y
     Eigen::VectorXd yy;  ///< by y
   };
-  Views views_of(const Eigen::MatrixXd& Y) const;
-  /// The same of rows that other structures look at too.
-  Views views_of(ObservedRows& observed) const;
+  Statistics statistics_of(const Eigen::MatrixXd& Y) const;
+  /// The same of rows that other structures have too.
+  Statistics statistics_of(ObservedRows& observed) const;
   /// Exchanges y.
-  void look_at(const Views& views, Eigen::Index which);
+  void condition_on(const Statistics& statistics, Eigen::Index which);
   /// Goes back to that of the rows.
-  void look_at_rows();
+  void condition_on_rows();
 
   struct Term {
     const Block* block;
     double size;
   };
   /// The same rows with `terms` integrated out as the geometry is: what they leave for one other
-  /// block of its groups. It can neither look at another y nor be given more.
+  /// block of its groups. It can neither exchange y nor be given more.
   MarginalLikelihood given(std::span<const Term> terms) const;
   /// With products(columns) of the terms' columns at hand.
   MarginalLikelihood given(std::span<const Term> terms, const Eigen::MatrixXd& products) const;
@@ -132,7 +132,8 @@ class MarginalLikelihood {
   MarginalLikelihood() = default;
   /// M X: what of S^-1 X is beyond the geometry.
   Eigen::MatrixXd beyond_geometry(const Eigen::MatrixXd& X) const;
-  Views views_of(ObservedRows& observed, const Eigen::VectorXd& pull, bool with_causes) const;
+  Statistics statistics_of(ObservedRows& observed, const Eigen::VectorXd& pull,
+                           bool with_causes) const;
   /// s^2 at least.
   double least() const { return rows().rows().least / fixed_->structure.noise; }
   /// The part of the log evidence that the noise decides, where `left` squares (Q) of `freedom` are
@@ -148,7 +149,7 @@ class MarginalLikelihood {
                   const Eigen::VectorXd& z) const;
 
   std::shared_ptr<const Fixed> fixed_;
-  std::shared_ptr<const Views> of_rows_;
+  std::shared_ptr<const Statistics> of_rows_;
   std::vector<double> kept_;  ///< the groups' blocks of G, lower triangles one after the other
   Eigen::VectorXd g_;
   double yy_ = 0, nu_ = 0, constant_ = 0;

@@ -10,19 +10,20 @@ namespace selfcal {
 namespace {
 
 /// What each joint's own effects take of the residual when all effects there are share it.
-std::vector<Share> by_joint(const LinearisedModel& view, const EvidenceEvaluator& bench) {
+std::vector<Share> by_joint(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator) {
   std::vector<MarginalLikelihood::Term> terms;
   std::vector<int> joint;
-  const std::vector<Joint>& joints = view.geometry().joints();
-  const std::vector<Candidate>& all = view.candidates().list;
+  const std::vector<Joint>& joints = linearised.geometry().joints();
+  const std::vector<Candidate>& all = linearised.candidates().list;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (bench.survival(static_cast<int>(c)) <= kDiagnosis.report.least_survival) continue;
-    terms.push_back({&bench.block(static_cast<int>(c)), 1});
+    if (evaluator.beyond_nuisance(static_cast<int>(c)) <= kDiagnosis.report.least_beyond_nuisance)
+      continue;
+    terms.push_back({&evaluator.block(static_cast<int>(c)), 1});
     joint.push_back(all[c].joint);
   }
   for (MarginalLikelihood::Term& term : terms)
     term.size = 2 / std::sqrt(static_cast<double>(terms.size()));
-  const MarginalLikelihood& plain = bench.marginal_likelihood(0);
+  const MarginalLikelihood& plain = evaluator.marginal_likelihood(0);
   const Eigen::VectorXd v = plain.mean(terms);
   std::vector<double> share(joints.size(), 0);
   Eigen::Index at = 0;
@@ -54,11 +55,11 @@ struct RowSquares {
   }
 };
 
-RowSquares row_squares(const LinearisedModel& view) {
-  const DenseEquations kept = view.kept();
-  const Whitened whitened = view.whitened_geometry();
-  const Eigen::VectorXd e = view.geometry_residuals(whitened);
-  const Eigen::VectorXd noise = view.geometry_leaves(whitened);
+RowSquares row_squares(const LinearisedModel& linearised) {
+  const DenseEquations kept = linearised.kept();
+  const Whitened whitened = linearised.whitened_geometry();
+  const Eigen::VectorXd e = linearised.geometry_residuals(whitened);
+  const Eigen::VectorXd noise = linearised.geometry_leaves(whitened);
   RowSquares rows;
   for (size_t i = 0; i < kept.row.size(); ++i) {
     if (kept.row[i] < 0) continue;
@@ -104,12 +105,13 @@ std::vector<Region> by_region(const RowSquares& rows, const Eigen::MatrixXd& tip
   return regions;
 }
 
-std::vector<Interval> by_time(const RowSquares& rows, const DataSet& data, const Site& site) {
+std::vector<Interval> by_time(const RowSquares& rows, const DataSet& data,
+                              const MeasurementContext& context) {
   std::vector<Interval> list;
-  if (site.end <= site.begin) return list;
-  const double step = (site.end - site.begin) / kDiagnosis.report.times;
+  if (context.end <= context.begin) return list;
+  const double step = (context.end - context.begin) / kDiagnosis.report.times;
   for (int i = 0; i < kDiagnosis.report.times; ++i) {
-    Interval each{site.begin + i * step, site.begin + (i + 1) * step, 0};
+    Interval each{context.begin + i * step, context.begin + (i + 1) * step, 0};
     const bool last = i + 1 == kDiagnosis.report.times;
     each.share = rows.share([&](int row) {
       const double t = data.rows.time[row];
@@ -130,17 +132,17 @@ void at_most_one(List& list) {
 
 }  // namespace
 
-Where attribution(const LinearisedModel& view, const EvidenceEvaluator& bench,
+Where attribution(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                   const DataSet& data) {
   Where where;
-  where.by_joint = by_joint(view, bench);
-  const RowSquares rows = row_squares(view);
+  where.by_joint = by_joint(linearised, evaluator);
+  const RowSquares rows = row_squares(linearised);
   for (size_t s = 0; s < data.sets.size(); ++s)
     where.by_set.push_back({data.sets[s].name, rows.share([&](int row) {
                               return data.rows.set[row] == static_cast<int>(s);
                             })});
-  where.by_region = by_region(rows, view.tips());
-  where.by_time = by_time(rows, data, view.site());
+  where.by_region = by_region(rows, linearised.tips());
+  where.by_time = by_time(rows, data, linearised.context());
   at_most_one(where.by_joint);
   at_most_one(where.by_set);
   at_most_one(where.by_region);

@@ -9,36 +9,37 @@
 namespace selfcal {
 namespace {
 
-bool moves_nothing(const LinearisedModel& view, const Candidate& candidate) {
-  const auto first = static_cast<Eigen::Index>(view.geometry().parameters().size());
-  return std::ranges::all_of(candidate.main,
-                             [&](int k) { return view.all().W.col(first + k).isZero(1e-12); });
+bool moves_nothing(const LinearisedModel& linearised, const Candidate& candidate) {
+  const auto first = static_cast<Eigen::Index>(linearised.geometry().parameters().size());
+  return std::ranges::all_of(
+      candidate.main, [&](int k) { return linearised.all().W.col(first + k).isZero(1e-12); });
 }
 
-std::string why_untestable(const LinearisedModel& view, const Candidate& candidate) {
-  if (!moves_nothing(view, candidate)) return "absorbed by calibration on these rows";
+std::string why_untestable(const LinearisedModel& linearised, const Candidate& candidate) {
+  if (!moves_nothing(linearised, candidate)) return "absorbed by calibration on these rows";
   return "it moves nothing in these rows: it needs " + candidate.needs;
 }
 
 }  // namespace
 
-void list_detectable(const LinearisedModel& view, const EvidenceEvaluator& bench,
+void list_detectable(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                      const DiagnosisOptions& options, Diagnosis& into) {
   std::map<Cause, Detectable> best;
-  const std::vector<Candidate>& list = view.candidates().list;
+  const std::vector<Candidate>& list = linearised.candidates().list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
-    if (bench.survival(c) < kDiagnosis.report.least_survival) continue;
+    if (evaluator.beyond_nuisance(c) < kDiagnosis.report.least_beyond_nuisance) continue;
     const double needed = -std::log(options.name_below_none) -
                           std::log(options.search.family_odds) - list[c].log_prior;
-    const Detectable each{list[c].effect, list[c].at, view.parameters()[list[c].main.front()].unit,
-                          bench.detectable(c, needed)};
+    const Detectable each{list[c].effect, list[c].at,
+                          linearised.parameters()[list[c].main.front()].unit,
+                          evaluator.detectable(c, needed)};
     const auto [at, made] = best.try_emplace({list[c].effect, list[c].at}, each);
     if (!made && each.smallest < at->second.smallest) at->second = each;
   }
   for (auto& [cause, each] : best) into.detectable.push_back(std::move(each));
   for (const Candidate& each : list)
     if (best.try_emplace({each.effect, each.at}).second)
-      into.untestable.push_back({each.effect, each.at, why_untestable(view, each)});
+      into.untestable.push_back({each.effect, each.at, why_untestable(linearised, each)});
 }
 
 }  // namespace selfcal

@@ -1,8 +1,8 @@
 // The smallest effect of each kind that would have been named, and what these rows cannot test.
 #pragma once
 
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
-#include "diagnosis/evidence/search.h"
 
 namespace selfcal {
 
@@ -11,7 +11,7 @@ struct DiagnosisOptions;
 
 /// Fills `detectable` with each cause in its best seen shape, and adds to `untestable` what
 /// calibration absorbs or nothing moves.
-void list_detectable(const LinearisedModel& view, const EvidenceEvaluator& bench,
+void list_detectable(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                      const DiagnosisOptions& options, Diagnosis& into);
 
 }  // namespace selfcal

@@ -36,19 +36,19 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
   return {};
 }
 
-std::string beyond_tolerances(const LinearisedModel& view, const Diagnosis& diagnosis) {
-  if (diagnosis.noise <= gross_misfit(view.geometry(), true)) return {};
+std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
+  if (diagnosis.noise <= gross_misfit(linearised.geometry(), true)) return {};
   return "calibration and all effects leave " + millimetres(diagnosis.noise) +
          ", which no tolerance of the maker explains";
 }
 
-std::string beyond_sheet(const LinearisedModel& view, const DataSet& data) {
-  const std::vector<Scale> noise = view.noise_of_sets();
+std::string beyond_sheet(const LinearisedModel& linearised, const DataSet& data) {
+  const std::vector<Scale> noise = linearised.noise_of_sets();
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const double declared = data.sets[s].noise, found = noise[s].length;
     if (declared <= 0 || found <= kDiagnosis.report.beyond_sheet * declared) continue;
-    const double repeats =
-        repeat_sigma(data, static_cast<int>(s), view.residuals_of_rows(), view.outlier());
+    const double repeats = repeat_sigma(data, static_cast<int>(s), linearised.residuals_of_rows(),
+                                        linearised.outlier());
     if (repeats > kDiagnosis.report.confirmed * found) continue;
     return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
            " once the robot is calibrated, and their files state a noise of " +
@@ -87,10 +87,10 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
 }
 
 /// What calibration with all that was found leaves of the rows.
-double left_of(const LinearisedModel& view, const DataSet& data, const Correction& found) {
+double left_of(const LinearisedModel& linearised, const DataSet& data, const Correction& found) {
   Problems problems;
   const std::shared_ptr<const Robot> robot =
-      correct(view.shared_geometry(), entries_of(found), view.site(), problems);
+      correct(linearised.shared_geometry(), entries_of(found), linearised.context(), problems);
   expects(robot != nullptr, "what was found is effects that the robot can have");
   Options options;
   for (const Parameter& p : robot->parameters())
@@ -100,7 +100,7 @@ double left_of(const LinearisedModel& view, const DataSet& data, const Correctio
 
 /// A joint, a link or a tool is said to give way, and does so better without the forces of the
 /// rows, by gravity alone: they are not what acted.
-std::string forces_that_never_were(const LinearisedModel& view, const DataSet& data,
+std::string forces_that_never_were(const LinearisedModel& linearised, const DataSet& data,
                                    const Diagnosis& diagnosis) {
   const bool gives_way = std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
     return each.effect.ends_with("_compliance");
@@ -108,8 +108,8 @@ std::string forces_that_never_were(const LinearisedModel& view, const DataSet& d
   if (!gives_way || data.rows.wrench.rows() == 0) return {};
   DataSet unforced = data;
   unforced.rows.wrench.resize(0, 6);
-  const double with = left_of(view, data, diagnosis.found);
-  const double without = left_of(view, unforced, diagnosis.found);
+  const double with = left_of(linearised, data, diagnosis.found);
+  const double without = left_of(linearised, unforced, diagnosis.found);
   if (!(without < kDiagnosis.report.forces_cost * with)) return {};
   return "the rows fit better without their forces and torques (fx to tz), " +
          millimetres(without) + " in place of " + millimetres(with) +
@@ -117,15 +117,15 @@ std::string forces_that_never_were(const LinearisedModel& view, const DataSet& d
 }
 
 /// The steps that are left when what was found and stays the same from row to row is in the model.
-std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& view, const DataSet& data,
-                                               const Correction& found) {
+std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised,
+                                               const DataSet& data, const Correction& found) {
   Correction stays;
   std::ranges::copy_if(found, std::back_inserter(stays), [](const FoundEffect& each) {
     return std::ranges::find(kMoves, each.what.effect) == kMoves.end();
   });
   Problems problems;
   const std::shared_ptr<const Robot> robot =
-      correct(view.shared_geometry(), entries_of(stays), view.site(), problems);
+      correct(linearised.shared_geometry(), entries_of(stays), linearised.context(), problems);
   expects(robot != nullptr, "what was found is effects that the robot can have");
   Options options;
   for (const FoundEffect& each : stays)
@@ -137,24 +137,26 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& view, cons
 }
 
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
-std::string moved_between_rows(const LinearisedModel& view, const DataSet& data,
+std::string moved_between_rows(const LinearisedModel& linearised, const DataSet& data,
                                const Diagnosis& diagnosis) {
-  std::vector<FrameStep> steps = identify(view.geometry(), data).frame_steps;
+  std::vector<FrameStep> steps = identify(linearised.geometry(), data).frame_steps;
   if (steps.empty() && drifts_too_far(diagnosis.named))
-    steps = steps_beside_what_stays(view, data, diagnosis.found);
+    steps = steps_beside_what_stays(linearised, data, diagnosis.found);
   return steps.empty() ? "" : step_words(steps.front());
 }
 
 }  // namespace
 
-std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis) {
-  if (std::string why = moved_between_rows(view, data, diagnosis); !why.empty()) return why;
+std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
+                     const Diagnosis& diagnosis) {
+  if (std::string why = moved_between_rows(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
-  if (std::string why = beyond_tolerances(view, diagnosis); !why.empty()) return why;
+  if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
-  if (std::string why = forces_that_never_were(view, data, diagnosis); !why.empty()) return why;
+  if (std::string why = forces_that_never_were(linearised, data, diagnosis); !why.empty())
+    return why;
   const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();
-  return !settled && hardly_closes(diagnosis) ? beyond_sheet(view, data) : std::string();
+  return !settled && hardly_closes(diagnosis) ? beyond_sheet(linearised, data) : std::string();
 }
 
 void withdraw(const std::string& doubt, Diagnosis& diagnosis) {

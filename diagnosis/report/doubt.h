@@ -19,7 +19,8 @@ namespace selfcal {
 /// a named cause that closes nothing; forces without which what gives way under them fits better;
 /// where nothing is named, or what is named closes little, noise far beyond the data sheet's that
 /// no repeat confirms.
-std::string doubt_of(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis);
+std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
+                     const Diagnosis& diagnosis);
 
 /// Takes back what is named: the verdict is `unknown`, and its words begin with the doubt.
 void withdraw(const std::string& doubt, Diagnosis& diagnosis);

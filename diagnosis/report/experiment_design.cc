@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "diagnosis/constants.h"
-#include "diagnosis/report/further_rows.h"
+#include "diagnosis/report/candidate_rows.h"
 #include "diagnosis/report/row_choice.h"
 #include "diagnosis/report/separation.h"
 #include "diagnosis/search/causes.h"
@@ -109,9 +109,9 @@ std::vector<const CauseResult*> at_issue(const Diagnosis& diagnosis) {
 
 class Planner {
  public:
-  Planner(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
+  Planner(const LinearisedModel& linearised, const DataSet& data, const Diagnosis& diagnosis,
           const DiagnosisOptions& options)
-      : view_(view),
+      : linearised_(linearised),
         data_(data),
         diagnosis_(diagnosis),
         options_(options),
@@ -120,7 +120,7 @@ class Planner {
   NextSteps run() {
     if (options_.possible) return choose();
     if (asked_.empty() && !unknown_at_issue(diagnosis_)) return {{}, why_nothing()};
-    further_ = candidate_rows(view_, data_);
+    further_ = candidate_rows(linearised_, data_);
     for (const Question& each : asked_) try_all(each);
     std::ranges::stable_sort(next_.steps, std::ranges::greater{}, &NextStep::probability_after);
     if (next_.steps.size() > kDiagnosis.report.most_steps)
@@ -141,7 +141,7 @@ class Planner {
     const int first = data_.rows.rows();
     both.rows.check.resize(both.rows.set.size(), 0);
     if (both.rows.time.size() > 0)
-      both.rows.time.tail(both.rows.rows() - first).setConstant(view_.site().end + 1);
+      both.rows.time.tail(both.rows.rows() - first).setConstant(linearised_.context().end + 1);
     std::vector<CausePair> pairs;
     const double none = probability_of(diagnosis_, kNone);
     for (const CauseResult* one : causes) {
@@ -151,7 +151,7 @@ class Planner {
       if (none >= kDiagnosis.report.edge) pairs.push_back(pair_of(*one, {}, none));
     }
     if (pairs.empty()) return {{}, why_nothing()};
-    const RowChoice choice = choose_rows(view_, both, first, pairs, options_.most_further);
+    const RowChoice choice = choose_rows(linearised_, both, first, pairs, options_.most_further);
     if (choice.rows.empty())
       return {{}, "none of the rows that can be taken tells these causes apart"};
     NextStep step;
@@ -195,7 +195,7 @@ class Planner {
     const double p = asked.probability;
     std::vector<NextStep> steps;
     for (const CandidateRows& further : further_) {
-      Separation causes(view_, entries_of(asked.one->correction), other_entries(asked.other),
+      Separation causes(linearised_, entries_of(asked.one->correction), other_entries(asked.other),
                         further.both, data_.rows.rows());
       const double now = causes.apart();
       causes.take_all();
@@ -227,7 +227,7 @@ class Planner {
                                rows_of(each)});
   }
 
-  const LinearisedModel& view_;
+  const LinearisedModel& linearised_;
   const DataSet& data_;
   const Diagnosis& diagnosis_;
   const DiagnosisOptions& options_;
@@ -238,9 +238,9 @@ class Planner {
 
 }  // namespace
 
-NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
-                     const DiagnosisOptions& options) {
-  return Planner(view, data, diagnosis, options).run();
+NextSteps next_steps(const LinearisedModel& linearised, const DataSet& data,
+                     const Diagnosis& diagnosis, const DiagnosisOptions& options) {
+  return Planner(linearised, data, diagnosis, options).run();
 }
 
 }  // namespace selfcal

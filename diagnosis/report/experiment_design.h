@@ -17,7 +17,7 @@ struct NextSteps {
 /// that no known effect explains: what would show of which kind it is. The best ones; never none
 /// without a reason. Where `options` has possible rows, one step: those of them that tell all
 /// causes that are at issue from each other.
-NextSteps next_steps(const LinearisedModel& view, const DataSet& data, const Diagnosis& diagnosis,
-                     const DiagnosisOptions& options = {});
+NextSteps next_steps(const LinearisedModel& linearised, const DataSet& data,
+                     const Diagnosis& diagnosis, const DiagnosisOptions& options = {});
 
 }  // namespace selfcal

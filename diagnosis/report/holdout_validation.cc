@@ -1,4 +1,4 @@
-// A judging row that no model comes near is a false one: it would drown every figure, is left
+// A validation row that no model comes near is a false one: it would drown every figure, is left
 // out of them, named, and figures with it stand beside them.
 #include "diagnosis/report/holdout_validation.h"
 
@@ -28,13 +28,14 @@ struct Fitted {
 };
 
 Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
-              const Correction& correction, const Site& site, const DiagnosisOptions& options) {
+              const Correction& correction, const MeasurementContext& context,
+              const DiagnosisOptions& options) {
   Fitted fit;
   Problems problems;
   Options free = geometry_options(options);
   for (const FoundEffect& each : correction)
     free.effect_sigma.insert(free.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
-  fit.model = correct(geometry, entries_of(correction), site, problems);
+  fit.model = correct(geometry, entries_of(correction), context, problems);
   expects(fit.model != nullptr, "what was found is effects that the robot can have");
   fit.equations = std::make_unique<Equations>(*fit.model, data, Use::fit);
   for (const Parameter& p : fit.model->parameters())
@@ -43,13 +44,13 @@ Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
   return fit;
 }
 
-/// The judging rows as each model leaves them.
+/// The validation rows as each model leaves them.
 struct Left {
   Judged nominal, geometric, named, whole;
 };
 
-/// The figures of every judging row, and which of them no model comes near.
-void take_rows(const Left& left, const DataSet& data, double noise, Closing& closing) {
+/// The figures of every validation row, and which of them no model comes near.
+void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValidation& validation) {
   // A set that only judges has a noise of its own: what its data sheet says, if it does.
   const Judged& whole = left.whole;
   const auto floor_of = [&](const RowResidual& row) {
@@ -58,36 +59,38 @@ void take_rows(const Left& left, const DataSet& data, double noise, Closing& clo
     return row.lengths * std::pow(row.factor * (whole.aligned[row.set] ? nuisance : noise), 2);
   };
   const auto square = [](const RowResidual& row) { return row.length * row.length; };
-  const std::vector<int> block = blocks_of_judging(data);
+  const std::vector<int> block = validation_blocks(data);
   for (size_t i = 0; i < whole.check.size(); ++i) {
     const RowResidual& before = left.geometric.check[i];
     const RowResidual& after = left.named.check[i];
     const RowResidual& all = whole.check[i];
     if (all.lengths == 0) continue;
     const double near = std::min({before.length, after.length, all.length});
-    const double limit = chi_quantile(all.lengths, kDiagnosis.closing.far);
-    const bool false_reading = near > kDiagnosis.closing.beyond * limit *
+    const double limit = chi_quantile(all.lengths, kDiagnosis.validation.far);
+    const bool false_reading = near > kDiagnosis.validation.beyond * limit *
                                           std::max(noise, whole.check_scale[all.set].length);
     if (false_reading)
-      closing.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
-                                  "neither the geometry nor any effect found comes near it"});
-    closing.judged.push_back({square(left.nominal.check[i]), square(before), square(after),
-                              square(all), floor_of(all), block[all.row], false_reading});
+      validation.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
+                                     "neither the geometry nor any effect found comes near it"});
+    validation.rows.push_back({square(left.nominal.check[i]), square(before), square(after),
+                               square(all), floor_of(all), block[all.row], false_reading});
   }
 }
 
 }  // namespace
 
-Closing validate_on_holdout(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
-                            const DataSet& data, const Correction& correction, const Site& site,
-                            double noise, const DiagnosisOptions& options) {
-  Closing closing;
+HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geometry,
+                                      const Adjusted& before, const DataSet& data,
+                                      const Correction& correction,
+                                      const MeasurementContext& context, double noise,
+                                      const DiagnosisOptions& options) {
+  HoldoutValidation validation;
   const auto note = [&](const Fit& fit) {
-    if (closing.converged && !fit.converged) closing.stop_reason = fit.stop_reason;
-    closing.converged = closing.converged && fit.converged;
+    if (validation.converged && !fit.converged) validation.stop_reason = fit.stop_reason;
+    validation.converged = validation.converged && fit.converged;
   };
   const Equations plain(*geometry, data, Use::fit);
-  Fitted all = fitted(geometry, data, correction, site, options);
+  Fitted all = fitted(geometry, data, correction, context, options);
   Left left{judge(*geometry, data, plain, before.before),
             judge(*geometry, data, plain, before.fitted),
             {},
@@ -100,14 +103,14 @@ Closing validate_on_holdout(const std::shared_ptr<const Robot>& geometry, const 
   } else if (names.size() == correction.size() || left.whole.check.empty()) {
     left.named = left.whole;
   } else {
-    const Fitted alone = fitted(geometry, data, names, site, options);
+    const Fitted alone = fitted(geometry, data, names, context, options);
     left.named = alone.judged(data);
     note(alone.adjusted.fitted);
   }
-  take_rows(left, data, noise, closing);
-  closing.model = std::move(all.model);
-  closing.all = std::move(all.adjusted);
-  return closing;
+  take_rows(left, data, noise, validation);
+  validation.model = std::move(all.model);
+  validation.all = std::move(all.adjusted);
+  return validation;
 }
 
 }  // namespace selfcal

@@ -12,20 +12,22 @@
 
 namespace selfcal {
 
-struct Closing {
-  std::vector<JudgedRow> judged;
+struct HoldoutValidation {
+  std::vector<ValidationRow> rows;
   std::shared_ptr<const Robot> model;  ///< with everything found
   Adjusted all;                        ///< its fit
   bool converged = true;               ///< every fit that was judged
   std::string stop_reason;             ///< of the first one that did not converge
-  std::vector<Outlier> rejected;       ///< judging rows that no model explains
+  std::vector<Outlier> rejected;       ///< validation rows that no model explains
 };
 
 /// `before` is the geometry's own adjustment; the parameters of `correction` are identified, those
 /// of its named effects once more without the others.
 /// `noise` is 1 sigma of one scalar (m).
-Closing validate_on_holdout(const std::shared_ptr<const Robot>& geometry, const Adjusted& before,
-                            const DataSet& data, const Correction& correction, const Site& site,
-                            double noise, const DiagnosisOptions& options);
+HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geometry,
+                                      const Adjusted& before, const DataSet& data,
+                                      const Correction& correction,
+                                      const MeasurementContext& context, double noise,
+                                      const DiagnosisOptions& options);
 
 }  // namespace selfcal

@@ -1,6 +1,7 @@
 // What a verdict names, among all that was found.
 #pragma once
 
+#include "diagnosis/evidence/candidates.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {

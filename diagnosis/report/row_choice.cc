@@ -14,12 +14,12 @@ constexpr double kLeastGain = 0.01;  ///< of the confusion now that a row must t
 
 }  // namespace
 
-RowChoice choose_rows(const LinearisedModel& view, const DataSet& data, int first,
+RowChoice choose_rows(const LinearisedModel& linearised, const DataSet& data, int first,
                       const std::vector<CausePair>& pairs, int most) {
   std::vector<Separation> causes;
   std::vector<double> before;
   for (const CausePair& each : pairs) {
-    causes.emplace_back(view, each.one, each.other, data, first);
+    causes.emplace_back(linearised, each.one, each.other, data, first);
     before.push_back(causes.back().apart());
   }
   RowChoice choice;

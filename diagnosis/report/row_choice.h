@@ -22,7 +22,7 @@ struct RowChoice {
 };
 
 /// At most `most` of the rows of `data` from `first` on; fewer where more would tell nothing.
-RowChoice choose_rows(const LinearisedModel& view, const DataSet& data, int first,
+RowChoice choose_rows(const LinearisedModel& linearised, const DataSet& data, int first,
                       const std::vector<CausePair>& pairs, int most);
 
 }  // namespace selfcal

@@ -12,11 +12,11 @@ namespace {
 constexpr double kRidge = 1e-5;
 
 /// Values of all parameters of the entries' effects.
-std::vector<double> values_of(const LinearisedModel& view, const std::vector<Node>& entries) {
+std::vector<double> values_of(const LinearisedModel& linearised, const std::vector<Node>& entries) {
   std::vector<double> list;
   Problems problems;
   for (const Node& entry : entries) {
-    const auto effect = make_effect(entry, view.geometry(), view.site(), problems);
+    const auto effect = make_effect(entry, linearised.geometry(), linearised.context(), problems);
     expects(effect != nullptr, "causes that were weighed are effects that the robot can have");
     for (const EffectParameter& each : effect->parameters()) list.push_back(each.value);
   }
@@ -25,28 +25,29 @@ std::vector<double> values_of(const LinearisedModel& view, const std::vector<Nod
 
 }  // namespace
 
-Separation::Separation(const LinearisedModel& view, const std::vector<Node>& cause,
+Separation::Separation(const LinearisedModel& linearised, const std::vector<Node>& cause,
                        const std::vector<Node>& other, const DataSet& data, int first)
     : first_(first) {
   std::vector<Node> entries = cause;
   entries.insert(entries.end(), other.begin(), other.end());
   Problems problems;
-  const auto robot = correct(view.shared_geometry(), entries, view.site(), problems);
+  const auto robot = correct(linearised.shared_geometry(), entries, linearised.context(), problems);
   expects(robot != nullptr, "causes that were weighed are effects that the robot can have");
   const Equations equations(*robot, data, Use::fit);
-  State state = view.adjusted().fitted.state;
+  State state = linearised.adjusted().fitted.state;
   const Eigen::Index geometry = state.xi.size();
   state.xi.conservativeResize(static_cast<Eigen::Index>(robot->parameters().size()));
   state.xi.tail(state.xi.size() - geometry).setZero();
-  const DenseEquations dense = equations.dense(
-      state, view.noise_of_sets(), std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
-  const std::vector<double> value = values_of(view, cause);
+  const DenseEquations dense =
+      equations.dense(state, linearised.noise_of_sets(),
+                      std::vector<char>(static_cast<size_t>(data.rows.rows()), 0));
+  const std::vector<double> value = values_of(linearised, cause);
   const auto own = static_cast<Eigen::Index>(value.size());
   const Eigen::VectorXd t =
       dense.W.middleCols(geometry, own) * Eigen::Map<const Eigen::VectorXd>(value.data(), own);
   std::vector<int> others;
   for (int c = 0; c < dense.W.cols(); ++c)
-    if (c < geometry ? view.adjusted().prior.free[c] != 0 : c >= geometry + own)
+    if (c < geometry ? linearised.adjusted().prior.free[c] != 0 : c >= geometry + own)
       others.push_back(c);
   Eigen::MatrixXd X = dense.W(Eigen::all, others);
   const auto n = X.cols();
@@ -56,7 +57,7 @@ Separation::Separation(const LinearisedModel& view, const std::vector<Node>& cau
     const double size = X.col(i).norm();
     if (size > 0) X.col(i) /= size;
     if (const int c = others[static_cast<size_t>(i)]; c < geometry && size > 0)
-      R_(i, i) = std::hypot(kRidge, 1 / (size * view.adjusted().prior.sigma[c]));
+      R_(i, i) = std::hypot(kRidge, 1 / (size * linearised.adjusted().prior.sigma[c]));
   }
   std::vector<std::vector<int>> of_row(static_cast<size_t>(data.rows.rows() - first));
   std::vector<int> counted;

@@ -19,7 +19,7 @@ class Separation {
  public:
   /// Of a cause from another one, each as entries of a robot file with its values; without another
   /// one from noise. Rows from `first` on are further ones, which count once they are taken.
-  Separation(const LinearisedModel& view, const std::vector<Node>& cause,
+  Separation(const LinearisedModel& linearised, const std::vector<Node>& cause,
              const std::vector<Node>& other, const DataSet& data, int first);
 
   /// Squared sigmas of the cause beyond geometry and the other one, of the rows that count.

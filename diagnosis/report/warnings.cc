@@ -10,15 +10,15 @@
 namespace selfcal {
 namespace {
 
-std::string of_fits(const Closing& closing) {
-  if (closing.converged) return {};
-  return "a fit did not converge: " + closing.stop_reason;
+std::string of_fits(const HoldoutValidation& validation) {
+  if (validation.converged) return {};
+  return "a fit did not converge: " + validation.stop_reason;
 }
 
-std::string of_gears(const LinearisedModel& view) {
+std::string of_gears(const LinearisedModel& linearised) {
   std::string gears;
-  const std::vector<Parameter>& parameters = view.geometry().parameters();
-  const Fit& fitted = view.adjusted().fitted;
+  const std::vector<Parameter>& parameters = linearised.geometry().parameters();
+  const Fit& fitted = linearised.adjusted().fitted;
   for (size_t i = 0; i < parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double off = fitted.state.xi[at] - parameters[i].nominal;
@@ -33,9 +33,9 @@ std::string of_gears(const LinearisedModel& view) {
          gears;
 }
 
-std::string of_noise(const LinearisedModel& view, const DataSet& data) {
+std::string of_noise(const LinearisedModel& linearised, const DataSet& data) {
   std::string sets;
-  for (const int s : view.quieter())
+  for (const int s : linearised.quieter())
     sets += (sets.empty() ? "" : ", ") + data.sets[s].name + " (" +
             format_number(1e3 * data.sets[s].noise) + " mm)";
   if (sets.empty()) return {};
@@ -44,8 +44,8 @@ std::string of_noise(const LinearisedModel& view, const DataSet& data) {
          "is";
 }
 
-std::string of_masses(const LinearisedModel& view) {
-  const Statics* statics = view.geometry().statics();
+std::string of_masses(const LinearisedModel& linearised) {
+  const Statics* statics = linearised.geometry().statics();
   if (!statics || !statics->mechanics().masses_assumed) return {};
   double mass = 0;
   for (const Link& link : statics->mechanics().links) mass += link.mass.value_or(0);
@@ -99,11 +99,12 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   return {};
 }
 
-std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
-                                     const Closing& closing) {
+std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
+                                     const HoldoutValidation& validation) {
   std::vector<std::string> list;
   for (const std::string& each :
-       {of_fits(closing), of_gears(view), of_noise(view, data), of_order(data), of_masses(view)})
+       {of_fits(validation), of_gears(linearised), of_noise(linearised, data), of_order(data),
+        of_masses(linearised)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -13,14 +13,14 @@ struct Diagnosis;
 
 /// Fits that failed, gear ratios that were off, noise that only a data sheet tells, rows without a
 /// time.
-std::vector<std::string> warnings_of(const LinearisedModel& view, const DataSet& data,
-                                     const Closing& closing);
+std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
+                                     const HoldoutValidation& validation);
 
 /// That the effects of the robot's own file are not used; empty where it has none.
 std::string warning_of_own_effects(const Robot& robot);
 
-/// What the judging rows say of the named cause, and of the corrected model with everything found,
-/// where that is not plain; empty where it is.
+/// What the validation rows say of the named cause, and of the corrected model with everything
+/// found, where that is not plain; empty where it is.
 std::string warning_of_gap(const Diagnosis& diagnosis);
 
 }  // namespace selfcal

@@ -37,8 +37,9 @@ std::string in_words(const EffectShape& shape, bool order_is_time) {
 
 class Teller {
  public:
-  Teller(const LinearisedModel& view, const EvidenceEvaluator& bench, const Posterior& posterior)
-      : view_(view), bench_(bench), posterior_(posterior) {}
+  Teller(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
+         const Posterior& posterior)
+      : linearised_(linearised), evaluator_(evaluator), posterior_(posterior) {}
 
   std::vector<CauseResult> causes() const {
     std::vector<CauseResult> list;
@@ -60,7 +61,7 @@ class Teller {
   }
 
  private:
-  const Candidate& candidate(int c) const { return view_.candidates().list[c]; }
+  const Candidate& candidate(int c) const { return linearised_.candidates().list[c]; }
 
   bool holds(const Hypothesis& h, const std::string& effect, const std::string& at) const {
     return std::any_of(h.candidates.begin(), h.candidates.end(), [&](int c) {
@@ -87,34 +88,34 @@ class Teller {
                      [&](const Hypothesis& h) { return holds(h, cause.effect, at); });
     if (found == posterior_.hypotheses.end()) return;
     const MarginalLikelihood::Estimate estimate =
-        bench_.marginal_likelihood(found->structure).estimate(bench_.terms(*found));
+        evaluator_.marginal_likelihood(found->structure).estimate(evaluator_.terms(*found));
     Eigen::Index first = 0;
     double squares = 0;
     for (size_t i = 0; i < found->candidates.size(); ++i) {
       const int c = found->candidates[i];
-      const Block& block = bench_.block(c);
+      const Block& block = evaluator_.block(c);
       const auto size = static_cast<Eigen::Index>(block.columns.size());
       if (candidate(c).effect == cause.effect) {
         const Eigen::VectorXd v = estimate.mean.segment(first, size);
-        squares += v.dot(bench_.marginal_likelihood(0).gram(block.columns, block.columns) * v);
-        cause.survival = std::max(cause.survival, bench_.survival(c));
+        squares += v.dot(evaluator_.marginal_likelihood(0).gram(block.columns, block.columns) * v);
+        cause.beyond_nuisance = std::max(cause.beyond_nuisance, evaluator_.beyond_nuisance(c));
         add_parameters(c, estimate, first, cause);
-        bench_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);
+        evaluator_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);
       }
       first += size;
     }
-    const double noise = bench_.noise_variance(found->structure) * estimate.variance;
-    cause.visible = std::sqrt(squares / bench_.marginal_likelihood(0).freedom() *
-                              bench_.noise_variance(0) / noise);
+    const double noise = evaluator_.noise_variance(found->structure) * estimate.variance;
+    cause.visible = std::sqrt(squares / evaluator_.marginal_likelihood(0).freedom() *
+                              evaluator_.noise_variance(0) / noise);
   }
 
   void add_parameters(int c, const MarginalLikelihood::Estimate& estimate, Eigen::Index first,
                       CauseResult& cause) const {
     const Candidate& found = candidate(c);
     FoundEffect effect{.what = {found.effect, found.at, found.shape}};
-    if (cause.shape.empty()) cause.shape = in_words(found.shape, view_.order_is_time());
+    if (cause.shape.empty()) cause.shape = in_words(found.shape, linearised_.order_is_time());
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
-      const EffectParameter& p = view_.parameters()[candidate(c).main[k]];
+      const EffectParameter& p = linearised_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);
       cause.parameters.push_back(
           {label(candidate(c).at.empty() ? "robot" : candidate(c).at, "") + "." + p.name, p.unit,
@@ -137,7 +138,7 @@ class Teller {
         continue;
       }
       for (const int c : h.candidates) instead[{candidate(c).effect, candidate(c).at}] += p;
-      if (bench_.structure(h.structure).kind > 0 && h.candidates.empty())
+      if (evaluator_.structure(h.structure).kind > 0 && h.candidates.empty())
         instead[{kUnknown, ""}] += p;
     }
     for (const auto& [other, p] : instead)
@@ -145,16 +146,16 @@ class Teller {
         cause.confounded_with.push_back(label(other.first, other.second));
   }
 
-  const LinearisedModel& view_;
-  const EvidenceEvaluator& bench_;
+  const LinearisedModel& linearised_;
+  const EvidenceEvaluator& evaluator_;
   const Posterior& posterior_;
 };
 
 /// Probability of the cause or of known ones that look the same on these rows.
-double with_look_alikes(const LinearisedModel& view, const Posterior& posterior,
+double with_look_alikes(const LinearisedModel& linearised, const Posterior& posterior,
                         const CauseResult& cause) {
   const auto answers = [&](int c) {
-    const Candidate& candidate = view.candidates().list[c];
+    const Candidate& candidate = linearised.candidates().list[c];
     return candidate.effect == cause.effect ||
            std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
   };
@@ -169,22 +170,22 @@ double with_look_alikes(const LinearisedModel& view, const Posterior& posterior,
 struct Shares {
   double explained = 0, left = 0;
 };
-Shares shares(const EvidenceEvaluator& bench, const Posterior& posterior) {
+Shares shares(const EvidenceEvaluator& evaluator, const Posterior& posterior) {
   const Hypothesis* best = &posterior.hypotheses.front();
   for (const Hypothesis& h : posterior.hypotheses)
-    if (bench.structure(h.structure).kind > 0) {
+    if (evaluator.structure(h.structure).kind > 0) {
       best = &h;
       break;
     }
-  const MarginalLikelihood& plain = bench.marginal_likelihood(0);
+  const MarginalLikelihood& plain = evaluator.marginal_likelihood(0);
   Hypothesis whole = *best;
   whole.structure = 0;
-  whole = bench.grow(std::move(whole), kDiagnosis.naming.most_explaining);
-  const double after = plain.given(bench.terms(whole)).total() * bench.noise_variance(0);
-  const double before = plain.total() * bench.noise_variance(0);
+  whole = evaluator.grow(std::move(whole), kDiagnosis.naming.most_explaining);
+  const double after = plain.given(evaluator.terms(whole)).total() * evaluator.noise_variance(0);
+  const double before = plain.total() * evaluator.noise_variance(0);
   const double noise =
-      bench.marginal_likelihood(best->structure).estimate(bench.terms(*best)).variance *
-      bench.noise_variance(best->structure) * plain.freedom();
+      evaluator.marginal_likelihood(best->structure).estimate(evaluator.terms(*best)).variance *
+      evaluator.noise_variance(best->structure) * plain.freedom();
   return {before - after, after - noise};
 }
 
@@ -194,9 +195,10 @@ std::string label(const std::string& effect, const std::string& at) {
   return at.empty() ? effect : effect + "@" + at;
 }
 
-std::vector<CauseResult> cause_results(const LinearisedModel& view, const EvidenceEvaluator& bench,
+std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
+                                       const EvidenceEvaluator& evaluator,
                                        const Posterior& posterior) {
-  return Teller(view, bench, posterior).causes();
+  return Teller(linearised, evaluator, posterior).causes();
 }
 
 CauseResult without_cause(const Posterior& posterior) {
@@ -204,7 +206,7 @@ CauseResult without_cause(const Posterior& posterior) {
   return {.effect = kNone, .probability = posterior.none};
 }
 
-CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& bench,
+CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                         const Posterior& posterior, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options) {
   const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
@@ -217,11 +219,11 @@ CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& be
     if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
   if (!best) return unknown;
   CauseResult known = *best;
-  known.together = with_look_alikes(view, posterior, known);
+  known.together = with_look_alikes(linearised, posterior, known);
   if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
   // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
   if (known.together < std::min(kDiagnosis.naming.sure, posterior.unknown)) return unknown;
-  const Shares part = shares(bench, posterior);
+  const Shares part = shares(evaluator, posterior);
   return part.left > kDiagnosis.naming.most_left * (part.left + part.explained) ? unknown : known;
 }
 

@@ -1,13 +1,15 @@
 // From the posterior of hypotheses to the causes that a person is told.
 #pragma once
 
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
 
 /// Every cause with its probability, most probable first, `none` and `unknown` among them.
-std::vector<CauseResult> cause_results(const LinearisedModel& view, const EvidenceEvaluator& bench,
+std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
+                                       const EvidenceEvaluator& evaluator,
                                        const Posterior& posterior);
 
 /// What is said where no cause is named: `none`, or `unknown` where that is more probable than not.
@@ -15,7 +17,7 @@ CauseResult without_cause(const Posterior& posterior);
 
 /// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
 /// than not the largest; `unknown` where much is left after all of these.
-CauseResult named_cause(const LinearisedModel& view, const EvidenceEvaluator& bench,
+CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                         const Posterior& posterior, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 

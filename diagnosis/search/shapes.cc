@@ -5,6 +5,7 @@
 #include <map>
 
 #include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/evidence/visits.h"
 #include "diagnosis/findings.h"
@@ -26,12 +27,12 @@ std::string known_names() {
 }
 
 /// Why none of the candidates is `asked`.
-std::string why_none(const LinearisedModel& view, const std::string& asked) {
+std::string why_none(const LinearisedModel& linearised, const std::string& asked) {
   const std::string effect = asked.substr(0, asked.find('@'));
   const std::vector<std::string_view> names = effect_names();
   if (std::find(names.begin(), names.end(), effect) == names.end())
     return "no effect is called '" + effect + "'; known: " + known_names();
-  for (const Untestable& each : view.candidates().untestable)
+  for (const Untestable& each : linearised.candidates().untestable)
     if (each.effect == effect) return asked + ": " + each.why;
   return asked + ": it cannot act there on these rows";
 }
@@ -42,24 +43,25 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
                              const std::vector<std::string>& asked) {
   ChosenEffects chosen;
   const DiagnosisOptions options;
-  const LinearisedModel view(robot, data, options, {});
-  const DenseEquations rows = view.kept();
-  const Candidates all = with_profiles(view.candidates());
-  const EvidenceEvaluator bench(
-      view.whitened(),
-      noise_alone(data.rows, rows, view.by_joint(), noise_of_visits(data.rows, rows, view.left())),
-      all, view.parameters(), options.search);
+  const LinearisedModel linearised(robot, data, options, {});
+  const DenseEquations rows = linearised.kept();
+  const Candidates all = with_profiles(linearised.candidates());
+  const EvidenceEvaluator evaluator(
+      linearised.whitened(),
+      noise_alone(data.rows, rows, linearised.by_joint(),
+                  noise_of_visits(data.rows, rows, linearised.left())),
+      all, linearised.parameters(), options.search);
   for (const std::string& each : asked) {
     std::map<std::string, std::pair<double, int>> best;  // by place
     for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {
       const Candidate& candidate = all.list[c];
       if (!is_asked(candidate, each) || !candidate.beside.empty()) continue;
-      const double evidence = bench.evidence(c);
+      const double evidence = evaluator.evidence(c);
       const auto [slot, made] =
           best.try_emplace(candidate.at, -std::numeric_limits<double>::infinity(), -1);
       if (slot->second.second < 0 || evidence > slot->second.first) slot->second = {evidence, c};
     }
-    if (best.empty()) chosen.problem = why_none(view, each);
+    if (best.empty()) chosen.problem = why_none(linearised, each);
     for (const auto& [place, found] : best) {
       const Candidate& candidate = all.list[found.second];
       chosen.entries.push_back(entry_of({candidate.effect, candidate.at, candidate.shape}));

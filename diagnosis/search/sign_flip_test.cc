@@ -33,21 +33,21 @@ Eigen::VectorXd flipped(const Eigen::VectorXd& residual, const DenseEquations& k
   return out;
 }
 
-/// How much the best of `bench` in `y` gains by the search's own outliers, which it finds farther
-/// from its best explanation than noise reaches: up to a share of `most` of `count` rows.
-double gain_of_outliers(const EvidenceEvaluator& bench, const Hypothesis& best,
+/// How much the best of `evaluator` in `y` gains by the search's own outliers, which it finds
+/// farther from its best explanation than noise reaches: up to a share of `most` of `count` rows.
+double gain_of_outliers(const EvidenceEvaluator& evaluator, const Hypothesis& best,
                         const Eigen::VectorXd& y, const DenseEquations& kept, std::size_t count,
                         double most) {
   if (best.candidates.empty()) return 0;
-  const auto terms = bench.terms(best);
+  const auto terms = evaluator.terms(best);
   const auto [columns, sigma] = MarginalLikelihood::unfold(terms);
   const std::vector<char> far =
-      far_rows(kept, bench.rows().left_of(y, columns, sigma),
-               static_cast<double>(bench.rows().rows().A.cols()), count, most);
+      far_rows(kept, evaluator.rows().left_of(y, columns, sigma),
+               static_cast<double>(evaluator.rows().rows().A.cols()), count, most);
   std::vector<int> out;
   for (size_t e = 0; e < kept.row.size(); ++e)
     if (kept.row[e] >= 0 && far[kept.row[e]]) out.push_back(static_cast<int>(e));
-  return bench.marginal_likelihood(best.structure).gained_without(terms, y, out);
+  return evaluator.marginal_likelihood(best.structure).gained_without(terms, y, out);
 }
 
 /// Residuals dealt out anew to the rows of a set, each row's as a whole and with a sign of its own.
@@ -87,13 +87,13 @@ class Dealer {
 
 /// Of each column of `Y`: log evidence times prior of the most probable structure over that of the
 /// most probable noise.
-Eigen::ArrayXd found_structure(const EvidenceEvaluator& bench, const Eigen::MatrixXd& Y) {
+Eigen::ArrayXd found_structure(const EvidenceEvaluator& evaluator, const Eigen::MatrixXd& Y) {
   Eigen::ArrayXd noise = Eigen::ArrayXd::Constant(Y.cols(), -INFINITY), structure = noise;
-  const Eigen::MatrixXd all = bench.log_evidences_of(Y);
-  for (int s = 0; s < bench.structures(); ++s) {
+  const Eigen::MatrixXd all = evaluator.log_evidences_of(Y);
+  for (int s = 0; s < evaluator.structures(); ++s) {
     const Eigen::ArrayXd log =
-        all.row(s).transpose().array() + std::log(bench.structure(s).probability);
-    Eigen::ArrayXd& best = bench.structure(s).kind == 0 ? noise : structure;
+        all.row(s).transpose().array() + std::log(evaluator.structure(s).probability);
+    Eigen::ArrayXd& best = evaluator.structure(s).kind == 0 ? noise : structure;
     best = best.max(log);
   }
   return structure - noise;
@@ -125,44 +125,45 @@ double share_as_good(const std::vector<double>& found, double seen) {
   return as_good > 0 ? share : std::min(share, beyond_tail(found, seen));
 }
 
-NullDistribution::NullDistribution(const LinearisedModel& view, EvidenceEvaluator& bench,
+NullDistribution::NullDistribution(const LinearisedModel& linearised, EvidenceEvaluator& evaluator,
                                    const Observations& data, int resamples, unsigned long long seed,
                                    double most_rejected) {
-  const DenseEquations kept = view.kept();
-  const Eigen::VectorXd residual = view.geometry_residuals(bench.rows().rows());
+  const DenseEquations kept = linearised.kept();
+  const Eigen::VectorXd residual = linearised.geometry_residuals(evaluator.rows().rows());
   SignRandom random(seed);
   Eigen::MatrixXd Y(residual.size(), resamples);
   for (int i = 0; i < resamples; ++i) Y.col(i) = flipped(residual, kept, data, random);
-  const auto found = bench.best_found_in(bench.views_of(Y, EvidenceEvaluator::Of::noise_alone));
+  const auto found =
+      evaluator.best_found_in(evaluator.statistics_of(Y, EvidenceEvaluator::Of::noise_alone));
   for (int i = 0; i < resamples; ++i) {
     const EvidenceEvaluator::Found& best = found[static_cast<std::size_t>(i)];
-    const double gain = gain_of_outliers(bench, best.hypothesis, Y.col(i), kept,
+    const double gain = gain_of_outliers(evaluator, best.hypothesis, Y.col(i), kept,
                                          static_cast<std::size_t>(data.rows()), most_rejected);
     found_.push_back(best.log_odds + std::max(0.0, gain));
   }
 }
 
-double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
+double p_of_unknown(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                     const Hypothesis& known, const Observations& data, int resamples,
                     unsigned long long seed) {
-  Whitened rows = view.whitened_geometry();
-  const DenseEquations kept = view.kept();
+  Whitened rows = linearised.whitened_geometry();
+  const DenseEquations kept = linearised.kept();
   if (!known.candidates.empty()) {
-    const auto terms = bench.terms(known);
-    rows.y -= bench.rows().rows().C(Eigen::all, MarginalLikelihood::unfold(terms).first) *
-              bench.marginal_likelihood(known.structure).estimate(terms).mean;
+    const auto terms = evaluator.terms(known);
+    rows.y -= evaluator.rows().rows().C(Eigen::all, MarginalLikelihood::unfold(terms).first) *
+              evaluator.marginal_likelihood(known.structure).estimate(terms).mean;
   }
-  const Eigen::VectorXd residual = view.geometry_residuals(rows);
+  const Eigen::VectorXd residual = linearised.geometry_residuals(rows);
   // What the geometry takes of a row's noise is given back, so that one row's is as good as
   // another's.
   const Eigen::VectorXd noise = residual.cwiseQuotient(
-      view.geometry_leaves(rows).cwiseMax(kDiagnosis.naming.least_of_row).cwiseSqrt());
+      linearised.geometry_leaves(rows).cwiseMax(kDiagnosis.naming.least_of_row).cwiseSqrt());
   const Dealer dealer(kept, data);
   SignRandom random(seed);
   Eigen::MatrixXd Y(residual.size(), resamples);
   for (int i = 0; i < resamples; ++i) Y.col(i) = dealer.dealt(noise, random);
-  const Eigen::ArrayXd found = found_structure(bench, Y);
-  return share_as_good({found.begin(), found.end()}, found_structure(bench, residual)[0]);
+  const Eigen::ArrayXd found = found_structure(evaluator, Y);
+  return share_as_good({found.begin(), found.end()}, found_structure(evaluator, residual)[0]);
 }
 
 double least_probability_of_none(double p) {

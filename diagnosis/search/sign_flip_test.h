@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
-#include "diagnosis/evidence/search.h"
 
 namespace selfcal {
 
@@ -17,10 +17,11 @@ double share_as_good(const std::vector<double>& found, double seen);
 /// the rows that lie far from these are put aside as they are in the search.
 class NullDistribution {
  public:
-  /// `resamples` times in rows with resampled signs, whole configurations at a time. `bench` sees
-  /// the true rows again afterwards. `most_rejected`: share of the rows that may be put aside.
-  NullDistribution(const LinearisedModel& view, EvidenceEvaluator& bench, const Observations& data,
-                   int resamples, unsigned long long seed, double most_rejected);
+  /// `resamples` times in rows with resampled signs, whole configurations at a time. `evaluator`
+  /// sees the true rows again afterwards. `most_rejected`: share of the rows that may be put aside.
+  NullDistribution(const LinearisedModel& linearised, EvidenceEvaluator& evaluator,
+                   const Observations& data, int resamples, unsigned long long seed,
+                   double most_rejected);
   explicit NullDistribution(std::vector<double> found) : found_(std::move(found)) {}
 
   double p_of(double found) const { return share_as_good(found_, found); }
@@ -32,7 +33,7 @@ class NullDistribution {
 /// How often residuals that are dealt out to the rows anew, each row's with a sign of its own,
 /// speak as much for structure that no known effect explains, over noise alone: of what is left
 /// beyond `known`, the most probable causes with such structure.
-double p_of_unknown(const LinearisedModel& view, const EvidenceEvaluator& bench,
+double p_of_unknown(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                     const Hypothesis& known, const Observations& data, int resamples,
                     unsigned long long seed);
 

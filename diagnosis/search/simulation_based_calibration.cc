@@ -25,44 +25,44 @@ struct Stated {
 
 class Simulator {
  public:
-  Simulator(const LinearisedModel& view, EvidenceEvaluator& bench, const NullDistribution& null,
-            const DiagnosisOptions& options)
-      : view_(view),
-        bench_(bench),
+  Simulator(const LinearisedModel& linearised, EvidenceEvaluator& evaluator,
+            const NullDistribution& null, const DiagnosisOptions& options)
+      : linearised_(linearised),
+        evaluator_(evaluator),
         null_(null),
         options_(options),
-        rows_(bench.rows().rows()),
+        rows_(evaluator.rows().rows()),
         random_(options.seed) {}
 
   SimulationBasedCalibration run() {
-    SimulationBasedCalibration practice;
+    SimulationBasedCalibration simulation;
     std::vector<Stated> stated;
     int causes = 0, none = 0;
-    std::vector<std::string> truths(static_cast<std::size_t>(options_.practice));
-    Eigen::MatrixXd Y(rows_.y.size(), options_.practice);
+    std::vector<std::string> truths(static_cast<std::size_t>(options_.simulated_sessions));
+    Eigen::MatrixXd Y(rows_.y.size(), options_.simulated_sessions);
     Eigen::Index drawn = 0;
     for (std::string& truth : truths) Y.col(drawn++) = session(truth);
-    const EvidenceEvaluator::Views views = bench_.views_of(Y);
+    const EvidenceEvaluator::Statistics statistics = evaluator_.statistics_of(Y);
     for (std::size_t i = 0; i < truths.size(); ++i) {
       const std::string& truth = truths[i];
-      bench_.look_at(views, static_cast<Eigen::Index>(i));
+      evaluator_.condition_on(statistics, static_cast<Eigen::Index>(i));
       const CauseResult answer =
-          answered(bench_.search_coarsely(kDiagnosis.practice.extended_singles));
+          answered(evaluator_.search_coarsely(kDiagnosis.simulation.extended_singles));
       stated.push_back({answer.probability, answer.effect == truth});
       if (truth == kNone) {
         ++none;
-        practice.false_alarms += answer.effect != kNone;
+        simulation.false_alarms += answer.effect != kNone;
       } else {
         ++causes;
-        practice.right += answer.effect == truth;
+        simulation.right += answer.effect == truth;
       }
     }
-    practice.sessions = options_.practice;
-    practice.right /= std::max(causes, 1);
-    practice.false_alarms /= std::max(none, 1);
-    practice.temperature = fitted(stated);
-    bench_.look_at_rows();
-    return practice;
+    simulation.sessions = options_.simulated_sessions;
+    simulation.right /= std::max(causes, 1);
+    simulation.false_alarms /= std::max(none, 1);
+    simulation.temperature = fitted(stated);
+    evaluator_.condition_on_rows();
+    return simulation;
   }
 
  private:
@@ -73,7 +73,7 @@ class Simulator {
     else
       for (const auto& [family, p] : posterior.family)
         if (p > best.probability) best = {.effect = family, .probability = p};
-    return decided(std::move(best), posterior, {null_.p_of(bench_.best_found().log_odds), 0},
+    return decided(std::move(best), posterior, {null_.p_of(evaluator_.best_found().log_odds), 0},
                    options_);
   }
 
@@ -86,26 +86,28 @@ class Simulator {
 
   Eigen::VectorXd session(std::string& truth) {
     const double kind = std::generate_canonical<double, 53>(random_);
-    if (kind < kDiagnosis.practice.with_unknown) {
+    if (kind < kDiagnosis.simulation.with_unknown) {
       truth = kUnknown;
       std::vector<int> known_size;
-      for (int s = 0; s < bench_.structures(); ++s)
-        if (bench_.structure(s).kind > 0 && bench_.structure(s).kappa > 1) known_size.push_back(s);
+      for (int s = 0; s < evaluator_.structures(); ++s)
+        if (evaluator_.structure(s).kind > 0 && evaluator_.structure(s).kappa > 1)
+          known_size.push_back(s);
       if (known_size.empty()) return normal(rows_.y.size());
       const DiscrepancyCovariance& structure =
-          bench_.structure(known_size[random_() % known_size.size()]);
+          evaluator_.structure(known_size[random_() % known_size.size()]);
       return structure.coloured(normal(rows_.y.size()));
     }
-    const DiscrepancyCovariance& noise = bench_.structure(0);
+    const DiscrepancyCovariance& noise = evaluator_.structure(0);
     Eigen::VectorXd y = noise.coloured(normal(rows_.y.size()));
     truth = kNone;
-    if (kind < kDiagnosis.practice.with_unknown + kDiagnosis.practice.with_none) return y;
+    if (kind < kDiagnosis.simulation.with_unknown + kDiagnosis.simulation.with_none) return y;
     const int c = drawn_cause();
     if (c < 0) return y;
-    truth = view_.candidates().list[c].effect;
-    const Block& block = bench_.block(c);
-    const double r = kDiagnosis.practice.visible[random_() % kDiagnosis.practice.visible.size()] *
-                     std::sqrt(noise.noise);
+    truth = linearised_.candidates().list[c].effect;
+    const Block& block = evaluator_.block(c);
+    const double r =
+        kDiagnosis.simulation.visible[random_() % kDiagnosis.simulation.visible.size()] *
+        std::sqrt(noise.noise);
     Eigen::VectorXd size = normal(block.unit.size());
     for (const int i : block.positive) size[i] = std::abs(size[i]);
     return y + rows_.C(Eigen::all, block.columns) * (r * block.unit.cwiseProduct(size));
@@ -116,18 +118,18 @@ class Simulator {
   int drawn_cause() {
     std::vector<std::string> families;
     std::vector<int> seen;
-    for (int c = 0; c < static_cast<int>(view_.candidates().list.size()); ++c) {
-      if (bench_.survival(c) < kDiagnosis.practice.least_survival)
+    for (int c = 0; c < static_cast<int>(linearised_.candidates().list.size()); ++c) {
+      if (evaluator_.beyond_nuisance(c) < kDiagnosis.simulation.least_beyond_nuisance)
         continue;  // absorbed by calibration: no cause of this session
       seen.push_back(c);
-      const std::string& effect = view_.candidates().list[c].effect;
+      const std::string& effect = linearised_.candidates().list[c].effect;
       if (families.empty() || families.back() != effect) families.push_back(effect);
     }
     std::sort(families.begin(), families.end());
     families.erase(std::unique(families.begin(), families.end()), families.end());
     if (families.empty()) return -1;
     const std::string family = families[random_() % families.size()];
-    std::erase_if(seen, [&](int c) { return view_.candidates().list[c].effect != family; });
+    std::erase_if(seen, [&](int c) { return linearised_.candidates().list[c].effect != family; });
     return seen[random_() % seen.size()];
   }
 
@@ -146,8 +148,8 @@ class Simulator {
     return best;
   }
 
-  const LinearisedModel& view_;
-  EvidenceEvaluator& bench_;
+  const LinearisedModel& linearised_;
+  EvidenceEvaluator& evaluator_;
   const NullDistribution& null_;
   const DiagnosisOptions& options_;
   const Whitened& rows_;
@@ -156,16 +158,16 @@ class Simulator {
 
 }  // namespace
 
-SimulationBasedCalibration calibrate_by_simulation(const LinearisedModel& view,
-                                                   EvidenceEvaluator& bench,
+SimulationBasedCalibration calibrate_by_simulation(const LinearisedModel& linearised,
+                                                   EvidenceEvaluator& evaluator,
                                                    const NullDistribution& null,
                                                    const DiagnosisOptions& options) {
-  return Simulator(view, bench, null, options).run();
+  return Simulator(linearised, evaluator, null, options).run();
 }
 
-double calibrated(double probability, const SimulationBasedCalibration& practice) {
-  if (practice.sessions == 0) return probability;
-  return 1 / (1 + std::exp(-clamped_logit(probability) / practice.temperature));
+double calibrated(double probability, const SimulationBasedCalibration& simulation) {
+  if (simulation.sessions == 0) return probability;
+  return 1 / (1 + std::exp(-clamped_logit(probability) / simulation.temperature));
 }
 
 }  // namespace selfcal

@@ -8,14 +8,14 @@
 
 namespace selfcal {
 
-/// `null` says how much noise alone would find on these rows. `bench` sees the true rows again
+/// `null` says how much noise alone would find on these rows. `evaluator` sees the true rows again
 /// afterwards.
-SimulationBasedCalibration calibrate_by_simulation(const LinearisedModel& view,
-                                                   EvidenceEvaluator& bench,
+SimulationBasedCalibration calibrate_by_simulation(const LinearisedModel& linearised,
+                                                   EvidenceEvaluator& evaluator,
                                                    const NullDistribution& null,
                                                    const DiagnosisOptions& options);
 
-/// A probability as often true as it says, by what practice taught.
-double calibrated(double probability, const SimulationBasedCalibration& practice);
+/// A probability as often true as it says, by what the simulated sessions taught.
+double calibrated(double probability, const SimulationBasedCalibration& simulation);
 
 }  // namespace selfcal

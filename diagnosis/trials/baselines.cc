@@ -22,8 +22,8 @@ constexpr double kLeastLeft =
 class Regression {
  public:
   Regression(const std::shared_ptr<const Robot>& robot, const DataSet& data)
-      : view_(robot, data, options_, {}) {
-    const Whitened rows = view_.whitened();
+      : linearised_(robot, data, options_, {}) {
+    const Whitened rows = linearised_.whitened();
     const Eigen::Index n = rows.A.rows(), k = rows.A.cols();
     const Eigen::MatrixXd onto = over_priors(rows.A, rows.weight);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + k, rows.C.cols() + 1);
@@ -41,8 +41,8 @@ class Regression {
     squares_ = y_.head(n).squaredNorm();
   }
 
-  const Candidate& candidate(size_t i) const { return view_.candidates().list[i]; }
-  size_t candidates() const { return view_.candidates().list.size(); }
+  const Candidate& candidate(size_t i) const { return linearised_.candidates().list[i]; }
+  size_t candidates() const { return linearised_.candidates().list.size(); }
   double freedom() const { return freedom_; }
   double equations() const { return equations_; }
 
@@ -74,7 +74,7 @@ class Regression {
 
  private:
   DiagnosisOptions options_;
-  LinearisedModel view_;
+  LinearisedModel linearised_;
   Eigen::MatrixXd C_;
   Eigen::VectorXd y_;
   double freedom_ = 0, equations_ = 0, squares_ = 0;

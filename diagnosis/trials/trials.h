@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/evidence/search.h"
+#include "diagnosis/evidence/hypothesis.h"
 
 namespace selfcal {
 

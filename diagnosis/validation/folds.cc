@@ -44,19 +44,19 @@ DataSet with_fold(const DataSet& data, int fold) {
   return part;
 }
 
-std::vector<int> blocks_of_judging(const DataSet& data) {
-  std::vector<int> judging;
+std::vector<int> validation_blocks(const DataSet& data) {
+  std::vector<int> held_out;
   for (int row = 0; row < data.rows.rows(); ++row)
-    if (data.rows.check[row]) judging.push_back(row);
+    if (data.rows.check[row]) held_out.push_back(row);
   std::map<int, int> count;
-  const std::vector<int> place = places(data.rows, judging, count);
+  const std::vector<int> place = places(data.rows, held_out, count);
   std::vector<int> block(static_cast<size_t>(data.rows.rows()), -1);
   std::map<std::pair<int, int>, int> number;  // by set and its own number of the block
-  for (size_t i = 0; i < judging.size(); ++i) {
-    const int set = data.rows.set[judging[i]];
+  for (size_t i = 0; i < held_out.size(); ++i) {
+    const int set = data.rows.set[held_out[i]];
     const int length = static_cast<int>(std::lround(std::cbrt(static_cast<double>(count[set]))));
     const std::pair<int, int> key{set, place[i] / std::max(length, 1)};
-    block[judging[i]] = number.try_emplace(key, static_cast<int>(number.size())).first->second;
+    block[held_out[i]] = number.try_emplace(key, static_cast<int>(number.size())).first->second;
   }
   return block;
 }

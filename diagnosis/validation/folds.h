@@ -18,6 +18,6 @@ DataSet with_fold(const DataSet& data, int fold);
 /// By row of `data`, the number of its block among the `check` rows; -1 of the others. A block is
 /// as many configurations of one set in their order as the cube root of them all (as an interval by
 /// blocks wants it), each with its repeats.
-std::vector<int> blocks_of_judging(const DataSet& data);
+std::vector<int> validation_blocks(const DataSet& data);
 
 }  // namespace selfcal

@@ -14,16 +14,16 @@
 namespace selfcal {
 namespace {
 
-using Square = double JudgedRow::*;
+using Square = double ValidationRow::*;
 
 struct Sums {
   double before = 0, after = 0, floor = 0;
 };
 
 /// By block.
-std::vector<Sums> sums_of(const std::vector<JudgedRow>& rows, Square square) {
+std::vector<Sums> sums_of(const std::vector<ValidationRow>& rows, Square square) {
   std::map<int, Sums> blocks;
-  for (const JudgedRow& row : rows) {
+  for (const ValidationRow& row : rows) {
     Sums& sums = blocks[row.block];
     sums.before += row.before;
     sums.after += row.*square;
@@ -35,7 +35,8 @@ std::vector<Sums> sums_of(const std::vector<JudgedRow>& rows, Square square) {
 }
 
 std::optional<double> fraction(const Sums& of) {
-  if (!(of.before > kDiagnosis.closing.within_floor * kDiagnosis.closing.within_floor * of.floor))
+  if (!(of.before >
+        kDiagnosis.validation.within_floor * kDiagnosis.validation.within_floor * of.floor))
     return std::nullopt;
   return 1 - (of.after - of.floor) / (of.before - of.floor);
 }
@@ -51,7 +52,7 @@ Sums total(const std::vector<Sums>& list) {
 }
 
 /// A resample within the floor may say anything: it counts at either end.
-Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long long seed,
+Closed closed(const std::vector<ValidationRow>& rows, Square square, unsigned long long seed,
               double floor_freedom) {
   const std::vector<Sums> blocks = sums_of(rows, square);
   Closed part{fraction(total(blocks))};
@@ -61,7 +62,7 @@ Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long l
   std::chi_squared_distribution<double> spread(std::isfinite(floor_freedom) ? floor_freedom : 1);
   std::vector<double> low, high;
   std::vector<Sums> drawn(blocks.size());
-  for (int i = 0; i < kDiagnosis.closing.resamples; ++i) {
+  for (int i = 0; i < kDiagnosis.validation.resamples; ++i) {
     for (Sums& each : drawn) each = blocks[pick(random)];
     Sums sum = total(drawn);
     if (std::isfinite(floor_freedom)) sum.floor *= floor_freedom / spread(random);
@@ -71,45 +72,45 @@ Closed closed(const std::vector<JudgedRow>& rows, Square square, unsigned long l
   }
   std::sort(low.begin(), low.end());
   std::sort(high.begin(), high.end());
-  part.least = low[static_cast<size_t>(0.025 * kDiagnosis.closing.resamples)];
-  part.most = high[static_cast<size_t>(0.975 * kDiagnosis.closing.resamples)];
+  part.least = low[static_cast<size_t>(0.025 * kDiagnosis.validation.resamples)];
+  part.most = high[static_cast<size_t>(0.975 * kDiagnosis.validation.resamples)];
   return part;
 }
 
-double rms(const std::vector<JudgedRow>& rows, Square square) {
+double rms(const std::vector<ValidationRow>& rows, Square square) {
   double sum = 0;
-  for (const JudgedRow& row : rows) sum += row.*square;
+  for (const ValidationRow& row : rows) sum += row.*square;
   return rows.empty() ? 0 : std::sqrt(sum / static_cast<double>(rows.size()));
 }
 
-double largest(const std::vector<JudgedRow>& rows, Square square) {
+double largest(const std::vector<ValidationRow>& rows, Square square) {
   double most = 0;
-  for (const JudgedRow& row : rows) most = std::max(most, row.*square);
+  for (const ValidationRow& row : rows) most = std::max(most, row.*square);
   return std::sqrt(most);
 }
 
 }  // namespace
 
-Gap gap_of(const std::vector<JudgedRow>& all, unsigned long long seed, double floor_freedom) {
+Gap gap_of(const std::vector<ValidationRow>& all, unsigned long long seed, double floor_freedom) {
   Gap gap;
-  gap.with_false_rows = {rms(all, &JudgedRow::before), rms(all, &JudgedRow::after),
-                         rms(all, &JudgedRow::all)};
-  std::vector<JudgedRow> rows;
+  gap.with_false_rows = {rms(all, &ValidationRow::before), rms(all, &ValidationRow::after),
+                         rms(all, &ValidationRow::all)};
+  std::vector<ValidationRow> rows;
   std::ranges::copy_if(all, std::back_inserter(rows),
-                       [](const JudgedRow& row) { return !row.false_reading; });
+                       [](const ValidationRow& row) { return !row.false_reading; });
   gap.rows = static_cast<int>(rows.size());
   gap.false_rows = static_cast<int>(all.size() - rows.size());
   if (rows.empty()) return gap;
-  gap.rms_nominal = rms(rows, &JudgedRow::nominal);
-  gap.rms_before = rms(rows, &JudgedRow::before);
-  gap.rms_after = rms(rows, &JudgedRow::after);
-  gap.rms_all = rms(rows, &JudgedRow::all);
-  gap.max_before = largest(rows, &JudgedRow::before);
-  gap.max_after = largest(rows, &JudgedRow::after);
-  gap.max_all = largest(rows, &JudgedRow::all);
-  gap.noise_floor = rms(rows, &JudgedRow::floor);
-  gap.closed = closed(rows, &JudgedRow::after, seed, floor_freedom);
-  gap.closed_all = closed(rows, &JudgedRow::all, seed, floor_freedom);
+  gap.rms_nominal = rms(rows, &ValidationRow::nominal);
+  gap.rms_before = rms(rows, &ValidationRow::before);
+  gap.rms_after = rms(rows, &ValidationRow::after);
+  gap.rms_all = rms(rows, &ValidationRow::all);
+  gap.max_before = largest(rows, &ValidationRow::before);
+  gap.max_after = largest(rows, &ValidationRow::after);
+  gap.max_all = largest(rows, &ValidationRow::all);
+  gap.noise_floor = rms(rows, &ValidationRow::floor);
+  gap.closed = closed(rows, &ValidationRow::after, seed, floor_freedom);
+  gap.closed_all = closed(rows, &ValidationRow::all, seed, floor_freedom);
   return gap;
 }
 

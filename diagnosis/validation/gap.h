@@ -11,7 +11,7 @@ namespace selfcal {
 /// Squared residuals of one row that neither a fit nor a choice has seen (m^2): of the maker's
 /// model, of the calibrated one, with the named effects and no others, with everything found, and
 /// of noise alone.
-struct JudgedRow {
+struct ValidationRow {
   double nominal = 0, before = 0, after = 0, all = 0, floor = 0;
   /// Rows of one block stand or fall together: they follow each other, or repeat each other.
   int block = 0;
@@ -39,7 +39,7 @@ struct Gap {
   double max_before = 0, max_after = 0, max_all = 0;
   double noise_floor = 0;
   Closed closed, closed_all;
-  std::string judged_on = "check";  ///< or "folds"
+  std::string validated_on = "check";  ///< or "folds"
   int rows = 0;
   int false_rows = 0;        ///< left out of the above
   Rms with_false_rows = {};  ///< the same with them
@@ -47,7 +47,7 @@ struct Gap {
 
 /// The figures of these rows. The intervals are of 1000 resamples of whole blocks, each with a
 /// noise floor drawn from what `floor_freedom` freedoms leave open of it (infinite: it is known).
-Gap gap_of(const std::vector<JudgedRow>& rows, unsigned long long seed,
+Gap gap_of(const std::vector<ValidationRow>& rows, unsigned long long seed,
            double floor_freedom = std::numeric_limits<double>::infinity());
 
 }  // namespace selfcal

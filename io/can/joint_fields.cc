@@ -107,7 +107,7 @@ double read_step(Fields& f, const DbcSignal* signal) {
   return factor * per_turn / (f.positive("counts_per_turn", 1) * gear);
 }
 
-void read_meaning(Fields& f, const DbcSignal* signal, CanJoint& joint) {
+void read_decoding(Fields& f, const DbcSignal* signal, CanJoint& joint) {
   const int sign = f.integer("sign", 1, -1, 1);
   if (sign == 0) f.fail("sign", "1 or -1");
   const double step = read_step(f, signal);
@@ -162,7 +162,7 @@ CanJoint read_can_joint(const Node& node, const std::string& name, const Dbc* db
   cia402 = cia402 || ready;
   // Without its signal nothing can be said of what its counts mean.
   if (problems.any()) return joint;
-  read_meaning(f, signal, joint);
+  read_decoding(f, signal, joint);
   f.refuse_unknown();
   return joint;
 }

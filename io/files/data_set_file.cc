@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 #include "io/files/observations_csv.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
@@ -95,7 +95,7 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   if (!read) return tl::unexpected(read.error());
   if (const auto checked = check_references(loaded.data, file.string()); !checked)
     return tl::unexpected(checked.error());
-  loaded.robot = on_site(std::move(loaded.robot), loaded.data);
+  loaded.robot = in_context(std::move(loaded.robot), loaded.data);
   return loaded;
 }
 

@@ -30,7 +30,7 @@ class Backlash final : public Effect {
     return by_load_ ? "torques of both signs" : "dq of both signs";
   }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     into.joints(joint_, 0) =
         by_load_ ? sign(at.torque[joint_]) / 2 : -sign(at.velocity[joint_]) / 2;
   }
@@ -52,12 +52,12 @@ std::unique_ptr<Effect> make_backlash(const EffectPlan& plan) {
 
 void suppose_backlash(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.joint < 0) return;
-  if (rows.site.velocities)
+  if (rows.context.velocities)
     to.add(place.name);
   else
     to.cannot(place.name, "the rows carry no dq: the side of approach is not known");
   const Statics* statics = rows.robot.statics();
-  if (statics ? statics->mechanics().masses_known() || rows.site.loads : weighs(rows.robot))
+  if (statics ? statics->mechanics().masses_known() || rows.context.loads : weighs(rows.robot))
     to.add(place.name, {.by = "load"});
 }
 

@@ -20,8 +20,8 @@ namespace {
 class BaseDrift final : public Effect {
  public:
   explicit BaseDrift(const EffectPlan& plan) {
-    begin_ = plan.fields.number("begin", plan.site.begin);
-    end_ = plan.fields.number("end", plan.site.end);
+    begin_ = plan.fields.number("begin", plan.context.begin);
+    end_ = plan.fields.number("end", plan.context.end);
     settle_ = plan.fields.number("settle", 0.0);
     if (settle_ < 0) plan.fields.fail("settle", "a time of at least 0 s");
     half_waves_ = plan.fields.positives("half_waves", "half waves over the rows");
@@ -33,7 +33,7 @@ class BaseDrift final : public Effect {
 
   std::string needs() const override { return "rows with times, spread over the drift"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (std::isnan(at.time) || end_ <= begin_) return;
     if (half_waves_.empty()) return move(at, share(at.time), 0, into);
     for (size_t i = 0; i < half_waves_.size(); ++i) {
@@ -51,7 +51,7 @@ class BaseDrift final : public Effect {
   }
 
   /// The columns from `first` on: `s` of a shift along and a turn about each axis.
-  static void move(const Circumstances& at, double s, Eigen::Index first, Regressor& into) {
+  static void move(const RegressorInput& at, double s, Eigen::Index first, Regressor& into) {
     const Eigen::Vector3d tip = at.poses.back().translation();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d unit = s * Eigen::Vector3d::Unit(axis);
@@ -86,7 +86,7 @@ std::unique_ptr<Effect> make_base_drift(const EffectPlan& plan) {
 
 void suppose_base_drift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (!place.whole()) return;
-  const double span = rows.site.end - rows.site.begin;
+  const double span = rows.context.end - rows.context.begin;
   if (!(span > 0)) return to.cannot("base", "the rows carry no time");
   to.add("base");
   for (const double share : {0.15, 0.5}) to.add("base", {.settle = share * span});

@@ -20,7 +20,7 @@ class FixtureShift final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches with times before and after it"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0 || !(at.time >= moment_)) return;
     const Eigen::Vector3d from = at.poses.back().translation() - frame_.centre;
     const double share[] = {1, frame_.v.dot(from), -frame_.u.dot(from)};
@@ -46,7 +46,7 @@ std::unique_ptr<Effect> make_fixture_shift(const EffectPlan& plan) {
 
 void suppose_fixture_shift(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.set < 0 || !rows.shows(place.set) || !rows.normals) return;
-  if (!rows.site.sets[static_cast<size_t>(place.set)].touch) return;
+  if (!rows.context.sets[static_cast<size_t>(place.set)].touch) return;
   for (const double moment : rows.moments(place.set)) to.add(place.name, {.moment = moment});
 }
 

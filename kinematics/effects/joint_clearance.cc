@@ -18,7 +18,7 @@ class JointClearance final : public Effect {
   bool of_legs() const override { return true; }
   std::string needs() const override { return "loads that pull the leg and loads that push it"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     const double pull = leg_pull(at, leg_, mass_);
     const double side = pull > 0 ? 0.5 : pull < 0 ? -0.5 : 0;
     into.tip.col(0) = side * at.legs.col(leg_);
@@ -39,7 +39,7 @@ std::unique_ptr<Effect> make_joint_clearance(const EffectPlan& plan) {
 
 void suppose_joint_clearance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
-  if (rows.site.loads || weighs(rows.robot))
+  if (rows.context.loads || weighs(rows.robot))
     to.add(place.name);
   else
     to.cannot(place.name, "the rows carry no loads: which end of its play is not known");

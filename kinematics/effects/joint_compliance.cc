@@ -20,7 +20,7 @@ class JointCompliance final : public Effect {
   JointCompliance(const EffectPlan& plan, const Mechanics* chain, int joint) : joint_(joint) {
     const bool turns = plan.robot.joints()[static_cast<size_t>(joint)].quantity == Quantity::angle;
     silent_ = chain && !chain->masses_known();
-    if (chain) lumps_ = plan.fields.flag("lumps", silent_ && !plan.site.loads);
+    if (chain) lumps_ = plan.fields.flag("lumps", silent_ && !plan.context.loads);
     if (!lumps_) {
       parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4, true}};
       return;
@@ -37,7 +37,7 @@ class JointCompliance final : public Effect {
   bool of_torques() const override { return true; }
   std::string needs() const override { return "a load whose torque on the joint changes"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (!lumps_) {
       into.joints(joint_, 0) = at.torque[joint_];
       return;
@@ -83,8 +83,8 @@ void suppose_joint_compliance(const Supposed& rows, const EffectPlace& place, Su
     return;
   }
   const Mechanics& mechanics = statics->mechanics();
-  if (!(mechanics.gravity.norm() > 0) && !rows.site.loads) return;
-  if (!mechanics.masses_known() && !rows.site.loads) return to.add(place.name, {.lumps = true});
+  if (!(mechanics.gravity.norm() > 0) && !rows.context.loads) return;
+  if (!mechanics.masses_known() && !rows.context.loads) return to.add(place.name, {.lumps = true});
   to.add(place.name);
   to.add(place.name, {}, {{.lumps = true}});
   if (mechanics.masses_assumed) to.last().doubt = rows.assumed;

@@ -23,7 +23,7 @@ class JointCoupling final : public Effect {
 
   std::string needs() const override { return "the two joints to move independently"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     into.joints(joint_, 0) = at.q[from_];
   }
 

@@ -18,7 +18,7 @@ class LegCompliance final : public Effect {
   bool of_legs() const override { return true; }
   std::string needs() const override { return "loads on the leg that change"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     into.tip.col(0) = leg_pull(at, leg_, mass_) * at.legs.col(leg_);
   }
 
@@ -38,7 +38,7 @@ std::unique_ptr<Effect> make_leg_compliance(const EffectPlan& plan) {
 void suppose_leg_compliance(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
   // What hangs on the tip is known as the rows' loads, or else by how it bends the legs alone.
-  to.add(place.name, {.mass = rows.site.loads || weighs(rows.robot) ? 0.0 : 1.0});
+  to.add(place.name, {.mass = rows.context.loads || weighs(rows.robot) ? 0.0 : 1.0});
 }
 
 }  // namespace selfcal

@@ -13,14 +13,14 @@ class LegThermalGrowth final : public Effect {
  public:
   explicit LegThermalGrowth(const EffectPlan& plan)
       : leg_(plan.leg()),
-        reference_(plan.fields.number("reference", plan.site.mean_temperature())) {
+        reference_(plan.fields.number("reference", plan.context.mean_temperature())) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
   }
 
   bool of_legs() const override { return true; }
   std::string needs() const override { return "temperatures that change"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (std::isnan(at.temperature)) return;
     into.tip.col(0) = (at.temperature - reference_) * at.leg_lengths[leg_] * at.legs.col(leg_);
   }

@@ -26,7 +26,7 @@ class LinkCompliance final : public Effect {
 
   std::string needs() const override { return "a load whose moment on the link changes"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     const int next = std::min(link_ + 1, static_cast<int>(at.poses.size()) - 1);
     const Eigen::Vector3d O = at.poses[link_].translation(), E = at.poses[next].translation();
     const Eigen::Vector3d tip = at.poses.back().translation();
@@ -60,8 +60,8 @@ void suppose_link_compliance(const Supposed& rows, const EffectPlace& place, Sup
   const Statics* statics = rows.robot.statics();
   if (!statics) return to.cannot(place.name, std::string(kNoStatics));
   const Mechanics& mechanics = statics->mechanics();
-  if (!(mechanics.gravity.norm() > 0) && !rows.site.loads) return;
-  if (mechanics.masses_known() || rows.site.loads)
+  if (!(mechanics.gravity.norm() > 0) && !rows.context.loads) return;
+  if (mechanics.masses_known() || rows.context.loads)
     to.add(place.name);
   else
     to.cannot(place.name, "the robot file gives no masses and the rows no loads");

@@ -18,7 +18,7 @@ class PlaneFormError final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches spread over the surface"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
     const Eigen::Vector3d from = at.poses.back().translation() - frame_.centre;
     const double u = frame_.u.dot(from), v = frame_.v.dot(from);
@@ -41,7 +41,7 @@ std::unique_ptr<Effect> make_plane_form_error(const EffectPlan& plan) {
 
 void suppose_plane_form_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.set < 0 || !rows.shows(place.set)) return;
-  if (rows.site.sets[static_cast<size_t>(place.set)].touch) to.add(place.name);
+  if (rows.context.sets[static_cast<size_t>(place.set)].touch) to.add(place.name);
 }
 
 }  // namespace selfcal

@@ -26,7 +26,7 @@ class ProbePretravel final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches at different angles to the stylus"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (!at.normal.allFinite()) return;
     const Eigen::Vector3d n = at.poses.back().linear().transpose() * at.normal;
     const double sine = std::hypot(n.x(), n.y()), psi = std::atan2(n.y(), n.x());
@@ -43,7 +43,7 @@ std::unique_ptr<Effect> make_probe_pretravel(const EffectPlan& plan) {
 }
 
 void suppose_probe_pretravel(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  if (!place.whole() || !rows.site.touched()) return;
+  if (!place.whole() || !rows.context.touched()) return;
   if (rows.normals)
     to.add("probe");
   else

@@ -20,7 +20,7 @@ class ScaleError final : public Effect {
     by_temperature_ = by == "temperature";
     if (by_temperature_) {
       parameters_ = {{"k", "1/K", 1e-7, 2e-5}};
-      reference_ = plan.fields.number("reference", plan.site.mean_temperature());
+      reference_ = plan.fields.number("reference", plan.context.mean_temperature());
     } else {
       parameters_ = {{"s", "1", 1e-6, 5e-5}};
     }
@@ -31,7 +31,7 @@ class ScaleError final : public Effect {
     return by_temperature_ ? "temperatures that change" : "lengths that are known otherwise";
   }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
     const double share = by_temperature_ ? at.temperature - reference_ : 1;
     if (std::isnan(share)) return;
@@ -59,7 +59,7 @@ std::unique_ptr<Effect> make_scale_error(const EffectPlan& plan) {
 void suppose_scale_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   // An instrument's unit may be off, or grow with the air's temperature.
   if (place.set < 0 || !rows.shows(place.set)) return;
-  if (!rows.site.sets[static_cast<size_t>(place.set)].lengths) return;
+  if (!rows.context.sets[static_cast<size_t>(place.set)].lengths) return;
   to.add(place.name);
   if (rows.warms) to.add(place.name, {.by = "temperature"});
 }

@@ -32,14 +32,14 @@ class ThermalExpansion final : public Effect {
     plan.mechanics();
     lag_ = plan.fields.number("lag", 0.0);
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
-    times_ = plan.site.times;
-    temperatures_ = lagged(times_, plan.site.temperatures, lag_);
-    reference_ = plan.fields.number("reference", plan.site.mean_temperature());
+    times_ = plan.context.times;
+    temperatures_ = lagged(times_, plan.context.temperatures, lag_);
+    reference_ = plan.fields.number("reference", plan.context.mean_temperature());
   }
 
   std::string needs() const override { return "temperatures that change"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     const double T = temperature(at);
     if (std::isnan(T)) return;
     const int first = at.mechanics->link_of(0);
@@ -50,7 +50,7 @@ class ThermalExpansion final : public Effect {
   }
 
  private:
-  double temperature(const Circumstances& at) const {
+  double temperature(const RegressorInput& at) const {
     if (lag_ == 0 || times_.size() < 2 || std::isnan(at.time)) return at.temperature;
     const auto after = std::lower_bound(times_.begin(), times_.end(), at.time);
     if (after == times_.begin()) return temperatures_.front();
@@ -82,7 +82,7 @@ void suppose_thermal_expansion(const Supposed& rows, const EffectPlace& place, S
   if (!rows.robot.statics()) return to.cannot("", std::string(kNoStatics));
   if (!rows.warms) return to.cannot("", "the rows carry no temperatures that change");
   to.add("");
-  const double span = rows.site.end - rows.site.begin;
+  const double span = rows.context.end - rows.context.begin;
   for (const double share : {0.125, 0.25, 0.5, 1.0})
     if (span > 0) to.add("", {.lag = share * span});
 }

@@ -33,7 +33,7 @@ class ToolCompliance final : public Effect {
     return "a tool whose tip stands off the last joint, and a load on it that changes";
   }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     const Eigen::Isometry3d& mount = at.poses[static_cast<size_t>(last_)];
     const Eigen::Vector3d arm = at.poses.back().translation() - mount.translation();
     const Load load =
@@ -69,7 +69,7 @@ void suppose_tool_compliance(const Supposed& rows, const EffectPlace& place, Sup
   if (!place.whole()) return;
   const Statics* statics = rows.robot.statics();
   if (!statics) return to.cannot("probe", std::string(kNoStatics));
-  if (statics->mechanics().gravity.norm() > 0 || rows.site.loads)
+  if (statics->mechanics().gravity.norm() > 0 || rows.context.loads)
     to.add("probe");
   else
     to.cannot("probe", "without gravity the rows carry no loads");

@@ -19,7 +19,7 @@ class ToolShift final : public Effect {
 
   std::string needs() const override { return "rows with times before and after it"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (!(at.time >= moment_)) return;
     const Eigen::Matrix3d R = at.poses.back().linear();
     into.tip.topLeftCorner<3, 3>() = R;

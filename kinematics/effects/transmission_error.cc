@@ -26,7 +26,7 @@ class TransmissionError final : public Effect {
 
   std::string needs() const override { return "angles spread over the joint's turn"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     for (size_t i = 0; i < waves_.size(); ++i) {
       const double angle = waves_[i] * scale_ * at.q[joint_];
       into.joints(joint_, 2 * static_cast<Eigen::Index>(i)) = std::sin(angle);

@@ -17,7 +17,7 @@ class TriggerLatency final : public Effect {
   bool of_machine() const override { return false; }
   std::string needs() const override { return "touches with velocities dq, at different speeds"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.normal.allFinite() && at.velocity.allFinite()) into.joints.col(0) = -at.velocity;
   }
 };
@@ -26,14 +26,14 @@ class TriggerLatency final : public Effect {
 
 std::unique_ptr<Effect> make_trigger_latency(const EffectPlan& plan) {
   plan.expect_place("probe");
-  if (plan.site.velocities && !plan.site.speeds)
+  if (plan.context.velocities && !plan.context.speeds)
     plan.fields.fail("effect", "one that signs of dq tell: a latency needs velocities");
   return std::make_unique<TriggerLatency>();
 }
 
 void suppose_trigger_latency(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  if (!place.whole() || !rows.site.touched()) return;
-  if (rows.site.speeds && rows.normals)
+  if (!place.whole() || !rows.context.touched()) return;
+  if (rows.context.speeds && rows.normals)
     to.add("probe");
   else
     to.cannot("probe", "the rows carry no approach velocities");

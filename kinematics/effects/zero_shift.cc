@@ -17,7 +17,7 @@ class ZeroShift final : public Effect {
 
   std::string needs() const override { return "rows with times before and after it"; }
 
-  void regressor(const Circumstances& at, Regressor& into) const override {
+  void regressor(const RegressorInput& at, Regressor& into) const override {
     into.joints(joint_, 0) = at.time >= moment_ ? 1 : 0;
   }
 

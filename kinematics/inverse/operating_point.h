@@ -16,8 +16,9 @@ struct OperatingPoint {
 /// The conditions of so many lanes, in which `robot` turns the tool as `R(lane)` says; without rows
 /// where nothing is known.
 template <class TurnOf>
-Conditions conditions_at(const OperatingPoint& at, const Robot& robot, int lanes, const TurnOf& R) {
-  Conditions conditions;
+MeasurementConditions conditions_at(const OperatingPoint& at, const Robot& robot, int lanes,
+                                    const TurnOf& R) {
+  MeasurementConditions conditions;
   if (at.temperature == at.temperature)
     conditions.temperature = Eigen::VectorXd::Constant(lanes, at.temperature);
   if (at.mass == 0) return conditions;

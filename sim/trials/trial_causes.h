@@ -28,7 +28,7 @@ TrialCause draw_unknown(const TrialWorld& world, Random& random);
 
 using CauseMaker = TrialCause (*)(const TrialWorld&, Random&);
 /// Of the joints and of links (trial_joint_causes.cc), of legs (trial_leg_causes.cc), and of what
-/// is around (trial_site_causes.cc).
+/// is around (trial_context_causes.cc).
 const std::map<std::string, CauseMaker>& joint_causes();
 const std::map<std::string, CauseMaker>& leg_causes();
 const std::map<std::string, CauseMaker>& site_causes();

@@ -47,8 +47,8 @@ TEST(DiagnosisPage, TellsInWhatTheSimulationDiffers) {
 
 TEST(DiagnosisPage, HasTheRowsBehindTheGapWithoutFalseReadings) {
   Findings findings;
-  findings.diagnosis.judged = {{9e-6, 4e-6, 1e-6, 1e-6, 1e-6, 0, false},
-                               {1, 1, 1, 1, 1e-6, 1, true}};
+  findings.diagnosis.validation_rows = {{9e-6, 4e-6, 1e-6, 1e-6, 1e-6, 0, false},
+                                        {1, 1, 1, 1, 1e-6, 1, true}};
 
   const nlohmann::ordered_json judged = data_of(findings)["judged"];
 

@@ -74,7 +74,7 @@ TEST(DiagnosisSummary, NamesNothingWhereTheVerdictIsUnknown) {
 
 TEST(DiagnosisSummary, KeepsBothFiguresWhereThirdsOfTheRowsNamedForThemselves) {
   Diagnosis diagnosis = named({true});
-  diagnosis.gap.judged_on = "folds";
+  diagnosis.gap.validated_on = "folds";
   EXPECT_THAT(summary(diagnosis), HasSubstr("(named), 0.38 mm with everything found (1 effect, "
                                             "all named)"));
 }

@@ -23,14 +23,14 @@ constexpr int kRowsOfASet = 75;  // two blocks and a part of one
 
 /// An arm with effects of readings, load, temperature and touch.
 std::shared_ptr<const Robot> arm_with_effects() {
-  Site site;
-  site.sets = {{"s", true, {0.4, 0.2, 0.1}, {0.1, -0.3, 0.9}}};
+  MeasurementContext context;
+  context.sets = {{"s", true, {0.4, 0.2, 0.1}, {0.1, -0.3, 0.9}}};
   for (double t = 0; t <= 3600; t += 60) {
-    site.times.push_back(t);
-    site.temperatures.push_back(20 + t / 900);
+    context.times.push_back(t);
+    context.temperatures.push_back(20 + t / 900);
   }
-  site.end = 3600;
-  site.loads = site.velocities = site.speeds = true;
+  context.end = 3600;
+  context.loads = context.velocities = context.speeds = true;
   Node arm = six_axis_arm()->text().describe(values(*six_axis_arm()));
   arm.set("mass", Node::of(120.0));
   std::vector<Node> entries;
@@ -40,7 +40,7 @@ std::shared_ptr<const Robot> arm_with_effects() {
         "{effect: tool_compliance, at: probe}", "{effect: base_drift}"})
     entries.push_back(parsed(each));
   Problems problems;
-  auto corrected = correct(robot_of(arm), entries, site, problems);
+  auto corrected = correct(robot_of(arm), entries, context, problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   return corrected;
 }

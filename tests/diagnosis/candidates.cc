@@ -16,15 +16,15 @@ struct Session {
     data.rows.q = Eigen::MatrixXd::Zero(rows, 1);
     data.rows.set.assign(static_cast<size_t>(rows), 0);
     data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows - 1);
-    site.begin = 0;
-    site.end = rows - 1;
+    context.begin = 0;
+    context.end = rows - 1;
   }
-  Candidates candidates() const { return selfcal::candidates(*robot, data, site); }
+  Candidates candidates() const { return selfcal::candidates(*robot, data, context); }
   std::shared_ptr<const Robot> robot{
       robot_of("robot: arm\nkind: serial\nframes:\n"
                "  - {name: j1, joint: revolute}\n  - {name: tool, joint: fixed, d: 1}\n")};
   DataSet data;
-  Site site;
+  MeasurementContext context;
 };
 
 TEST(Candidates, HaveAMomentBetweenAnyTwoOfFewRowsAndSpreadOverMany) {
@@ -65,7 +65,7 @@ TEST(Candidates, LetTheBaseDriftSettleAndWander) {
 
 TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
   Session session(50);
-  session.site.sets = {{.name = "table", .touch = true}, {.name = "leica", .lengths = true}};
+  session.context.sets = {{.name = "table", .touch = true}, {.name = "leica", .lengths = true}};
   for (int row = 20; row < 50; ++row) session.data.rows.set[row] = 1;
   const auto count = [&](const char* effect, const char* at) {
     const Candidates all = session.candidates();

@@ -57,15 +57,15 @@ TEST(Doubt, NamesNothingThatHardlyClosesWhatSoMuchNoiseLeaves) {
   Rows rows;
   rows.disturb(50 * kTrackerNoise);
   const DiagnosisOptions options = quick();
-  const LinearisedModel view(rows.robot, rows.data, options, {});
+  const LinearisedModel linearised(rows.robot, rows.data, options, {});
   Diagnosis diagnosis;
   diagnosis.verdict.effect = "joint_compliance";
   diagnosis.named = {{.effect = "joint_compliance", .where = {"j2"}}};
   diagnosis.gap.rms_before = 1e-3;
   diagnosis.gap.rms_after = 0.9e-3;
-  EXPECT_THAT(doubt_of(view, rows.data, diagnosis), HasSubstr("state a noise of 0.02 mm"));
+  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis), HasSubstr("state a noise of 0.02 mm"));
   diagnosis.gap.rms_after = 0.5e-3;
-  EXPECT_EQ(doubt_of(view, rows.data, diagnosis), "");
+  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
 }
 
 TEST(Doubt, BelievesTheRepeatsWhereTheySayThatTheNoiseIsSo) {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "diagnosis/evidence/search.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
 
 namespace selfcal {
 namespace {
@@ -28,7 +28,7 @@ struct LookAlikes {
     for (int i = 0; i < 40; ++i) alone.push_back({i});
     noise.blocks = std::make_shared<const NoiseBlocks>(alone, [](int, int) { return 1.0; });
   }
-  EvidenceEvaluator bench() const {
+  EvidenceEvaluator evaluator() const {
     return {rows, {noise}, all, parameters, SearchRule{.noise_is_known = true}};
   }
   Whitened rows;
@@ -40,7 +40,7 @@ struct LookAlikes {
 TEST(EvidenceDeathTest, OfRowsThatOverflowIsToldAsABug) {
   LookAlikes both;
   both.rows.y *= 1e200;
-  EXPECT_DEATH(both.bench().search(), "the evidence of finite rows is finite");
+  EXPECT_DEATH(both.evaluator().search(), "the evidence of finite rows is finite");
 }
 
 }  // namespace

@@ -50,10 +50,10 @@ TEST(Folds, KeepRepeatsTogetherAndLeaveOutStretches) {
   }
 }
 
-TEST(BlocksOfJudging, HoldAFewNeighboursOfOneSetAndTheirRepeats) {
+TEST(ValidationBlocks, HoldAFewNeighboursOfOneSetAndTheirRepeats) {
   DataSet data = forty_rows();  // 19 and 16 configurations: 35 rows beyond the repeats
   for (int row = 0; row < 40; ++row) data.rows.check[row] = row >= 4;
-  const std::vector<int> block = blocks_of_judging(data);
+  const std::vector<int> block = validation_blocks(data);
   for (int row = 0; row < 4; ++row) EXPECT_EQ(block[row], -1);
   for (int row = 11; row < 16; ++row) EXPECT_EQ(block[row], block[10]);
   // Of the second set's rows 5, 7, 9, 17, ... 39 (15 of them): as many as the cube root, 2.5, says.

@@ -9,8 +9,8 @@ namespace selfcal {
 namespace {
 
 /// Rows that are all alike, each a block of its own; squares in units of the floor's.
-std::vector<JudgedRow> rows(double before, double after, double all) {
-  std::vector<JudgedRow> list(40, {9, before, after, all, 1});
+std::vector<ValidationRow> rows(double before, double after, double all) {
+  std::vector<ValidationRow> list(40, {9, before, after, all, 1});
   for (int i = 0; i < 40; ++i) list[i].block = i;
   return list;
 }
@@ -46,7 +46,7 @@ TEST(Gap, ClosesBySoMuchOnlyWhereItIsMoreThanFivePercentOfTheFloor) {
 }
 
 TEST(Gap, HasAnIntervalAsWideAsItsRowsDiffer) {
-  std::vector<JudgedRow> list = rows(4, 3, 1);
+  std::vector<ValidationRow> list = rows(4, 3, 1);
   for (size_t i = 0; i < list.size(); i += 2) list[i].after = 6;
   const Gap gap = gap_of(list, 1);
   // Mean of after 4.5, of one row off by 1.5: over 40 rows 0.24, and 1.96 sigma of it over 3.
@@ -57,7 +57,7 @@ TEST(Gap, HasAnIntervalAsWideAsItsRowsDiffer) {
 }
 
 TEST(Gap, HasAWiderIntervalWhereNeighboursErrAlike) {
-  std::vector<JudgedRow> list = rows(4, 3, 1);
+  std::vector<ValidationRow> list = rows(4, 3, 1);
   for (int i = 0; i < 40; ++i) list[i].after = i / 4 % 2 == 0 ? 6 : 3;
   const Closed apart = gap_of(list, 1).closed;
   for (int i = 0; i < 40; ++i) list[i].block = i / 4;
@@ -85,7 +85,7 @@ TEST(Gap, GivesNoIntervalWhereResamplesLieWithinTheFloor) {
 }
 
 TEST(Gap, CountsTheRowsThatAreLeftOutAndSaysWhatItIsWithThem) {
-  std::vector<JudgedRow> list = rows(4, 3, 1);
+  std::vector<ValidationRow> list = rows(4, 3, 1);
   list[7] = {900, 404, 403, 401, 1, 7, true};
   const Gap gap = gap_of(list, 1);
   EXPECT_EQ(gap.rows, 39);

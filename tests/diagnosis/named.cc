@@ -125,14 +125,14 @@ TEST(Named, AreAllThatAreSureAndCloseAsFarAsFitsOfThemAlone) {
 TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   const TwoCauses of;
   const DiagnosisOptions options = quick();
-  const LinearisedModel view(of.robot, of.data, options, {});
+  const LinearisedModel linearised(of.robot, of.data, options, {});
   const ShapedEffect gear{"transmission_error", "j2", {.waves = {3}}};
   const auto closed = [&](bool named) {
-    return gap_of(
-        validate_on_holdout(view.shared_geometry(), view.adjusted(), of.data,
-                            {{gear, {}, {1e-3, 1e-3}, named}}, view.site(), kNoise, options)
-            .judged,
-        1);
+    return gap_of(validate_on_holdout(linearised.shared_geometry(), linearised.adjusted(), of.data,
+                                      {{gear, {}, {1e-3, 1e-3}, named}}, linearised.context(),
+                                      kNoise, options)
+                      .rows,
+                  1);
   };
   const Gap found = closed(false), named = closed(true);
   EXPECT_EQ(found.rms_after, found.rms_before);

@@ -21,10 +21,11 @@ class NextStepsOfAnArm : public testing::Test {
     Observations& rows = data_->rows;
     rows.velocity = Eigen::MatrixXd::Constant(rows.q.rows(), rows.q.cols(), 0.1);
     for (Eigen::Index row = 0; row < rows.q.rows(); row += 2) rows.velocity.row(row) *= -1;
-    view_ = std::make_unique<LinearisedModel>(TwoSessions(2).robot, *data_, quick(), Progress{});
+    linearised_ =
+        std::make_unique<LinearisedModel>(TwoSessions(2).robot, *data_, quick(), Progress{});
   }
   static void TearDownTestSuite() {
-    view_.reset();
+    linearised_.reset();
     data_.reset();
   }
 
@@ -46,10 +47,10 @@ class NextStepsOfAnArm : public testing::Test {
                             .sigma = {1e-4},
                             .named = true}}};
   }
-  static NextSteps of(Diagnosis diagnosis) { return next_steps(*view_, *data_, diagnosis); }
+  static NextSteps of(Diagnosis diagnosis) { return next_steps(*linearised_, *data_, diagnosis); }
 
   static inline std::unique_ptr<DataSet> data_;
-  static inline std::unique_ptr<LinearisedModel> view_;
+  static inline std::unique_ptr<LinearisedModel> linearised_;
 };
 
 TEST_F(NextStepsOfAnArm, TellANamedCauseFromItsLookAlike) {
@@ -129,7 +130,7 @@ TEST_F(NextStepsOfAnArm, AreChosenOfTheRowsThatACellCanTake) {
   DiagnosisOptions options;
   options.possible = once_more(*data_);
   options.most_further = 6;
-  const NextSteps next = next_steps(*view_, *data_, diagnosis, options);
+  const NextSteps next = next_steps(*linearised_, *data_, diagnosis, options);
   ASSERT_EQ(next.steps.size(), 1);
   const NextStep& step = next.steps.front();
   ASSERT_FALSE(step.chosen.empty());
@@ -146,7 +147,7 @@ TEST_F(NextStepsOfAnArm, AskForNoRowWhereTheCauseIsSettled) {
   diagnosis.candidates = {backlash(0.99), {.effect = kNone, .probability = 0.001}};
   DiagnosisOptions options;
   options.possible = once_more(*data_);
-  const NextSteps next = next_steps(*view_, *data_, diagnosis, options);
+  const NextSteps next = next_steps(*linearised_, *data_, diagnosis, options);
   EXPECT_TRUE(next.steps.empty());
   EXPECT_NE(next.why, "");
 }

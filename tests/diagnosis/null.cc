@@ -44,12 +44,12 @@ struct Seen {
   explicit Seen(const DataSet& session, double most_rejected = 0.02)
       : data(session),
         options(with(most_rejected)),
-        view(TwoSessions(2).robot, data, options, {}),
-        rows(view.kept()),
-        bench(view.whitened(),
-              structures(data.rows, rows, view.ends(), view.by_joint(),
-                         comparable_readings(view.geometry(), data.rows.q)),
-              view.candidates(), view.parameters(), options.search) {}
+        linearised(TwoSessions(2).robot, data, options, {}),
+        rows(linearised.kept()),
+        evaluator(linearised.whitened(),
+                  structures(data.rows, rows, linearised.ends(), linearised.by_joint(),
+                             comparable_readings(linearised.geometry(), data.rows.q)),
+                  linearised.candidates(), linearised.parameters(), options.search) {}
 
   static DiagnosisOptions with(double most_rejected) {
     DiagnosisOptions options = quick();
@@ -59,9 +59,9 @@ struct Seen {
 
   const DataSet data;
   const DiagnosisOptions options;
-  LinearisedModel view;
+  LinearisedModel linearised;
   const DenseEquations rows;
-  EvidenceEvaluator bench;
+  EvidenceEvaluator evaluator;
 };
 
 /// 20 um of normal noise more.
@@ -78,8 +78,8 @@ TEST(NullDistribution, LetsNoiseHaveTheOutliersThatTheSearchMayPutAside) {
   for (const int row : {3, 21, 36, 48, 66, 87})
     data.rows.position(row, row % 3) += 3e-4;  // ten sigma
   Seen seen(data, 0);                          // nothing is put aside yet
-  const NullDistribution with(seen.view, seen.bench, data.rows, 40, 1, 0.1),
-      without(seen.view, seen.bench, data.rows, 40, 1, 0);
+  const NullDistribution with(seen.linearised, seen.evaluator, data.rows, 40, 1, 0.1),
+      without(seen.linearised, seen.evaluator, data.rows, 40, 1, 0);
   double more = 0, less = 0;
   for (double found = -10; found < 40; found += 0.5) {
     more += with.p_of(found) > without.p_of(found);
@@ -93,14 +93,14 @@ TEST(EvidenceEvaluator, FindsTheSameInManyRowsAtOnceAsInOneAfterTheOther) {
   Seen seen(noisy(60, 2));
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
-  Eigen::MatrixXd Y(seen.bench.rows().rows().y.size(), 6);
+  Eigen::MatrixXd Y(seen.evaluator.rows().rows().y.size(), 6);
   for (double& each : Y.reshaped()) each = normal(random);
-  const auto views = seen.bench.views_of(Y, EvidenceEvaluator::Of::noise_alone);
-  const auto found = seen.bench.best_found_in(views);
+  const auto statistics = seen.evaluator.statistics_of(Y, EvidenceEvaluator::Of::noise_alone);
+  const auto found = seen.evaluator.best_found_in(statistics);
   ASSERT_EQ(found.size(), 6);
   for (int i = 0; i < 6; ++i) {
-    seen.bench.look_at(views, i);
-    const EvidenceEvaluator::Found alone = seen.bench.best_found();
+    seen.evaluator.condition_on(statistics, i);
+    const EvidenceEvaluator::Found alone = seen.evaluator.best_found();
     EXPECT_NEAR(found[i].log_odds, alone.log_odds, 1e-9);
     EXPECT_EQ(found[i].hypothesis.candidates, alone.hypothesis.candidates);
   }
@@ -111,12 +111,13 @@ TEST(EvidenceEvaluator, SearchesCoarselyForTheSameFamilies) {
   options.search.extended_singles = 4;
   options.search.extended_pairs = 0;
   const DataSet data = noisy(60, 3);
-  const LinearisedModel view(TwoSessions(2).robot, data, options, {});
-  const EvidenceEvaluator bench(view.whitened(),
-                                structures(data.rows, view.kept(), view.ends(), view.by_joint(),
-                                           comparable_readings(view.geometry(), data.rows.q)),
-                                view.candidates(), view.parameters(), options.search);
-  const Posterior whole = bench.search(), coarse = bench.search_coarsely(4);
+  const LinearisedModel linearised(TwoSessions(2).robot, data, options, {});
+  const EvidenceEvaluator evaluator(
+      linearised.whitened(),
+      structures(data.rows, linearised.kept(), linearised.ends(), linearised.by_joint(),
+                 comparable_readings(linearised.geometry(), data.rows.q)),
+      linearised.candidates(), linearised.parameters(), options.search);
+  const Posterior whole = evaluator.search(), coarse = evaluator.search_coarsely(4);
   EXPECT_NEAR(coarse.none, whole.none, 1e-6);
   EXPECT_NEAR(coarse.unknown, whole.unknown, 1e-6);
   for (const auto& [family, probability] : whole.family)
@@ -129,14 +130,14 @@ TEST(UnknownByChance, IsRareForStructureAndNotForNoise) {
   double sum = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const Seen noise(noisy(60, seed));
-    sum += p_of_unknown(noise.view, noise.bench, {}, noise.data.rows, 99, 1) / 8;
+    sum += p_of_unknown(noise.linearised, noise.evaluator, {}, noise.data.rows, 99, 1) / 8;
   }
   EXPECT_NEAR(sum, 0.5, 0.3) << "even between 0 and 1: within three sigma of the mean of eight";
   // A bulge of the cell of five times the noise, which no known effect makes.
   DataSet data = noisy(120, 1);
   for (auto p : data.rows.position.rowwise()) p.z() += 1.5e-4 * std::sin(4 * p.x() + 5 * p.y());
   const Seen bulge(data);
-  EXPECT_LE(p_of_unknown(bulge.view, bulge.bench, {}, data.rows, 99, 1), 0.01);
+  EXPECT_LE(p_of_unknown(bulge.linearised, bulge.evaluator, {}, data.rows, 99, 1), 0.01);
 }
 
 }  // namespace

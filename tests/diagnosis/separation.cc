@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "diagnosis/report/further_rows.h"
+#include "diagnosis/report/candidate_rows.h"
 #include "diagnosis/report/row_choice.h"
 #include "tests/diagnosis/two_sessions.h"
 
@@ -21,12 +21,13 @@ class SeparationOfAnArm : public testing::Test {
     Observations& rows = data_->rows;
     rows.velocity = Eigen::MatrixXd::Constant(rows.q.rows(), rows.q.cols(), 0.1);
     for (Eigen::Index row = 0; row < rows.q.rows(); row += 2) rows.velocity.row(row) *= -1;
-    view_ = std::make_unique<LinearisedModel>(TwoSessions(2).robot, *data_, quick(), Progress{});
-    both_ = std::make_unique<DataSet>(candidate_rows(*view_, *data_).front().both);
+    linearised_ =
+        std::make_unique<LinearisedModel>(TwoSessions(2).robot, *data_, quick(), Progress{});
+    both_ = std::make_unique<DataSet>(candidate_rows(*linearised_, *data_).front().both);
   }
   static void TearDownTestSuite() {
     both_.reset();
-    view_.reset();
+    linearised_.reset();
     data_.reset();
   }
 
@@ -40,11 +41,11 @@ class SeparationOfAnArm : public testing::Test {
   static int first() { return data_->rows.rows(); }
 
   static inline std::unique_ptr<DataSet> data_, both_;
-  static inline std::unique_ptr<LinearisedModel> view_;
+  static inline std::unique_ptr<LinearisedModel> linearised_;
 };
 
 TEST_F(SeparationOfAnArm, GrowsByWhatEachRowSaysThatItAdds) {
-  Separation causes(*view_, backlash(), coupling(), *both_, first());
+  Separation causes(*linearised_, backlash(), coupling(), *both_, first());
   for (int row = first(); row < both_->rows.rows(); ++row) {
     const double before = causes.apart(), gain = causes.gain(row);
     EXPECT_GE(gain, 0);
@@ -54,15 +55,16 @@ TEST_F(SeparationOfAnArm, GrowsByWhatEachRowSaysThatItAdds) {
 }
 
 TEST_F(SeparationOfAnArm, ComesToTheSameInAnyOrder) {
-  Separation up(*view_, backlash(), coupling(), *both_, first()), down = up;
+  Separation up(*linearised_, backlash(), coupling(), *both_, first()), down = up;
   up.take_all();
   for (int row = both_->rows.rows(); row-- > first();) down.take(row);
   EXPECT_NEAR(up.apart(), down.apart(), kRounding * (1 + up.apart()));
 }
 
 TEST_F(SeparationOfAnArm, ChoosesRowsThatTellMoreThanTheFirstOnes) {
-  const RowChoice choice = choose_rows(*view_, *both_, first(), {{backlash(), coupling(), 0.5}}, 4);
-  Separation chosen(*view_, backlash(), coupling(), *both_, first()), any = chosen;
+  const RowChoice choice =
+      choose_rows(*linearised_, *both_, first(), {{backlash(), coupling(), 0.5}}, 4);
+  Separation chosen(*linearised_, backlash(), coupling(), *both_, first()), any = chosen;
   for (const int row : choice.rows) chosen.take(row);
   for (int i = 0; i < static_cast<int>(choice.rows.size()); ++i) any.take(first() + i);
   EXPECT_GE(chosen.apart(), any.apart());

@@ -45,10 +45,10 @@ struct TwoSessions {
   DataSet before, after;
 };
 
-/// Enough resamples for a cause to be named, no practice.
+/// Enough resamples for a cause to be named, no simulated sessions.
 inline DiagnosisOptions quick() {
   DiagnosisOptions options;
-  options.practice = 0;
+  options.simulated_sessions = 0;
   options.resamples = 99;
   return options;
 }

@@ -45,7 +45,7 @@ TEST(MassOfItsSize, MakesAJointsSagOneNumberAndTheDoubtOfIt) {
   data.rows.set.assign(20, 0);
   int free_lumps = 0, one_number = 0, bending = 0;
   const auto robot = with_mass_of_its_size(arm("", ""));
-  for (const Candidate& each : candidates(*robot, data, Site{}).list) {
+  for (const Candidate& each : candidates(*robot, data, MeasurementContext{}).list) {
     bending += each.effect == "link_compliance";
     if (each.effect != "joint_compliance") continue;
     (each.main.size() == 1 ? one_number : free_lumps) += 1;

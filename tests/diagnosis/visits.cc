@@ -120,7 +120,7 @@ TEST(Visits, MakeCovariancesOfAllThatRowsMayShare) {
   EXPECT_GT(of_time, 0);
 }
 
-DiagnosisOptions without_practice() {
+DiagnosisOptions without_simulation() {
   DiagnosisOptions options = quick();
   options.search.extended_singles = options.search.extended_pairs = 4;
   return options;
@@ -128,7 +128,7 @@ DiagnosisOptions without_practice() {
 
 TEST(Visits, MinutesApartAreDiagnosedAndTheirOwnNoiseIsNoCause) {
   const Revisited session(60, 15, 3);
-  const Diagnosis diagnosis = diagnose(session.robot, session.data, without_practice());
+  const Diagnosis diagnosis = diagnose(session.robot, session.data, without_simulation());
   EXPECT_EQ(diagnosis.problem, "");
   EXPECT_EQ(diagnosis.verdict.effect, kNone) << diagnosis.why;
   EXPECT_NEAR(diagnosis.noise / kTrackerNoise, std::sqrt(10.0), 0.8) << "of a new configuration";
@@ -138,7 +138,7 @@ TEST(Visits, ShowAZeroThatMovedBetweenThem) {
   Revisited session(60, 15, 1);
   for (int i = 0; i < session.data.rows.rows(); ++i)
     if (session.data.rows.time[i] > 3600) session.data.rows.q(i, 2) -= 5e-4;
-  const Diagnosis diagnosis = diagnose(session.robot, session.data, without_practice());
+  const Diagnosis diagnosis = diagnose(session.robot, session.data, without_simulation());
   EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
   EXPECT_THAT(diagnosis.verdict.where, testing::ElementsAre("j3"));
 }
@@ -151,7 +151,7 @@ TEST(OrderOfRows, StandsForTheTimeAndIsSaid) {
   data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows - 1);
   for (int row = 25; row < rows; ++row)
     data.rows.q(row, 2) -= 5e-4;  // the 26th and all that follow
-  const Diagnosis diagnosis = diagnose(sessions.robot, data, without_practice());
+  const Diagnosis diagnosis = diagnose(sessions.robot, data, without_simulation());
   EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
   EXPECT_THAT(diagnosis.verdict.where, testing::ElementsAre("j3"));
   int told = 0;

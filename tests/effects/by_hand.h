@@ -50,15 +50,15 @@ struct Moved {
 
 /// The robot of a file's text with the effects of `entries` ("[{...}]").
 inline Moved moved(const std::string& robot, const std::string& entries, const Held& held,
-                   const Site& site = {}) {
+                   const MeasurementContext& context = {}) {
   const auto geometry = std::shared_ptr<const Robot>(robot_of(robot));
   Problems problems;
   const Node list = parsed("effects: " + entries);
-  const auto corrected = correct(geometry, list.items[0].items, site, problems);
+  const auto corrected = correct(geometry, list.items[0].items, context, problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   if (!corrected) return {};
   ConfigurationBlock block = block_of(held.q);
-  Conditions& at = block.conditions;
+  MeasurementConditions& at = block.conditions;
   if (held.velocity.size() > 0) at.velocity = held.velocity.transpose();
   if (held.wrench.size() > 0) at.wrench = held.wrench.transpose();
   at.normal = held.normal.transpose();

@@ -39,14 +39,14 @@ TEST(ThermalExpansionByHand, HasTheWorldsOriginForAFootWithoutABaseFrame) {
 }
 
 /// A thermometer that reads 20 C + 10 K/h from the first second on, every minute for an hour.
-Site ramp() {
-  Site site;
+MeasurementContext ramp() {
+  MeasurementContext context;
   for (int minute = 0; minute <= 60; ++minute) {
-    site.times.push_back(60.0 * minute);
-    site.temperatures.push_back(20 + minute / 6.0);
+    context.times.push_back(60.0 * minute);
+    context.temperatures.push_back(20 + minute / 6.0);
   }
-  site.end = 3600;
-  return site;
+  context.end = 3600;
+  return context;
 }
 
 TEST(ThermalExpansionByHand, LagsBehindARampAsAFirstOrderSystemDoes) {
@@ -71,11 +71,11 @@ TEST(ThermalExpansionByHand, HasTheMeanOfTheRecordForReference) {
   EXPECT_NEAR(moved(kColumn, warm, held, ramp()).p.x(), -130e-6, 1e-12);
 }
 
-Site an_hour() {
-  Site site;
-  site.begin = 1000;
-  site.end = 4600;
-  return site;
+MeasurementContext an_hour() {
+  MeasurementContext context;
+  context.begin = 1000;
+  context.end = 4600;
+  return context;
 }
 
 TEST(BaseDriftByHand, GoesFromNothingToAllBetweenTheFirstRowAndTheLast) {

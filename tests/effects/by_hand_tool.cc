@@ -63,12 +63,12 @@ TEST(ToolComplianceByHand, GivesWayToTheWrenchAboutEachAxisOfTheMount) {
   expect_near(by.p, 0, 40e-6, 0);
 }
 
-Site tracked() {
-  Site site;
-  site.sets = {{"table", true, {0, 0, 0}, {0, 0, 1}}, {"tracker", false, {}, {}, true}};
-  site.times = {0, 100};
-  site.temperatures = {20, 24};
-  return site;
+MeasurementContext tracked() {
+  MeasurementContext context;
+  context.sets = {{"table", true, {0, 0, 0}, {0, 0, 1}}, {"tracker", false, {}, {}, true}};
+  context.times = {0, 100};
+  context.temperatures = {20, 24};
+  return context;
 }
 
 TEST(ScaleErrorByHand, StretchesWhatTheDeviceMeasuresFromTheWorldsOrigin) {

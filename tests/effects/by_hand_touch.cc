@@ -36,10 +36,11 @@ TEST(ProbePretravelByHand, DependsOnTheAngleToTheStylusAndOnTheSideOfIt) {
 
 /// A table whose middle is at (0.8, -0.1, 0): the tip at (1, 0, 0) has u = 0.2, v = 0.1 m there. Of
 /// a vertical normal u is the world's x and v = n x u its y.
-Site table() {
-  Site site;
-  site.sets = {{"other", true, {0, 0, 0}, {0, 0, 1}}, {"table", true, {0.8, -0.1, 0}, {0, 0, 2}}};
-  return site;
+MeasurementContext table() {
+  MeasurementContext context;
+  context.sets = {{"other", true, {0, 0, 0}, {0, 0, 1}},
+                  {"table", true, {0.8, -0.1, 0}, {0, 0, 2}}};
+  return context;
 }
 
 TEST(PlaneFormErrorByHand, TakesTheHeightOfTheSurfaceOff) {
@@ -76,23 +77,23 @@ TEST(FixtureShiftByHand, LiftsAndTiltsTheSurfaceFromItsMomentOn) {
 TEST(FixtureShiftByHand, GoesAlongTheNormalOfAWall) {
   // Of a wall whose outward normal n is -x, u is the world's y, the first axis across it, and
   // v = n x u = -z. It stands 100 um further out, towards -x; that is taken off: 100 um along +x.
-  Site site = table();
-  site.sets[1].normal = {-1, 0, 0};
+  MeasurementContext context = table();
+  context.sets[1].normal = {-1, 0, 0};
   Held held;
   held.set = 1;
   held.time = 1;
   expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, shift: 1.0e-4}]",
-                    held, site)
+                    held, context)
                   .p,
               100e-6, 0, 0, 1e-15);
   // From the middle the tip lies at (0.2, 0.1, 0): u = 0.1 m, v = 0. So 100 urad about u do
   // nothing, and about v they lower the surface by 10 um, to +x; taken off: 10 um along -x.
   expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, tilt_u: 1.0e-4}]",
-                    held, site)
+                    held, context)
                   .p,
               0, 0, 0, 1e-15);
   expect_near(moved(kTurntable, "[{effect: fixture_shift, at: table, moment: 0, tilt_v: 1.0e-4}]",
-                    held, site)
+                    held, context)
                   .p,
               -10e-6, 0, 0, 1e-15);
 }

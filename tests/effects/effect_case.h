@@ -78,17 +78,17 @@ inline std::string entry_text(const EffectCase& each, const std::string& joint,
 }
 
 /// Sets "table" (touched) and "tracker"; an hour in which it grows warm.
-inline Site random_site(std::mt19937_64& random) {
-  Site site;
-  site.sets = {{"table", true, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
-               {"tracker", false, {}, {}, true}};
+inline MeasurementContext random_context(std::mt19937_64& random) {
+  MeasurementContext context;
+  context.sets = {{"table", true, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
+                  {"tracker", false, {}, {}, true}};
   for (double t = 0; t <= 3600; t += 60) {
-    site.times.push_back(t);
-    site.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));
+    context.times.push_back(t);
+    context.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));
   }
-  site.end = 3600;
-  site.loads = site.velocities = site.speeds = true;
-  return site;
+  context.end = 3600;
+  context.loads = context.velocities = context.speeds = true;
+  return context;
 }
 
 inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, double most,
@@ -99,7 +99,7 @@ inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, do
 }
 
 inline ConfigurationBlock with_conditions(ConfigurationBlock block, std::mt19937_64& random) {
-  Conditions& at = block.conditions;
+  MeasurementConditions& at = block.conditions;
   at.wrench = random_matrix(kLanes, 6, 100, random);
   at.velocity = random_matrix(kLanes, block.q.cols(), 0.5, random);
   at.normal = random_matrix(kLanes, 3, 1, random).rowwise().normalized();
@@ -112,7 +112,7 @@ inline ConfigurationBlock with_conditions(ConfigurationBlock block, std::mt19937
 /// A random robot of weight with one effect, whose parameters are not zero.
 struct EffectInstance {
   std::shared_ptr<const Robot> geometry;
-  Site site;
+  MeasurementContext context;
   std::unique_ptr<Robot> robot;
   Eigen::VectorXd xi;
   ConfigurationBlock block;
@@ -144,7 +144,7 @@ inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& r
   const bool legs = std::string(each.kind) != "serial";
   const std::string weight = each.heavy ? kind_masses().at(each.kind) : "";
   EffectInstance made{legs ? robot_of(kind_examples().at(each.kind) + weight) : heavy_robot(random),
-                      random_site(random),
+                      random_context(random),
                       {},
                       {},
                       {}};
@@ -157,7 +157,7 @@ inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& r
     --pick;
   const std::string text = entry_text(each, joints[pick].name, joints[pick + 1].name);
   Problems problems;
-  made.robot = correct(made.geometry, {parsed("{" + text + "}")}, made.site, problems);
+  made.robot = correct(made.geometry, {parsed("{" + text + "}")}, made.context, problems);
   for (const std::string& problem : problems.list) ADD_FAILURE() << problem;
   made.xi = values(*made.robot);
   for (Eigen::Index i = made.own(); i < made.xi.size(); ++i)

@@ -35,10 +35,10 @@ TEST_P(EffectFile, ComesBackWithTheSameParametersAndActsTheSame) {
     ASSERT_EQ(again.size(), 1u);
     EXPECT_EQ(again[0]->name(), once[0]->name());
     EXPECT_EQ(again[0]->at(), once[0]->at());
-    // At the site of its data set it acts there as it did.
+    // At the context of its data set it acts there as it did.
     Problems problems;
     const auto there = correct(geometry_of(robot_of(parsed(text))),
-                               parsed(text).find("effects")->items, at.site, problems);
+                               parsed(text).find("effects")->items, at.context, problems);
     ASSERT_NE(there, nullptr) << problems.list.front();
     Locations X, Y;
     at.robot->locate(at.block, at.xi, Body::endpoint, X, nullptr);
@@ -93,7 +93,7 @@ TEST_P(EffectFile, KeepsWhetherADiagnosisNamedIt) {
     Node entry = silent;
     entry.set("named", Node::of(word));
     Problems problems;
-    const auto robot = correct(at.geometry, {entry}, at.site, problems);
+    const auto robot = correct(at.geometry, {entry}, at.context, problems);
     ASSERT_NE(robot, nullptr) << problems.list.front();
     const auto back = robot_of(parsed(robot_text(*robot, at.xi)));
     ASSERT_NE(back, nullptr);
@@ -108,7 +108,7 @@ TEST_P(EffectFile, HasOneEntryOfWhatWasFoundTwice) {
   const EffectInstance at = random_instance(GetParam(), random);
   const Node entry = parsed(robot_text(*at.robot, at.xi)).find("effects")->items.front();
   Problems problems;
-  const auto twice = correct(at.geometry, {entry, entry}, at.site, problems);
+  const auto twice = correct(at.geometry, {entry, entry}, at.context, problems);
   ASSERT_NE(twice, nullptr) << problems.list.front();
   const auto own = at.xi.size() - at.own();
   Eigen::VectorXd xi(at.own() + 2 * own);
@@ -211,13 +211,13 @@ TEST(EffectsOfAFile, AreRefusedWhenTheyAreNoList) {
 }
 
 TEST(TriggerLatency, IsRefusedWhereOnlySignsOfVelocitiesAreKnown) {
-  Site site;
-  site.velocities = true;
+  MeasurementContext context;
+  context.velocities = true;
   Problems problems;
   const auto entry = parsed("{effect: trigger_latency}");
-  EXPECT_EQ(
-      correct(robot_of(with_frames("  - {name: j1, joint: revolute}\n")), {entry}, site, problems),
-      nullptr);
+  EXPECT_EQ(correct(robot_of(with_frames("  - {name: j1, joint: revolute}\n")), {entry}, context,
+                    problems),
+            nullptr);
   ASSERT_TRUE(problems.any());
   EXPECT_THAT(problems.list.front(), HasSubstr("velocities"));
 }
@@ -226,16 +226,17 @@ TEST(JointCompliance, OfARobotWithoutMassesComesBackAsItWasLoadedOrLumped) {
   const auto arm = std::shared_ptr<const Robot>(
       robot_of(with_frames("  - {name: j1, joint: revolute, alpha: 1.5}\n"
                            "  - {name: tool, joint: fixed, d: 1}\n")));
-  Site loaded, unloaded;
+  MeasurementContext loaded, unloaded;
   loaded.loads = true;
-  for (const Site& site : {loaded, unloaded}) {
+  for (const MeasurementContext& context : {loaded, unloaded}) {
     Problems problems;
-    const auto robot = correct(arm, {parsed("{effect: joint_compliance, at: j1}")}, site, problems);
+    const auto robot =
+        correct(arm, {parsed("{effect: joint_compliance, at: j1}")}, context, problems);
     ASSERT_NE(robot, nullptr);
     const auto back = robot_of(robot->text().describe(values(*robot)));
     ASSERT_NE(back, nullptr);
     EXPECT_EQ(back->parameters().size(), robot->parameters().size());
-    EXPECT_EQ(back->parameters().back().name, site.loads ? "j1.c" : "j1.y_j1");
+    EXPECT_EQ(back->parameters().back().name, context.loads ? "j1.c" : "j1.y_j1");
   }
 }
 

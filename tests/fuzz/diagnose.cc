@@ -1,5 +1,5 @@
-// The diagnosis of a small data set, without practice and with few resamples: probabilities are
-// such, and what is named has figures.
+// The diagnosis of a small data set, without simulated sessions and with few resamples:
+// probabilities are such, and what is named has figures.
 #include "diagnosis/diagnosis.h"
 
 #include "app/report/diagnosis_json.h"
@@ -33,7 +33,7 @@ void try_diagnose(Bytes bytes) {
   if (!loaded) return;
   DiagnosisOptions options;
   options.resamples = 9;
-  options.practice = 0;
+  options.simulated_sessions = 0;
   const DataSet& data = loaded->data;
   Findings findings{"given", diagnose(loaded->robot, data, options), {}, {}};
   const Diagnosis& diagnosis = findings.diagnosis;

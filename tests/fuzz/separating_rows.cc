@@ -7,6 +7,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace selfcal;
   const auto rows =
       read_separating_rows(given_folder().write("diagnosis.json", text_of(data, size)).string());
-  if (rows) (void)separating_words(*rows);
+  if (rows) (void)separating_report(*rows);
   return 0;
 }

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   std::printf("answer: %s\n", std::string(to_string(solution.verdict.answer)).c_str());
 
   const selfcal::Diagnosis diagnosis =
-      selfcal::diagnose(loaded->robot, loaded->data, {.resamples = 39, .practice = 0});
+      selfcal::diagnose(loaded->robot, loaded->data, {.resamples = 39, .simulated_sessions = 0});
   if (!diagnosis.problem.empty()) {
     std::printf("no diagnosis: %s\n", diagnosis.problem.c_str());
     return 0;

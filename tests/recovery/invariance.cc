@@ -155,7 +155,7 @@ TEST_P(HardArm, IsDiagnosedTheSameInAnyOrderAndFromAnywhere) {
   for (Eigen::Index row = 0; row < data.rows.q.rows(); ++row)
     data.rows.q(row, 2) += 2e-4 * std::sin(3 * data.rows.q(row, 2));
   DiagnosisOptions options;
-  options.practice = 0;
+  options.simulated_sessions = 0;
   const Diagnosis one = diagnose(arm, data, options);
   EXPECT_EQ(one.verdict.effect, "transmission_error");
   EXPECT_EQ(one.verdict.where, std::vector<std::string>{"j3"});

@@ -128,7 +128,7 @@ Measured measured(std::string_view kind, double k) {
   data.target *= k;
   DiagnosisOptions options;
   options.resamples = 39;
-  options.practice = 0;
+  options.simulated_sessions = 0;
   return {identify(*robot, data), diagnose(robot, data, options)};
 }
 

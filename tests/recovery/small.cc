@@ -46,7 +46,7 @@ void expect_an_answer(const std::shared_ptr<const Robot>& robot, const DataSet& 
     EXPECT_TRUE(each.status != Status::identified || std::isfinite(each.sigma)) << seed;
   DiagnosisOptions options;
   options.resamples = 9;
-  options.practice = 0;
+  options.simulated_sessions = 0;
   Diagnosis diagnosis;
   ASSERT_NO_THROW(diagnosis = diagnose(robot, data, options)) << seed;
   if (!diagnosis.problem.empty()) return;

@@ -121,15 +121,15 @@ TEST(Config, LoadsTheExampleThatIsShipped) {
 
 TEST(Config, ChangesTheMeaningOfASessionWithWhatItsRowsMeanOnly) {
   const std::vector<EncoderScale> scales(6);
-  const auto meaning = [&](const CellKeys& keys) { return meaning_text(*load_cell(keys), scales); };
+  const auto decoding = [&](const CellKeys& keys) { return decoding_text(*load_cell(keys), scales); };
   using Keys = CellKeys;
-  const std::string usual = meaning(Keys{});
-  EXPECT_EQ(meaning(Keys{{"schedule.every_hours", "24"}, {"motion.speed", "2"}}), usual);
-  EXPECT_EQ(meaning(Keys{{"sets.touches", "99"}}), usual);
-  EXPECT_NE(meaning(Keys{{"sets.noise", "3.0e-5"}}), usual);
-  EXPECT_NE(meaning(Keys{{"target", "2.0e-3"}}), usual);
-  EXPECT_NE(meaning(Keys{{"trigger.delay", "0.003"}}), usual);
-  EXPECT_NE(meaning_text(*load_cell(), std::vector<EncoderScale>(6, {1e-6, 5})), usual);
+  const std::string usual = decoding(Keys{});
+  EXPECT_EQ(decoding(Keys{{"schedule.every_hours", "24"}, {"motion.speed", "2"}}), usual);
+  EXPECT_EQ(decoding(Keys{{"sets.touches", "99"}}), usual);
+  EXPECT_NE(decoding(Keys{{"sets.noise", "3.0e-5"}}), usual);
+  EXPECT_NE(decoding(Keys{{"target", "2.0e-3"}}), usual);
+  EXPECT_NE(decoding(Keys{{"trigger.delay", "0.003"}}), usual);
+  EXPECT_NE(decoding_text(*load_cell(), std::vector<EncoderScale>(6, {1e-6, 5})), usual);
 }
 
 TEST(ConfigHash, IsAnotherWhereReadingsMeanSomethingElse) {

@@ -71,7 +71,7 @@ inline std::string name_of(Action::Do what) {
 }
 
 struct Script {
-  Situation s;
+  ExtendedState s;
   Limits limits;
   Nanoseconds now = 0;
   std::vector<Action> actions;  // of the last event

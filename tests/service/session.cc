@@ -10,35 +10,35 @@ namespace {
 
 using testing::HasSubstr;
 
-// -------------------------------------------------------------------------- meaning
+// -------------------------------------------------------------------------- decoding
 
 TEST(Decoding, ReadsBackAsItWasWritten) {
   const Config config = two_planes();
-  const Decoding meaning = meaning_of(config);
-  EXPECT_EQ(meaning.target, config.target);
-  EXPECT_EQ(meaning.delay, 0.001);
-  ASSERT_EQ(meaning.scales.size(), 6u);
-  EXPECT_EQ(meaning.scales[5].step, kStep);
-  EXPECT_EQ(meaning.scales[5].zero, 1000);
-  ASSERT_EQ(meaning.sets.size(), 2u);
-  EXPECT_EQ(meaning.sets[0].name, "near");
-  EXPECT_EQ(meaning.sets[0].noise, 2e-5);
-  EXPECT_EQ(meaning.sets[1].reference, 0);
-  EXPECT_EQ(meaning.outward[1], Eigen::Vector3d::UnitZ());
+  const Decoding decoding = decoding_of(config);
+  EXPECT_EQ(decoding.target, config.target);
+  EXPECT_EQ(decoding.delay, 0.001);
+  ASSERT_EQ(decoding.scales.size(), 6u);
+  EXPECT_EQ(decoding.scales[5].step, kStep);
+  EXPECT_EQ(decoding.scales[5].zero, 1000);
+  ASSERT_EQ(decoding.sets.size(), 2u);
+  EXPECT_EQ(decoding.sets[0].name, "near");
+  EXPECT_EQ(decoding.sets[0].noise, 2e-5);
+  EXPECT_EQ(decoding.sets[1].reference, 0);
+  EXPECT_EQ(decoding.outward[1], Eigen::Vector3d::UnitZ());
 }
 
 TEST(Decoding, KeepsLargeEncoderZerosToTheCount) {
   const std::vector<EncoderScale> scales(6, EncoderScale{-1e-9, -4'503'599'627'370'495});  // 2^52
-  const auto meaning = read_meaning(meaning_text(two_planes(), scales));
-  ASSERT_TRUE(meaning);
-  EXPECT_EQ(meaning->scales[0].zero, -4'503'599'627'370'495);
-  EXPECT_EQ(meaning->scales[0].step, -1e-9);
+  const auto decoding = read_decoding(decoding_text(two_planes(), scales));
+  ASSERT_TRUE(decoding);
+  EXPECT_EQ(decoding->scales[0].zero, -4'503'599'627'370'495);
+  EXPECT_EQ(decoding->scales[0].step, -1e-9);
 }
 
 TEST(Decoding, RefusesATextThatIsNone) {
-  EXPECT_FALSE(read_meaning("target: 1.0e-3\n"));
-  EXPECT_FALSE(read_meaning("{"));
-  EXPECT_FALSE(read_meaning("sets: {a: {method: plane}}\n")) << "without target and delay";
+  EXPECT_FALSE(read_decoding("target: 1.0e-3\n"));
+  EXPECT_FALSE(read_decoding("{"));
+  EXPECT_FALSE(read_decoding("sets: {a: {method: plane}}\n")) << "without target and delay";
 }
 
 // ----------------------------------------------------------------------- next step
@@ -92,11 +92,11 @@ Reading reading_out_by(const Robot& robot, const std::vector<double>& touch, dou
 }
 
 TEST(RuleOnTouch, PutsAsideATouchLongBeforeTheSurface) {
-  const Decoding meaning = meaning_of(two_planes());
+  const Decoding decoding = decoding_of(two_planes());
   const Session session = session_of(1);
   const StepRecord& step = session.plan[0];
   const auto rule = [&](double way) {
-    return decide_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
+    return decide_on_touch(rx90(), session, decoding, step, reading_out_by(rx90(), step.touch, way),
                            0.01, 1e-4);
   };
   EXPECT_EQ(rule(0.0099).outcome, TouchOutcome::taken);
@@ -106,12 +106,12 @@ TEST(RuleOnTouch, PutsAsideATouchLongBeforeTheSurface) {
 }
 
 TEST(RuleOnTouch, FindsATouchThatDiffersFromTheOneBefore) {
-  const Decoding meaning = meaning_of(two_planes());
+  const Decoding decoding = decoding_of(two_planes());
   Session session = session_of(1);
   session.touches = {touch_of(0)};
   const StepRecord& step = session.plan[0];
   const auto rule = [&](double way) {
-    return decide_on_touch(rx90(), session, meaning, step, reading_out_by(rx90(), step.touch, way),
+    return decide_on_touch(rx90(), session, decoding, step, reading_out_by(rx90(), step.touch, way),
                            0.01, 1e-4);
   };
   EXPECT_EQ(rule(0.9e-4).outcome, TouchOutcome::taken);

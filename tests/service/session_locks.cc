@@ -51,7 +51,7 @@ TEST(RuleOnVisit, PutsLegsThatDoNotMeetAside) {
 /// Touches of a plane above the platform by its probe.
 struct ProbedPlatform {
   Config config;
-  Decoding meaning;
+  Decoding decoding;
   Session session;
 
   ProbedPlatform() {
@@ -62,7 +62,7 @@ struct ProbedPlatform {
         "within: {center: [0, 0, 0.95], radius: 0.15}}\n");
     EXPECT_TRUE(loaded) << loaded.error().what;
     config = *loaded;
-    meaning = *read_meaning(meaning_text(config, kLegScales));
+    decoding = *read_decoding(decoding_text(config, kLegScales));
     session.record.kind = "full";
     StepRecord step;
     step.set = "top";
@@ -70,7 +70,7 @@ struct ProbedPlatform {
     session.plan = {step};
   }
   TouchDecision rule(std::initializer_list<double> lengths) const {
-    return decide_on_touch(*config.robot, session, meaning, session.plan[0], legs(lengths), 0.012,
+    return decide_on_touch(*config.robot, session, decoding, session.plan[0], legs(lengths), 0.012,
                            1e-4);
   }
 };
@@ -105,7 +105,7 @@ TEST(RowsOfAPlatform, AddNoNoiseForASpeedThatNobodyKnows) {
     touch.after.counts[leg] = touch.before.counts[leg] + 1000;
   }
   cell.session.touches = {touch};
-  const DataSet data = rows_of(*cell.config.robot, cell.session, cell.meaning);
+  const DataSet data = rows_of(*cell.config.robot, cell.session, cell.decoding);
   EXPECT_EQ(data.rows.factor(0), 1);
 }
 
@@ -134,11 +134,11 @@ Session visits(const std::vector<int>& engaged) {
 
 DataSet rows_of_visits(const Session& session) {
   const Config config = lock_config();
-  const auto meaning = read_meaning(meaning_text(config, kLegScales));
-  EXPECT_TRUE(meaning) << meaning.error().what;
-  EXPECT_EQ(steps_of_rows(session, *meaning).size(),
-            static_cast<std::size_t>(rows_of(*config.robot, session, *meaning).rows.rows()));
-  return rows_of(*config.robot, session, *meaning);
+  const auto decoding = read_decoding(decoding_text(config, kLegScales));
+  EXPECT_TRUE(decoding) << decoding.error().what;
+  EXPECT_EQ(steps_of_rows(session, *decoding).size(),
+            static_cast<std::size_t>(rows_of(*config.robot, session, *decoding).rows.rows()));
+  return rows_of(*config.robot, session, *decoding);
 }
 
 TEST(RowsOfVisits, GiveEachEngagementASetOfItsOwn) {

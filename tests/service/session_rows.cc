@@ -15,7 +15,7 @@ TEST(RowsOf, HasTheGoodTouchesInTheOrderOfThePlanWithTheirRepeats) {
       touch_of(2, TouchOutcome::taken, 0.2), touch_of(0, TouchOutcome::outlier, 0.9),
       touch_of(0, TouchOutcome::taken, 0.1), touch_of(0, TouchOutcome::taken, 0.1),
       touch_of(1, TouchOutcome::taken, 0.3), touch_of(3, TouchOutcome::outlier, 0.9)};
-  const DataSet data = rows_of(rx90(), session, meaning_of(config));
+  const DataSet data = rows_of(rx90(), session, decoding_of(config));
   ASSERT_EQ(data.rows.rows(), 4);
   constexpr double kHalfCount = kStep / 2;
   EXPECT_NEAR(data.rows.q(0, 0), 0.1, kHalfCount);
@@ -25,9 +25,9 @@ TEST(RowsOf, HasTheGoodTouchesInTheOrderOfThePlanWithTheirRepeats) {
   EXPECT_THAT(data.rows.repeat, ElementsAre(0, 0, -1, -1));
   EXPECT_THAT(data.rows.check, ElementsAre(0, 0, 1, 0));
   EXPECT_EQ(data.rows.normal.row(2).transpose(), Eigen::Vector3d::UnitZ());
-  EXPECT_THAT(rows_of(rx90(), session, meaning_of(config), Parts::all_check).rows.check,
+  EXPECT_THAT(rows_of(rx90(), session, decoding_of(config), Parts::all_check).rows.check,
               ElementsAre(1, 1, 1, 1));
-  EXPECT_THAT(rows_of(rx90(), session, meaning_of(config), Parts::all_fit).rows.check,
+  EXPECT_THAT(rows_of(rx90(), session, decoding_of(config), Parts::all_fit).rows.check,
               ElementsAre(0, 0, 0, 0));
 }
 
@@ -35,7 +35,7 @@ TEST(RowsOf, LeavesOutTouchesBeforeOneThatDiffers) {
   Session session = session_of(1);
   session.touches = {touch_of(0, TouchOutcome::taken, 0.1), touch_of(0, TouchOutcome::differs, 0.2),
                      touch_of(0, TouchOutcome::taken, 0.3)};
-  const DataSet data = rows_of(rx90(), session, meaning_of(two_planes()));
+  const DataSet data = rows_of(rx90(), session, decoding_of(two_planes()));
   ASSERT_EQ(data.rows.rows(), 1);
   EXPECT_NEAR(data.rows.q(0, 0), 0.3, kStep / 2);
 }
@@ -46,7 +46,7 @@ TEST(RowsOf, ReadsTheJointsAtTheContactNotAtTheDelayedEdge) {
   touch.before.counts.fill(1000);         // 0 rad, 10 ms before the edge
   touch.after.counts.fill(1000 + 20000);  // 0.02 rad, 10 ms after it: 1 rad/s
   session.touches = {touch};
-  const DataSet data = rows_of(rx90(), session, meaning_of(two_planes()));
+  const DataSet data = rows_of(rx90(), session, decoding_of(two_planes()));
   EXPECT_NEAR(data.rows.q(0, 3), 0.009, 1e-15) << "1 ms before the edge";  // rounding
 }
 
@@ -60,7 +60,7 @@ TEST(RowsOf, WeighsATouchByWhatItsReadingLeavesOpen) {
   moving.temperature = 31;
   moving.unix_ms = standing.unix_ms + 3'600'000;  // the wall clock stepped: the edges did not
   session.touches = {standing, moving};
-  const DataSet data = rows_of(rx90(), session, meaning_of(two_planes()));
+  const DataSet data = rows_of(rx90(), session, decoding_of(two_planes()));
   ASSERT_EQ(data.rows.rows(), 2);
   EXPECT_EQ(data.rows.factor(0), 1);
   const Eigen::VectorXd q = data.rows.q.row(1).transpose();
@@ -82,20 +82,20 @@ TEST(RowsOf, TakeTheWallClockForTheTimeThatTheComputerWasOff) {
   after.edge = before.edge - kMillisecond;
   after.unix_ms = before.unix_ms + 2500;
   session.touches = {before, after};
-  EXPECT_EQ(rows_of(rx90(), session, meaning_of(two_planes())).rows.time[1], 2.5);
+  EXPECT_EQ(rows_of(rx90(), session, decoding_of(two_planes())).rows.time[1], 2.5);
 }
 
 TEST(RowsOf, MakesNoRowsOfNoTouches) {
-  EXPECT_EQ(rows_of(rx90(), session_of(3), meaning_of(two_planes())).rows.rows(), 0);
+  EXPECT_EQ(rows_of(rx90(), session_of(3), decoding_of(two_planes())).rows.rows(), 0);
 }
 
 TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
-  const Decoding meaning = meaning_of(two_planes());
+  const Decoding decoding = decoding_of(two_planes());
   Session base = session_of(4), check = session_of(2);
   for (int i = 0; i < 4; ++i) base.touches.push_back(touch_of(i, TouchOutcome::taken, 0.1 * i));
   for (int i = 0; i < 2; ++i) check.touches.push_back(touch_of(i, TouchOutcome::taken, 0.7));
   const DataSet data =
-      joined(rows_of(rx90(), base, meaning), rows_of(rx90(), check, meaning, Parts::all_check));
+      joined(rows_of(rx90(), base, decoding), rows_of(rx90(), check, decoding, Parts::all_check));
   ASSERT_EQ(data.rows.rows(), 5) << "three fit rows and two new ones";
   EXPECT_THAT(data.rows.check, ElementsAre(0, 0, 0, 1, 1));
   EXPECT_THAT(data.rows.set, ElementsAre(0, 0, 1, 0, 1));
@@ -105,20 +105,20 @@ TEST(Joined, PutsTheNewTouchesAsJudgesBehindTheFitRows) {
 }
 
 TEST(Joined, KeepsAColumnThatOnlyOneOfThemHas) {
-  const Decoding meaning = meaning_of(two_planes());
+  const Decoding decoding = decoding_of(two_planes());
   Session session = session_of(2);
   for (StepRecord& step : session.plan) step.check = false;
   session.touches = {touch_of(0), touch_of(1)};
-  DataSet base = rows_of(rx90(), session, meaning);
+  DataSet base = rows_of(rx90(), session, decoding);
   base.rows.wrench = Eigen::MatrixXd::Constant(2, 6, 3.5);
-  const DataSet data = joined(base, rows_of(rx90(), session, meaning, Parts::all_check));
+  const DataSet data = joined(base, rows_of(rx90(), session, decoding, Parts::all_check));
   ASSERT_EQ(data.rows.wrench.rows(), 4);
   EXPECT_EQ(data.rows.wrench(1, 5), 3.5);
   EXPECT_TRUE(std::isnan(data.rows.wrench(2, 0)));
 }
 
 TEST(Joined, MeansTheSameSocketByTheSameName) {
-  Decoding meaning = meaning_of(two_planes());
+  Decoding decoding = decoding_of(two_planes());
   Session base = session_of(2), check = session_of(2);
   base.plan[0].group = check.plan[1].group = "g1";
   base.plan[1].group = check.plan[0].group = "g0";
@@ -127,7 +127,7 @@ TEST(Joined, MeansTheSameSocketByTheSameName) {
     each->touches = {touch_of(0), touch_of(1)};
   }
   const DataSet data =
-      joined(rows_of(rx90(), base, meaning), rows_of(rx90(), check, meaning, Parts::all_check));
+      joined(rows_of(rx90(), base, decoding), rows_of(rx90(), check, decoding, Parts::all_check));
   std::vector<std::string> names;
   for (const int group : data.rows.group) names.push_back(data.sets[0].groups[group]);
   EXPECT_THAT(names, ElementsAre("g1", "g0", "g0", "g1"));

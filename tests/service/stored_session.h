@@ -26,10 +26,10 @@ inline Config two_planes() {
   return *config;
 }
 
-inline Decoding meaning_of(const Config& config) {
-  auto meaning = read_meaning(meaning_text(config, kScales));
-  EXPECT_TRUE(meaning) << meaning.error().what;
-  return *meaning;
+inline Decoding decoding_of(const Config& config) {
+  auto decoding = read_decoding(decoding_text(config, kScales));
+  EXPECT_TRUE(decoding) << decoding.error().what;
+  return *decoding;
 }
 
 /// A touch at which every joint reads `q`, standing.

@@ -44,7 +44,7 @@ TEST(Command, IsAcceptedOrRefusedWithAReasonInEveryState) {
     for (const Verb verb : kVerbs) {
       SCOPED_TRACE(std::string(to_string(verb)) + " in " + std::string(to_string(state)));
       Script script = script_at(state);
-      const Situation before = script.s;
+      const ExtendedState before = script.s;
       script.ask(verb);
       if (accepted(verb, state)) {
         EXPECT_EQ(script.actions.front().what, verb == Verb::rollback ? Do::roll_back : Do::grant);
@@ -99,7 +99,7 @@ TEST(Command, DoesNotAbortWhileParametersAreBeingApplied) {
 
 // ---------------------------------------------------------------------- in no order
 
-Event random_event(std::mt19937_64& random, const Situation& s) {
+Event random_event(std::mt19937_64& random, const ExtendedState& s) {
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   Event event;
   event.what = static_cast<What>(below(static_cast<int>(What::broken) + 1));
@@ -132,7 +132,7 @@ TEST(Transition, HoldsItsPromisesWhateverHappensInWhateverOrder) {
   const Limits limits;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     std::mt19937_64 random(seed);
-    Situation s;
+    ExtendedState s;
     Nanoseconds now = 0;
     bool needs_start = false;  // a fault after the first self-test
     for (int i = 0; i < 1000; ++i) {

@@ -37,9 +37,9 @@ struct SessionAnswer {
 
 SessionAnswer answer_of(const ResultMessage& result, Store& store) {
   SessionAnswer answer{result.answer, result.decision, {}, {}};
-  const Decoding meaning = must(read_meaning(must(store.session(1)).config));
+  const Decoding decoding = must(read_decoding(must(store.session(1)).config));
   for (const TouchRecord& touch : must(store.touches(1)))
-    answer.readings[touch.step] = reading_of(touch, meaning).q;
+    answer.readings[touch.step] = reading_of(touch, decoding).q;
   const json solution = json::parse(result.json);
   for (const json& each : solution["parameters"])
     if (each["status"] == "identified")

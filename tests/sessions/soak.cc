@@ -115,12 +115,12 @@ class Soak : public testing::Test {
     Service service(std::move(config), ports.ports(), listener, *opened.store, journal,
                     std::move(models), "");
     const auto asleep = [&] {
-      return !listener.results.empty() && service.situation().state == ServiceState::idle &&
+      return !listener.results.empty() && service.extended_state().state == ServiceState::idle &&
              (listener.results.back().kind == "full" ||
               listener.results.back().answer == "explained");
     };
-    while (!asleep() && service.situation().state != ServiceState::fault) service.turn();
-    EXPECT_EQ(service.situation().state, ServiceState::idle) << service.situation().why;
+    while (!asleep() && service.extended_state().state != ServiceState::fault) service.turn();
+    EXPECT_EQ(service.extended_state().state, ServiceState::idle) << service.extended_state().why;
     service.shut_down();
     bytes = must(opened.store->bytes());
     if (!listener.results.empty()) last_session = listener.results.back().session;

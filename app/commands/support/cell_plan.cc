@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/report/curve_words.h"
+#include "app/report/curve_report.h"
 #include "app/report/format.h"
 #include "io/files/json_parts.h"
 #include "io/files/observations_text.h"
@@ -50,7 +50,7 @@ CellPlan plan_cell(const Config& config, const Progress& progress) {
   return cell;
 }
 
-std::string cell_plan_words(const Config& config, const CellPlan& cell) {
+std::string cell_plan_report(const Config& config, const CellPlan& cell) {
   std::string text;
   int name_width = 0, method_width = 0;
   for (const Set& set : config.sets) {
@@ -74,7 +74,7 @@ std::string cell_plan_words(const Config& config, const CellPlan& cell) {
   text += printed("  motion %s: %s between touches, %s into contacts and out\n",
                   duration(cell.time.travel + cell.time.touching).c_str(),
                   duration(cell.time.travel).c_str(), duration(cell.time.touching).c_str());
-  text += curve_words(cell.expected.curve, config.target, "touches that identify", "  ");
+  text += curve_report(cell.expected.curve, config.target, "touches that identify", "  ");
   return text + printed("  target %.3g mm: %s\n", 1e3 * config.target,
                         cell.reaches(config)
                             ? "yes"

@@ -24,7 +24,7 @@ struct CellPlan {
 CellPlan plan_cell(const Config& config, const Progress& progress);
 
 /// By set, then the figures; or why there is no plan.
-std::string cell_plan_words(const Config& config, const CellPlan& cell);
+std::string cell_plan_report(const Config& config, const CellPlan& cell);
 nlohmann::ordered_json cell_plan_json(const Config& config, const CellPlan& cell);
 /// The contacts in their order, as a data set has them before anything is measured; its file.
 DataSet cell_plan_data(const Config& config, const CellPlan& cell);

@@ -113,7 +113,7 @@ Result<SeparatingRows> read_separating_rows(const std::string& file) {
   }
 }
 
-std::string separating_words(const SeparatingRows& rows) {
+std::string separating_report(const SeparatingRows& rows) {
   std::string text;
   for (std::size_t i = 0; i < rows.steps.size(); ++i) {
     const SeparatingStep& step = rows.steps[i];

@@ -26,6 +26,6 @@ struct SeparatingRows {
 Result<SeparatingRows> read_separating_rows(const std::string& file);
 
 /// The steps, numbered, and why there are no more.
-std::string separating_words(const SeparatingRows& rows);
+std::string separating_report(const SeparatingRows& rows);
 
 }  // namespace selfcal

@@ -91,7 +91,7 @@ Result<SessionRows> session_rows(Store& store, std::int64_t session,
   if (!record) return tl::unexpected(record.error());
   const auto kept = stored_session(store, *record);
   if (!kept) return tl::unexpected(kept.error());
-  const auto meaning = read_meaning(record->config);
+  const auto meaning = read_decoding(record->config);
   if (!meaning) return tl::unexpected(meaning.error());
   const auto base = record->kind == to_string(SessionKind::cause)
                         ? base_of_cause(store, record->model_hash, record->config_hash, session)

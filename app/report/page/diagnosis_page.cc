@@ -4,7 +4,7 @@
 
 #include "app/report/diagnosis_json.h"
 #include "app/report/format.h"
-#include "app/report/gap_words.h"
+#include "app/report/gap_report.h"
 #include "app/report/page/robot_picture.h"
 #include "io/files/json_parts.h"
 
@@ -13,21 +13,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostJudged = 5000;  // of a page below 2 MB
+constexpr std::size_t kMostValidationRows = 5000;  // of a page below 2 MB
 constexpr int kMostDiagnosisPoses = 12;
 
-Json judged_json(const std::vector<JudgedRow>& rows) {
+Json validation_json(const std::vector<ValidationRow>& rows) {
   Json json = {{"of", rows.size()}};
-  const std::size_t step = std::max<std::size_t>(1, (rows.size() + kMostJudged - 1) / kMostJudged);
-  const auto column = [&](const char* name, double JudgedRow::*squared) {
+  const std::size_t step =
+      std::max<std::size_t>(1, (rows.size() + kMostValidationRows - 1) / kMostValidationRows);
+  const auto column = [&](const char* name, double ValidationRow::*squared) {
     json[name] = Json::array();
     for (std::size_t i = 0; i < rows.size(); i += step)
       if (!rows[i].false_reading) json[name].push_back(finite(std::sqrt(rows[i].*squared)));
   };
-  column("nominal", &JudgedRow::nominal);
-  column("before", &JudgedRow::before);
-  column("after", &JudgedRow::after);
-  column("all", &JudgedRow::all);
+  column("nominal", &ValidationRow::nominal);
+  column("before", &ValidationRow::before);
+  column("after", &ValidationRow::after);
+  column("all", &ValidationRow::all);
   return json;
 }
 
@@ -85,7 +86,8 @@ Json diagnosis_data(const PageSubject& subject, const Findings& findings) {
                    {"simulator", simulator_sentences(findings)}};
   if (findings.since) json["since_name"] = findings.since->name;
   if (findings.sim) json["sim_name"] = findings.sim->name;
-  if (!diagnosis.judged.empty()) json["judged"] = judged_json(diagnosis.judged);
+  if (!diagnosis.validation_rows.empty())
+    json["judged"] = validation_json(diagnosis.validation_rows);
   json["picture"] = robot_picture(subject.robot, subject.data.rows.q, kMostDiagnosisPoses);
   return json;
 }

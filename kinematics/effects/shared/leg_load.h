@@ -19,7 +19,7 @@ inline double leg_mass(const EffectPlan& plan, double standard) {
 
 /// Pull on leg `j` along itself (N, negative in compression) by the row's wrench, by what weighs
 /// and by `mass` more at the tip.
-inline double leg_pull(const Circumstances& at, int j, double mass) {
+inline double leg_pull(const RegressorInput& at, int j, double mass) {
   const Eigen::Vector3d force = at.wrench.force + mass * at.gravity;
   return at.legs.col(j).head<3>().dot(force) + at.legs.col(j).tail<3>().dot(at.wrench.moment) +
          at.leg_weights[j];

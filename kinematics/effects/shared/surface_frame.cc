@@ -11,8 +11,8 @@ SurfaceFrame surface_frame(const EffectPlan& plan, int set) {
   SurfaceFrame frame;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   if (set >= 0) {
-    frame.centre = plan.site.sets[set].centre;
-    normal = plan.site.sets[set].normal;
+    frame.centre = plan.context.sets[set].centre;
+    normal = plan.context.sets[set].normal;
   }
   if (const auto given = plan.fields.numbers("center", 3)) frame.centre = *given;
   if (const auto given = plan.fields.numbers("normal", 3)) normal = *given;

@@ -1,4 +1,4 @@
-#include "app/report/next_words.h"
+#include "app/report/next_place_report.h"
 
 #include "app/report/format.h"
 #include "io/files/json_parts.h"
@@ -8,13 +8,13 @@ namespace {
 
 constexpr std::size_t kToldPlaces = 5;
 
-std::string place_words(const Eigen::Vector3d& v) {
+std::string place_report(const Eigen::Vector3d& v) {
   return printed("[%.3f, %.3f, %.3f]", v.x(), v.y(), v.z());
 }
 
 }  // namespace
 
-std::string next_words(const NextRequest& request, const NextPlaces& next) {
+std::string next_place_report(const NextRequest& request, const NextPlaces& next) {
   const std::string method(request.further.method->name());
   if (!next.problem.empty()) return "no further " + method + ": " + next.problem + "\n";
   std::string text = printed(
@@ -24,10 +24,10 @@ std::string next_words(const NextRequest& request, const NextPlaces& next) {
       mm(next.sigma_now).c_str(), request.count, mm(next.sigma_same).c_str(), method.c_str());
   for (std::size_t i = 0; i < next.places.size() && i < kToldPlaces; ++i) {
     const NextPlace& each = next.places[i];
-    text += "  " + mm(each.sigma) + " mm at " + place_words(each.centre);
+    text += "  " + mm(each.sigma) + " mm at " + place_report(each.centre);
     if (each.normal.norm() > 0)
       text +=
-          " and " + printed("%.2f", each.radius) + " m around, normal " + place_words(each.normal);
+          " and " + printed("%.2f", each.radius) + " m around, normal " + place_report(each.normal);
     text += "\n";
   }
   return text;

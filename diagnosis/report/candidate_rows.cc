@@ -1,4 +1,4 @@
-#include "diagnosis/report/further_rows.h"
+#include "diagnosis/report/candidate_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace selfcal {
 namespace {
 
 constexpr int kNewRows = 12;
-constexpr double kPayload = 5;    ///< kg, where the robot's masses are not known
-constexpr double kOfMass = 0.05;  ///< payload over the robot's mass
+constexpr double kPayloadOnPaper = 5;  ///< kg, where the robot's masses are not known
+constexpr double kOfMass = 0.05;       ///< payload over the robot's mass
 constexpr double kFaster = 3;
 constexpr int kPostures = 6;       ///< found for one place, of which the farthest is taken
 constexpr double kAnother = 0.5;   ///< of its unit, that a joint moves at least in another posture
@@ -51,12 +51,12 @@ struct Endpoint {
   Eigen::MatrixXd J;
 };
 
-class Further {
+class CandidateSet {
  public:
-  Further(const LinearisedModel& view, const DataSet& data)
-      : view_(view),
-        robot_(view.geometry()),
-        xi_(view.adjusted().fitted.state.xi),
+  CandidateSet(const LinearisedModel& linearised, const DataSet& data)
+      : linearised_(linearised),
+        robot_(linearised.geometry()),
+        xi_(linearised.adjusted().fitted.state.xi),
         data_(data),
         copies_(with_copies(data, spread_rows(data))),
         first_(data.rows.rows()) {}
@@ -73,7 +73,7 @@ class Further {
     }
     if (data_.rows.time.size() > 0) {
       DataSet again = copies_;
-      again.rows.time.tail(count()).setConstant(view_.site().end + 1);
+      again.rows.time.tail(count()).setConstant(linearised_.context().end + 1);
       add("once more at the end", std::move(again), "what changes with time");
     }
     joints_elsewhere();
@@ -114,7 +114,7 @@ class Further {
     double mass = 0;
     for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
     const double payload =
-        mechanics.masses_known() ? std::max(1.0, std::round(kOfMass * mass)) : kPayload;
+        mechanics.masses_known() ? std::max(1.0, std::round(kOfMass * mass)) : kPayloadOnPaper;
     DataSet loaded = copies_;
     Observations& rows = loaded.rows;
     if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
@@ -128,7 +128,7 @@ class Further {
 
   /// The ball that the touches of a set so far lie in: the surface may end there.
   Patch seen_of(int set) const {
-    const Eigen::MatrixXd tips = view_.tips();
+    const Eigen::MatrixXd tips = linearised_.tips();
     std::vector<int> nuisance;
     for (int row = 0; row < first_; ++row)
       if (data_.rows.set[row] == set) nuisance.push_back(row);
@@ -157,7 +157,7 @@ class Further {
       SampleRequest request;
       request.set = s;
       request.rows = static_cast<int>(rows_of[s].size());
-      request.nuisance = view_.adjusted().fitted.state.nuisance[s];
+      request.nuisance = linearised_.adjusted().fitted.state.nuisance[s];
       if (method.constrains()) request.patch = seen_of(s);
       requests.push_back(std::move(request));
     }
@@ -250,7 +250,7 @@ class Further {
     add(how, std::move(others));
   }
 
-  const LinearisedModel& view_;
+  const LinearisedModel& linearised_;
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
   const DataSet& data_;
@@ -261,8 +261,8 @@ class Further {
 
 }  // namespace
 
-std::vector<CandidateRows> candidate_rows(const LinearisedModel& view, const DataSet& data) {
-  return Further(view, data).run();
+std::vector<CandidateRows> candidate_rows(const LinearisedModel& linearised, const DataSet& data) {
+  return CandidateSet(linearised, data).run();
 }
 
 }  // namespace selfcal

@@ -1,4 +1,5 @@
-// Which sets of causes explain the rows, and with what probability.
+// Which sets of causes explain the rows, and with what probability: candidates as blocks of columns
+// with a common scale, each weighed by its marginal likelihood.
 //
 // Every single candidate is weighed at every size and with every structure of the unknown; the best
 // ones are extended by every other candidate to pairs, the best of these to triples. The posterior
@@ -6,44 +7,17 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <memory>
 #include <span>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/evidence/candidates.h"
+#include "diagnosis/evidence/hypothesis.h"
 #include "diagnosis/evidence/marginal_likelihood.h"
 #include "diagnosis/options.h"
 
 namespace selfcal {
-
-/// One hypothesis: candidates (ascending) and a structure (0: none).
-struct Hypothesis {
-  std::vector<int> candidates;
-  int structure = 0;
-  double log_weight = 0;      ///< evidence times prior, summed over sizes
-  std::vector<double> sizes;  ///< most probable, by candidate
-};
-
-/// Answers that stand where an effect is named: what calibration leaves is noise, or structure that
-/// no known effect explains.
-inline constexpr const char kNone[] = "none", kUnknown[] = "unknown";
-inline bool names_effect(std::string_view answer) { return answer != kNone && answer != kUnknown; }
-
-using Cause = std::pair<std::string, std::string>;  ///< effect, at
-
-struct Posterior {
-  /// Most probable first, log_weight normalised: those that are possible, the best one with each
-  /// candidate, the best of noise alone and of structure.
-  std::vector<Hypothesis> hypotheses;
-  std::map<std::string, double> family;
-  std::map<Cause, double> cause;
-  double none = 0, unknown = 0;
-  double log_total = 0;  ///< log evidence over that of nothing at all
-};
 
 /// Everything that the search needs and that does not depend on y.
 class EvidenceEvaluator {
@@ -52,15 +26,15 @@ class EvidenceEvaluator {
                     const Candidates& all, const std::vector<EffectParameter>& parameters,
                     const SearchRule& rule);
 
-  /// What several y say, one a column, in every workbench or in those of noise alone: enough for
-  /// best_found().
-  using Views = std::vector<MarginalLikelihood::Views>;
+  /// The sufficient statistics of several y, one a column, in every structure or in those of noise
+  /// alone: enough for best_found().
+  using Statistics = std::vector<MarginalLikelihood::Statistics>;
   enum class Of { all, noise_alone };
-  Views views_of(const Eigen::MatrixXd& Y, Of which = Of::all) const;
-  /// Exchanges y in the workbenches of the views.
-  void look_at(const Views& views, Eigen::Index which);
+  Statistics statistics_of(const Eigen::MatrixXd& Y, Of which = Of::all) const;
+  /// Exchanges y in the structures that have statistics.
+  void condition_on(const Statistics& statistics, Eigen::Index which);
   /// Goes back to that of the rows.
-  void look_at_rows();
+  void condition_on_rows();
   Posterior search() const;
   /// A coarse one: so few singles extended to pairs, and nothing weighed that cannot come within
   /// e^-25 of what explains the rows best.
@@ -72,9 +46,9 @@ class EvidenceEvaluator {
     double log_odds = 0;  ///< log evidence times prior over that of none
   };
   Found best_found() const;
-  /// The same in each of the views, which are of noise alone. The workbenches see the rows again
-  /// afterwards.
-  std::vector<Found> best_found_in(const Views& views);
+  /// The same of each y of the statistics, which are of noise alone. Afterwards y is that of the
+  /// rows again.
+  std::vector<Found> best_found_in(const Statistics& statistics);
   /// What each column of `Y` as y (no strain on the priors) says without any cause, structures x
   /// columns.
   Eigen::MatrixXd log_evidences_of(const Eigen::MatrixXd& Y) const;
@@ -94,14 +68,14 @@ class EvidenceEvaluator {
   /// Log evidence of one candidate beside noise alone, over that of none.
   double evidence(int candidate) const;
   /// Share of the candidate's main columns that calibration cannot absorb (0 to 1).
-  double survival(int candidate) const { return survival_[candidate]; }
+  double beyond_nuisance(int candidate) const { return beyond_nuisance_[candidate]; }
   /// Smallest amplitude whose evidence would stand out, of the first main parameter and in its
   /// unit.
   double detectable(int candidate, double log_evidence) const;
   std::vector<MarginalLikelihood::Term> terms(const Hypothesis& hypothesis) const;
   /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.
   void add_sigma(int candidate, double size, std::vector<double>& to) const;
-  /// Log evidence times prior of `h`, by which hypotheses of one bench are weighed.
+  /// Log evidence times prior of `h`, by which hypotheses are weighed.
   double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
   /// at most five families.
@@ -116,7 +90,7 @@ class EvidenceEvaluator {
     double log_sum = 0, log_best = 0, size = 1;
   };
   double log_prior(std::span<const int> candidates, int structure) const;
-  /// One candidate in the light of a workbench, its sizes summed over.
+  /// One candidate beside what `marginal_likelihood` has, its sizes summed over.
   Single weigh(const MarginalLikelihood& marginal_likelihood, int candidate) const;
   /// The same of a structure by itself: fast where many y are looked at.
   Single weigh_alone(int structure, int candidate) const;
@@ -156,8 +130,9 @@ class EvidenceEvaluator {
   } log_odds_;
   std::vector<Block> blocks_;
   std::vector<std::array<double, kSizes.size()>> plausibility_;  ///< by candidate, with the prior
-  std::vector<double> survival_, amplitude_;  ///< amplitude over the usual largest, at size 1
-  std::vector<char> seen_;                    ///< not absorbed altogether
+  std::vector<double> beyond_nuisance_,
+      amplitude_;           ///< amplitude over the usual largest, at size 1
+  std::vector<char> seen_;  ///< not absorbed altogether
   /// By candidate: number of the first candidate of its family (effect), of its cause (effect and
   /// place).
   std::vector<int> family_, cause_;

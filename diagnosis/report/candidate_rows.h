@@ -21,6 +21,6 @@ struct CandidateRows {
 /// approached from the other side, faster, at the end, with the joints elsewhere, with the tool
 /// rolled about its axis, in another posture (elbow up and down). What this robot or these rows
 /// cannot do is not among them.
-std::vector<CandidateRows> candidate_rows(const LinearisedModel& view, const DataSet& data);
+std::vector<CandidateRows> candidate_rows(const LinearisedModel& linearised, const DataSet& data);
 
 }  // namespace selfcal

@@ -8,10 +8,10 @@ namespace selfcal {
 
 /// `robot` gives the places of the rows by its own values. The direction that a set's normal points
 /// in is taken from its rows or, where these have none, from the side that the robot is on.
-Site site_of(const Robot& robot, const DataSet& data);
+MeasurementContext context_of(const Robot& robot, const DataSet& data);
 
 /// `robot` with its effects as they act on these rows: a surface's on the rows of its set, none of
 /// a surface that the data set lacks. The robot itself when it has no effects.
-std::shared_ptr<const Robot> on_site(std::shared_ptr<const Robot> robot, const DataSet& data);
+std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data);
 
 }  // namespace selfcal

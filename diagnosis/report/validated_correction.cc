@@ -1,4 +1,4 @@
-#include "diagnosis/report/closing.h"
+#include "diagnosis/report/validated_correction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/holdout_validation.h"
 #include "diagnosis/report/named.h"
@@ -14,11 +15,11 @@
 namespace selfcal {
 namespace {
 
-class Closer {
+class CorrectionValidation {
  public:
-  Closer(LinearisedModel& view, double freedom, const Posterior& posterior, const DataSet& data,
-         const DiagnosisOptions& options, Diagnosis& result)
-      : view_(view),
+  CorrectionValidation(LinearisedModel& linearised, double freedom, const Posterior& posterior,
+                       const DataSet& data, const DiagnosisOptions& options, Diagnosis& result)
+      : linearised_(linearised),
         posterior_(posterior),
         data_(data),
         options_(options),
@@ -26,25 +27,25 @@ class Closer {
         freedom_(freedom) {}
 
   void run() {
-    Closing closing = judged();
-    result_.judged = std::move(closing.judged);
-    result_.gap = gap_of(result_.judged, options_.seed, freedom_);
+    HoldoutValidation validation = of_everything();
+    result_.validation_rows = std::move(validation.rows);
+    result_.gap = gap_of(result_.validation_rows, options_.seed, freedom_);
     result_.floor_freedom = freedom_;
-    result_.rejected = std::move(closing.rejected);
+    result_.rejected = std::move(validation.rejected);
     for (int row = 0; row < data_.rows.rows(); ++row)
-      if (view_.outlier()[row])
+      if (linearised_.outlier()[row])
         result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
                                     "no explanation comes near it: a false reading"});
-    result_.model = closing.model;
-    result_.values = closing.all.fitted.state.xi;
-    result_.converged = closing.converged;
-    close_named();
-    close_candidates();
-    result_.warnings = warnings_of(view_, data_, closing);
+    result_.model = validation.model;
+    result_.values = validation.all.fitted.state.xi;
+    result_.converged = validation.converged;
+    share_among_named();
+    validate_candidates();
+    result_.warnings = warnings_of(linearised_, data_, validation);
   }
 
   /// Geometry alone against geometry with what is named, and with everything found.
-  Closing judged() {
+  HoldoutValidation of_everything() {
     const Hypothesis best = believed();
     const double noise = result_.noise;
     if (!best.candidates.empty()) result_.found = grown(best);
@@ -54,45 +55,46 @@ class Closer {
   }
 
  private:
-  Closing validated(const Correction& correction) const {
-    return validate_on_holdout(view_.shared_geometry(), view_.adjusted(), data_, correction,
-                               view_.site(), result_.noise, options_);
+  HoldoutValidation validated(const Correction& correction) const {
+    return validate_on_holdout(linearised_.shared_geometry(), linearised_.adjusted(), data_,
+                               correction, linearised_.context(), result_.noise, options_);
   }
 
   Gap gap_with(Correction correction) const {
     for (FoundEffect& each : correction) each.named = true;
-    return gap_of(validated(correction).judged, options_.seed, freedom_);
+    return gap_of(validated(correction).rows, options_.seed, freedom_);
   }
 
   /// All that the rows say of the named causes and their like: from more rows than were weighed for
   /// the name, and again with the noise that it leaves.
   Correction grown(Hypothesis best) {
-    view_.weigh(kDiagnosis.closing.most_grown);
-    const Candidates all = with_profiles(view_.candidates());
+    linearised_.weigh(kDiagnosis.validation.most_grown);
+    const Candidates all = with_profiles(linearised_.candidates());
     SearchRule rule = options_.search;
     rule.noise_is_known = true;  // each pass takes it from what the one before leaves
     Correction correction;
-    for (int pass = 0; pass < kDiagnosis.closing.passes; ++pass) {
-      const DenseEquations rows = view_.kept();
-      const double of_visits = noise_of_visits(data_.rows, rows, view_.left());
-      const EvidenceEvaluator bench(view_.whitened(),
-                                    noise_alone(data_.rows, rows, view_.by_joint(), of_visits), all,
-                                    view_.parameters(), rule);
+    for (int pass = 0; pass < kDiagnosis.validation.passes; ++pass) {
+      const DenseEquations rows = linearised_.kept();
+      const double of_visits = noise_of_visits(data_.rows, rows, linearised_.left());
+      const EvidenceEvaluator evaluator(
+          linearised_.whitened(), noise_alone(data_.rows, rows, linearised_.by_joint(), of_visits),
+          all, linearised_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
-      best = with_named(bench.grow(best, kDiagnosis.closing.most_effects), result_.named, all,
-                        posterior_);
-      const auto [columns, sigma] = MarginalLikelihood::unfold(bench.terms(best));
-      const double variance = bench.marginal_likelihood(0).estimate(bench.terms(best)).variance *
-                              bench.noise_variance(0);
-      const bool again = view_.refine(view_.residuals(columns, sigma), variance);
-      result_.noise = view_.noise() * std::hypot(1.0, of_visits);
-      if (again && pass + 1 < kDiagnosis.closing.passes) continue;
+      best = with_named(evaluator.grow(best, kDiagnosis.validation.most_effects), result_.named,
+                        all, posterior_);
+      const auto [columns, sigma] = MarginalLikelihood::unfold(evaluator.terms(best));
+      const double variance =
+          evaluator.marginal_likelihood(0).estimate(evaluator.terms(best)).variance *
+          evaluator.noise_variance(0);
+      const bool again = linearised_.refine(linearised_.residuals(columns, sigma), variance);
+      result_.noise = linearised_.noise() * std::hypot(1.0, of_visits);
+      if (again && pass + 1 < kDiagnosis.validation.passes) continue;
       for (size_t i = 0; i < best.candidates.size(); ++i) {
         const Candidate& each = all.list[best.candidates[i]];
         correction.push_back(
             {.what = {each.effect, each.at, each.shape}, .named = names_any(result_.named, each)});
-        bench.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
+        evaluator.add_sigma(best.candidates[i], best.sizes[i], correction.back().sigma);
       }
       break;
     }
@@ -104,7 +106,9 @@ class Closer {
   Hypothesis believed() const {
     const CauseResult& verdict = result_.verdict;
     if (verdict.effect == kNone) return {};
-    const auto candidate = [&](int c) -> const Candidate& { return view_.candidates().list[c]; };
+    const auto candidate = [&](int c) -> const Candidate& {
+      return linearised_.candidates().list[c];
+    };
     const auto probable = [&](int c) { return posterior_.family.at(candidate(c).effect) > 0.5; };
     const auto named = [&](int c) { return names(verdict, candidate(c)); };
     for (const Hypothesis& h : posterior_.hypotheses)
@@ -116,7 +120,7 @@ class Closer {
   }
 
   /// The share of the gap that each named cause closes alone, and what the others leave of it.
-  void close_named() {
+  void share_among_named() {
     if (!result_.gap.closed.fraction) return;
     const double all = *result_.gap.closed.fraction;
     std::map<std::vector<char>, std::optional<double>> closed;  // by which are in the model
@@ -148,15 +152,15 @@ class Closer {
   }
 
   /// What each of the probable causes would leave alone.
-  void close_candidates() {
+  void validate_candidates() {
     int tried = 0;
     for (CauseResult& each : result_.candidates)
-      if (!each.correction.empty() && each.probability >= kDiagnosis.closing.tried &&
-          ++tried <= kDiagnosis.closing.most_tried)
+      if (!each.correction.empty() && each.probability >= kDiagnosis.validation.tried &&
+          ++tried <= kDiagnosis.validation.most_tried)
         each.rms_after = gap_with(each.correction).rms_all;
   }
 
-  LinearisedModel& view_;
+  LinearisedModel& linearised_;
   const Posterior& posterior_;
   const DataSet& data_;
   const DiagnosisOptions& options_;
@@ -166,15 +170,17 @@ class Closer {
 
 }  // namespace
 
-void close_gap(LinearisedModel& view, double freedom, const Posterior& posterior,
-               const DataSet& data, const DiagnosisOptions& options, Diagnosis& into) {
-  Closer(view, freedom, posterior, data, options, into).run();
+void validate_correction(LinearisedModel& linearised, double freedom, const Posterior& posterior,
+                         const DataSet& data, const DiagnosisOptions& options, Diagnosis& into) {
+  CorrectionValidation(linearised, freedom, posterior, data, options, into).run();
 }
 
-std::vector<JudgedRow> judged_rows(LinearisedModel& view, double freedom,
-                                   const Posterior& posterior, const DataSet& data,
-                                   const DiagnosisOptions& options, Diagnosis& of) {
-  return Closer(view, freedom, posterior, data, options, of).judged().judged;
+std::vector<ValidationRow> validation_rows(LinearisedModel& linearised, double freedom,
+                                           const Posterior& posterior, const DataSet& data,
+                                           const DiagnosisOptions& options, Diagnosis& of) {
+  return CorrectionValidation(linearised, freedom, posterior, data, options, of)
+      .of_everything()
+      .rows;
 }
 
 }  // namespace selfcal

@@ -1,6 +1,6 @@
 // Where rows judge each other by thirds, each third is judged by what the others name and find, so
 // that the two figures may differ though all that is found of the whole is named.
-#include "app/report/gap_words.h"
+#include "app/report/gap_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace selfcal {
 namespace {
 
 bool only_named(const Diagnosis& diagnosis) {
-  return diagnosis.gap.judged_on == "check" &&
+  return diagnosis.gap.validated_on == "check" &&
          std::ranges::all_of(diagnosis.found, &FoundEffect::named);
 }
 

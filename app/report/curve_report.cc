@@ -1,4 +1,4 @@
-#include "app/report/curve_words.h"
+#include "app/report/curve_report.h"
 
 #include <algorithm>
 
@@ -26,7 +26,8 @@ std::vector<std::size_t> told_counts(std::size_t last) {
   return counts;
 }
 
-std::string enough_words(const std::vector<double>& curve, double target, const std::string& what) {
+std::string enough_report(const std::vector<double>& curve, double target,
+                          const std::string& what) {
   const int count = enough(curve, target);
   if (count == 0) return "the maker's figures alone know it to the target of " + mm(target) + " mm";
   return count < 0 ? "the target of " + mm(target) + " mm is not reached"
@@ -36,14 +37,14 @@ std::string enough_words(const std::vector<double>& curve, double target, const 
 
 }  // namespace
 
-std::string curve_words(const std::vector<double>& curve, double target, const std::string& what,
-                        const std::string& indent) {
+std::string curve_report(const std::vector<double>& curve, double target, const std::string& what,
+                         const std::string& indent) {
   std::string counts, sigmas;
   for (const std::size_t n : told_counts(curve.size() - 1)) {
     counts += printed(" %8zu", n);
     sigmas += printed(" %8s", mm(curve[n]).c_str());
   }
-  return indent + "how many: " + enough_words(curve, target, what) + "\n" + indent +
+  return indent + "how many: " + enough_report(curve, target, what) + "\n" + indent +
          "  count     " + counts + "\n" + indent + "  sigma, mm " + sigmas + "\n";
 }
 

@@ -41,7 +41,7 @@ struct Case {
     rows.y = random_matrix(14, 1, random);
     structure.blocks = one_block(Eigen::MatrixXd::Identity(14, 14));
   }
-  MarginalLikelihood bench() const {
+  MarginalLikelihood likelihood() const {
     return {std::make_shared<const Whitened>(rows), structure,
             Groups{first.columns, second.columns}};
   }
@@ -69,17 +69,19 @@ double worked_out_whole(const Whitened& rows, const Eigen::MatrixXd& noise,
          nu / 2 * std::log(rows.y.dot(P * rows.y));
 }
 
-constexpr double kRounding = 1e-9;
+constexpr double kEvidenceRounding = 1e-9;
 
 TEST(MarginalLikelihood, GivesTheEvidenceThatTheWholeIntegralGives) {
   const Case one;
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(14, 14);
   const std::vector<MarginalLikelihood::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
-  EXPECT_NEAR(bench.log_evidence(none), worked_out_whole(one.rows, I, none), kRounding);
-  EXPECT_NEAR(bench.log_evidence(both), worked_out_whole(one.rows, I, both), kRounding);
-  EXPECT_NEAR(bench.log_evidence(both, bench.gram({0, 1, 3}, {0, 1, 3})), bench.log_evidence(both),
-              kRounding);
+  EXPECT_NEAR(likelihood.log_evidence(none), worked_out_whole(one.rows, I, none),
+              kEvidenceRounding);
+  EXPECT_NEAR(likelihood.log_evidence(both), worked_out_whole(one.rows, I, both),
+              kEvidenceRounding);
+  EXPECT_NEAR(likelihood.log_evidence(both, likelihood.gram({0, 1, 3}, {0, 1, 3})),
+              likelihood.log_evidence(both), kEvidenceRounding);
 }
 
 /// log of the integral over s of s^-(nu + 1) exp(-Q / 2 s^2) from `least` on, over the same from 0
@@ -98,12 +100,12 @@ double share_of_large_noise(double Q, double nu, double least) {
 TEST(MarginalLikelihood, TakesNoNoiseForLessThanItsDataSheetSays) {
   Case one;
   const std::vector<MarginalLikelihood::Term> none, both{{&one.first, 1.3}, {&one.second, 0.4}};
-  const MarginalLikelihood free = one.bench();
+  const MarginalLikelihood free = one.likelihood();
   const double nu = free.freedom();
   const double left = nu * free.estimate(both).variance;
   for (const double least : {0.5, 1.0, 2.0}) {
     one.rows.least = least * least;
-    const MarginalLikelihood bound = one.bench();
+    const MarginalLikelihood bound = one.likelihood();
     EXPECT_NEAR(bound.log_evidence(none) - free.log_evidence(none),
                 share_of_large_noise(free.total(), nu, least), 1e-3);
     EXPECT_NEAR(bound.log_evidence(both) - free.log_evidence(both),
@@ -135,18 +137,19 @@ TEST(MarginalLikelihood, BelievesTheSignThatPhysicsAllows) {
   for (const double truth : {0.8, 0.0, -0.8}) {
     std::mt19937_64 random(11);
     one.rows.y = truth * one.rows.C.col(3) + 0.7 * random_matrix(14, 1, random).col(0);
-    const MarginalLikelihood bench = one.bench();
+    const MarginalLikelihood likelihood = one.likelihood();
     const std::vector<MarginalLikelihood::Term> with{{&one.second, 1}}, without{{&even, 1}};
-    const double worth = bench.log_evidence(with) - bench.log_evidence(without);
+    const double worth = likelihood.log_evidence(with) - likelihood.log_evidence(without);
     EXPECT_NEAR(worth,
-                worth_of_sign(bench.total(), bench.right()[3], bench.gram({3}, {3})(0, 0),
-                              bench.freedom(), even.unit[0]),
+                worth_of_sign(likelihood.total(), likelihood.right()[3],
+                              likelihood.gram({3}, {3})(0, 0), likelihood.freedom(), even.unit[0]),
                 1e-3);
     EXPECT_LE(worth, std::log(1.9));
     EXPECT_GE(worth, std::log(0.1));
-    EXPECT_NEAR(bench.given(with).log_evidence({}), bench.log_evidence(with), kRounding);
-    EXPECT_NEAR(bench.log_evidence(with, bench.gram({3}, {3})), bench.log_evidence(with),
-                kRounding);
+    EXPECT_NEAR(likelihood.given(with).log_evidence({}), likelihood.log_evidence(with),
+                kEvidenceRounding);
+    EXPECT_NEAR(likelihood.log_evidence(with, likelihood.gram({3}, {3})),
+                likelihood.log_evidence(with), kEvidenceRounding);
   }
 }
 
@@ -156,9 +159,10 @@ TEST(MarginalLikelihood, WeighsStructureAsPartOfTheNoise) {
   const Eigen::MatrixXd B = random_matrix(14, 14, random);
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(14, 14) + B * B.transpose() / 14;
   one.structure = {.kind = 1, .kappa = 1, .blocks = one_block(noise)};
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const std::vector<MarginalLikelihood::Term> terms{{&one.first, 1}};
-  EXPECT_NEAR(bench.log_evidence(terms), worked_out_whole(one.rows, noise, terms), kRounding);
+  EXPECT_NEAR(likelihood.log_evidence(terms), worked_out_whole(one.rows, noise, terms),
+              kEvidenceRounding);
 }
 
 /// Structure over noise that pairs of equations share, by the few directions that hold it; and the
@@ -193,51 +197,53 @@ TEST(MarginalLikelihood, SaysOfAKernelByItsDirectionsWhatTheWholeCovarianceSays)
   one.rows.pull = Eigen::Vector3d(1, -0.5, 0);
   one.rows.least = 0.2;
   one.first.positive = {1};
-  const auto bench = [&](const DiscrepancyCovariance& structure) {
+  const auto likelihood = [&](const DiscrepancyCovariance& structure) {
     Case of = one;
     of.structure = structure;
-    return of.bench();
+    return of.likelihood();
   };
-  const MarginalLikelihood fast = bench(kernel.fast), plain = bench(kernel.plain);
+  const MarginalLikelihood fast = likelihood(kernel.fast), plain = likelihood(kernel.plain);
   const std::vector<MarginalLikelihood::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}},
       both{{&one.first, 1.3}, {&one.second, 0.4}};
-  EXPECT_NEAR(fast.freedom(), plain.freedom(), kRounding);
-  EXPECT_NEAR(fast.total(), plain.total(), kRounding);
-  EXPECT_NEAR(fast.log_evidence({}), plain.log_evidence({}), kRounding);
-  EXPECT_NEAR(fast.log_evidence(first), plain.log_evidence(first), kRounding);
-  EXPECT_NEAR(fast.log_evidence(both), plain.log_evidence(both), kRounding);
+  EXPECT_NEAR(fast.freedom(), plain.freedom(), kEvidenceRounding);
+  EXPECT_NEAR(fast.total(), plain.total(), kEvidenceRounding);
+  EXPECT_NEAR(fast.log_evidence({}), plain.log_evidence({}), kEvidenceRounding);
+  EXPECT_NEAR(fast.log_evidence(first), plain.log_evidence(first), kEvidenceRounding);
+  EXPECT_NEAR(fast.log_evidence(both), plain.log_evidence(both), kEvidenceRounding);
   EXPECT_NEAR(fast.given(first).log_evidence(second), plain.given(first).log_evidence(second),
-              kRounding);
-  EXPECT_TRUE(fast.products({0, 3}).isApprox(plain.products({0, 3}), kRounding));
-  EXPECT_TRUE(fast.estimate(both).mean.isApprox(plain.estimate(both).mean, kRounding));
-  EXPECT_TRUE(fast.mean(both).isApprox(plain.estimate(both).mean, kRounding));
-  EXPECT_TRUE(fast.estimate(both).covariance.isApprox(plain.estimate(both).covariance, kRounding));
+              kEvidenceRounding);
+  EXPECT_TRUE(fast.products({0, 3}).isApprox(plain.products({0, 3}), kEvidenceRounding));
+  EXPECT_TRUE(fast.estimate(both).mean.isApprox(plain.estimate(both).mean, kEvidenceRounding));
+  EXPECT_TRUE(fast.mean(both).isApprox(plain.estimate(both).mean, kEvidenceRounding));
+  EXPECT_TRUE(
+      fast.estimate(both).covariance.isApprox(plain.estimate(both).covariance, kEvidenceRounding));
   EXPECT_NEAR(fast.gained_without(both, one.rows.y, {2, 9}),
-              plain.gained_without(both, one.rows.y, {2, 9}), kRounding);
+              plain.gained_without(both, one.rows.y, {2, 9}), kEvidenceRounding);
   std::mt19937_64 random(4);
   const Eigen::MatrixXd Y = random_matrix(14, 3, random);
-  EXPECT_TRUE(fast.views_of(Y).g.isApprox(plain.views_of(Y).g, kRounding));
-  EXPECT_TRUE(fast.views_of(Y).yy.isApprox(plain.views_of(Y).yy, kRounding));
+  EXPECT_TRUE(fast.statistics_of(Y).g.isApprox(plain.statistics_of(Y).g, kEvidenceRounding));
+  EXPECT_TRUE(fast.statistics_of(Y).yy.isApprox(plain.statistics_of(Y).yy, kEvidenceRounding));
   const Eigen::VectorXd draw = kernel.fast.coloured(Y.col(0));
-  EXPECT_NEAR(draw.dot(kernel.fast.matrix().inverse() * draw), Y.col(0).squaredNorm(), kRounding);
+  EXPECT_NEAR(draw.dot(kernel.fast.matrix().inverse() * draw), Y.col(0).squaredNorm(),
+              kEvidenceRounding);
 }
 
 TEST(MarginalLikelihood, WeighsEverySizeOfABlockBySpectrumAsByItself) {
   Case one;
   one.first.positive = {0};
   one.rows.least = 0.5;
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   constexpr std::array kTried{0.25, 1.0, 16.0};
   for (const Block* block : {&one.first, &one.second}) {
     std::array<double, kTried.size()> logs{};
     std::vector<double> spectrum;
-    bench.add_spectrum(*block, kTried, spectrum);
+    likelihood.add_spectrum(*block, kTried, spectrum);
     EXPECT_EQ(spectrum.size(), MarginalLikelihood::spectrum_size(*block, kTried.size()));
-    bench.log_evidences(*block, kTried, spectrum.data(), logs.data());
+    likelihood.log_evidences(*block, kTried, spectrum.data(), logs.data());
     for (size_t i = 0; i < kTried.size(); ++i) {
       const MarginalLikelihood::Term term{block, kTried[i]};
-      EXPECT_NEAR(logs[i], bench.log_evidence({&term, 1}), kRounding);
-      EXPECT_LE(logs[i], bench.at_most(*block));
+      EXPECT_NEAR(logs[i], likelihood.log_evidence({&term, 1}), kEvidenceRounding);
+      EXPECT_LE(logs[i], likelihood.at_most(*block));
     }
   }
 }
@@ -248,7 +254,7 @@ TEST(LowRankRoot, TakesAsManyColumnsAsTheCovarianceHasDirections) {
   const auto root = low_rank_root(K, 12);
   ASSERT_TRUE(root);
   EXPECT_EQ(root->cols(), 4);
-  EXPECT_TRUE((*root * root->transpose()).isApprox(K, kRounding));
+  EXPECT_TRUE((*root * root->transpose()).isApprox(K, kEvidenceRounding));
   EXPECT_FALSE(low_rank_root(K, 3));
 }
 
@@ -267,16 +273,17 @@ TEST(Tails, AreThoseOfTheExactDistributions) {
 
 TEST(MarginalLikelihood, GivenSomeCausesWeighsOthersAsTogether) {
   const Case one;
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const std::vector<MarginalLikelihood::Term> first{{&one.first, 1.3}}, second{{&one.second, 0.4}};
   std::vector<MarginalLikelihood::Term> both = first;
   both.push_back(second.front());
-  EXPECT_NEAR(bench.given(first).log_evidence(second), bench.log_evidence(both), kRounding);
+  EXPECT_NEAR(likelihood.given(first).log_evidence(second), likelihood.log_evidence(both),
+              kEvidenceRounding);
 }
 
 TEST(MarginalLikelihood, GainsByEquationsLeftOutWhatTheRowsWithoutThemGive) {
   const Case one;
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const std::vector<int> out{2, 9};
   std::vector<int> rest;
   for (int i = 0; i < 14; ++i)
@@ -290,18 +297,20 @@ TEST(MarginalLikelihood, GainsByEquationsLeftOutWhatTheRowsWithoutThemGive) {
     const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(rows.A.rows(), rows.A.rows());
     return worked_out_whole(rows, I, both) - worked_out_whole(rows, I, none);
   };
-  EXPECT_NEAR(bench.gained_without(both, one.rows.y, out), gain(fewer) - gain(one.rows), kRounding);
-  EXPECT_EQ(bench.gained_without(both, one.rows.y, {}), 0);
+  EXPECT_NEAR(likelihood.gained_without(both, one.rows.y, out), gain(fewer) - gain(one.rows),
+              kEvidenceRounding);
+  EXPECT_EQ(likelihood.gained_without(both, one.rows.y, {}), 0);
 }
 
 TEST(MarginalLikelihood, WeighsOtherRowsWithoutLookingAtThem) {
   Case one;
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   Eigen::MatrixXd Y(one.rows.y.size(), 2);
   Y << one.rows.y, 3 * one.rows.y;
   one.rows.y *= 3;
-  ObservedRows observed(bench.rows(), Y, false);
-  EXPECT_NEAR(bench.log_evidences_of(observed)[1], one.bench().log_evidence({}), kRounding);
+  ObservedRows observed(likelihood.rows(), Y, false);
+  EXPECT_NEAR(likelihood.log_evidences_of(observed)[1], one.likelihood().log_evidence({}),
+              kEvidenceRounding);
 }
 
 TEST(MarginalLikelihood, NeverExplainsMoreThanThereIs) {
@@ -312,11 +321,11 @@ TEST(MarginalLikelihood, NeverExplainsMoreThanThereIs) {
   one.rows.pull.setConstant(20);
   one.rows.y = 50 * one.rows.C.col(0) + 40 * one.rows.A.col(1);
   one.first.unit = Eigen::Vector2d(100, 100);
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const std::vector<MarginalLikelihood::Term> first{{&one.first, 16}};
-  EXPECT_GT(bench.estimate(first).variance, 0);
-  EXPECT_GE(bench.given(first).total(), 0);
-  EXPECT_LT(bench.given(first).total(), bench.total());
+  EXPECT_GT(likelihood.estimate(first).variance, 0);
+  EXPECT_GE(likelihood.given(first).total(), 0);
+  EXPECT_LT(likelihood.given(first).total(), likelihood.total());
 }
 
 TEST(MarginalLikelihood, EstimatesACauseThatIsThereWithinItsSigma) {
@@ -325,9 +334,9 @@ TEST(MarginalLikelihood, EstimatesACauseThatIsThereWithinItsSigma) {
   one.rows.y = 3.0 * one.rows.C.col(0) - 1.0 * one.rows.C.col(1) +
                1e-3 * random_matrix(14, 1, random).col(0);
   one.first.unit = Eigen::Vector2d(1e5, 1e5);  // over the noise
-  const MarginalLikelihood bench = one.bench();
+  const MarginalLikelihood likelihood = one.likelihood();
   const std::vector<MarginalLikelihood::Term> terms{{&one.first, 1}};
-  const MarginalLikelihood::Estimate estimate = bench.estimate(terms);
+  const MarginalLikelihood::Estimate estimate = likelihood.estimate(terms);
   const Eigen::VectorXd sigma =
       (estimate.variance * estimate.covariance.diagonal().array()).sqrt().matrix();
   EXPECT_NEAR(estimate.mean[0], 3, 4 * sigma[0]);

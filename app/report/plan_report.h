@@ -9,8 +9,8 @@
 namespace selfcal {
 
 /// `target`: end-position accuracy wanted (m, 1 sigma).
-std::string plan_words(const Robot& robot, const PlanRequest& request,
-                       const ConfigurationPlan& plan, double target);
+std::string plan_report(const Robot& robot, const PlanRequest& request,
+                        const ConfigurationPlan& plan, double target);
 nlohmann::ordered_json plan_json(const Robot& robot, const PlanRequest& request,
                                  const ConfigurationPlan& plan, double target);
 

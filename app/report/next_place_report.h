@@ -9,7 +9,7 @@
 namespace selfcal {
 
 /// The best few places.
-std::string next_words(const NextRequest& request, const NextPlaces& next);
+std::string next_place_report(const NextRequest& request, const NextPlaces& next);
 nlohmann::ordered_json next_json(const NextPlaces& next);
 
 }  // namespace selfcal

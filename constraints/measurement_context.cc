@@ -1,4 +1,4 @@
-#include "constraints/site.h"
+#include "constraints/measurement_context.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,25 +38,25 @@ bool measures_lengths(const Method& method) {
              own, [](const MeasuredColumn& each) { return each.quantity == Quantity::length; });
 }
 
-SiteSet site_of_set(const Robot& robot, const DataSet& data, int set) {
-  SiteSet site;
-  site.name = data.sets[set].name;
-  site.touch = data.sets[set].method->touches() == TouchedSurface::plane;
-  site.lengths = measures_lengths(*data.sets[set].method);
+MeasuredSet measured_set(const Robot& robot, const DataSet& data, int set) {
+  MeasuredSet context;
+  context.name = data.sets[set].name;
+  context.touch = data.sets[set].method->touches() == TouchedSurface::plane;
+  context.lengths = measures_lengths(*data.sets[set].method);
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
-  if (points.empty()) return site;
-  for (const Eigen::Vector3d& p : points) site.centre += p / static_cast<double>(points.size());
-  if (!site.touch) return site;
+  if (points.empty()) return context;
+  for (const Eigen::Vector3d& p : points) context.centre += p / static_cast<double>(points.size());
+  if (!context.touch) return context;
   for (int row = 0; row < data.rows.rows() && data.rows.normal.rows() > 0; ++row)
     if (data.rows.set[row] == set && data.rows.normal.row(row).allFinite())
-      site.normal += data.rows.normal.row(row).transpose();
-  site.normal = site.normal.norm() > 1e-6 ? Eigen::Vector3d(site.normal.normalized())
-                                          : thin_direction(points, site.centre);
-  return site;
+      context.normal += data.rows.normal.row(row).transpose();
+  context.normal = context.normal.norm() > 1e-6 ? Eigen::Vector3d(context.normal.normalized())
+                                                : thin_direction(points, context.centre);
+  return context;
 }
 
 /// The thermometer's record, ascending in time.
-void take_record(const Observations& rows, Site& site) {
+void take_record(const Observations& rows, MeasurementContext& context) {
   if (rows.time.size() == 0) return;
   std::vector<int> order;
   for (int row = 0; row < rows.rows(); ++row)
@@ -64,36 +64,37 @@ void take_record(const Observations& rows, Site& site) {
   if (order.empty()) return;
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return rows.time[a] < rows.time[b]; });
-  site.begin = rows.time[order.front()];
-  site.end = rows.time[order.back()];
+  context.begin = rows.time[order.front()];
+  context.end = rows.time[order.back()];
   for (const int row : order)
     if (rows.temperature.size() > 0 && std::isfinite(rows.temperature[row])) {
-      site.times.push_back(rows.time[row]);
-      site.temperatures.push_back(rows.temperature[row]);
+      context.times.push_back(rows.time[row]);
+      context.temperatures.push_back(rows.temperature[row]);
     }
 }
 
 }  // namespace
 
-Site site_of(const Robot& robot, const DataSet& data) {
-  Site site;
+MeasurementContext context_of(const Robot& robot, const DataSet& data) {
+  MeasurementContext context;
   for (int s = 0; s < static_cast<int>(data.sets.size()); ++s)
-    site.sets.push_back(site_of_set(robot, data, s));
-  take_record(data.rows, site);
-  site.loads = data.rows.wrench.size() > 0 && !data.rows.wrench.array().isNaN().all();
-  site.velocities = data.rows.velocity.size() > 0 && !data.rows.velocity.array().isNaN().all();
-  site.speeds = site.velocities && data.speeds;
-  return site;
+    context.sets.push_back(measured_set(robot, data, s));
+  take_record(data.rows, context);
+  context.loads = data.rows.wrench.size() > 0 && !data.rows.wrench.array().isNaN().all();
+  context.velocities = data.rows.velocity.size() > 0 && !data.rows.velocity.array().isNaN().all();
+  context.speeds = context.velocities && data.speeds;
+  return context;
 }
 
-std::shared_ptr<const Robot> on_site(std::shared_ptr<const Robot> robot, const DataSet& data) {
+std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data) {
   const std::vector<Node> entries = effect_entries(*robot);
   if (entries.empty()) return robot;
-  Site site = site_of(*robot, data);
+  MeasurementContext context = context_of(*robot, data);
   for (const Effect* effect : effects_of(*robot))
-    if (!effect->of_machine() && site.find(effect->at()) < 0) site.sets.push_back({effect->at()});
+    if (!effect->of_machine() && context.find(effect->at()) < 0)
+      context.sets.push_back({effect->at()});
   Problems problems;
-  std::shared_ptr<const Robot> there = correct(robot, entries, site, problems);
+  std::shared_ptr<const Robot> there = correct(robot, entries, context, problems);
   expects(there != nullptr, problems.any() ? problems.list.front() : "effects fit their rows");
   return there;
 }

@@ -1,5 +1,5 @@
 // Rows to measure next are what their words say.
-#include "diagnosis/report/further_rows.h"
+#include "diagnosis/report/candidate_rows.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ class Arm {
     data_.rows.velocity = Eigen::MatrixXd::Constant(rows, joints, 0.1);
     data_.rows.wrench.setZero(rows, 6);
     data_.rows.wrench.col(0).setConstant(30);
-    view_ = std::make_unique<LinearisedModel>(robot_, data_, DiagnosisOptions{}, Progress{});
-    all_ = candidate_rows(*view_, data_);
+    linearised_ = std::make_unique<LinearisedModel>(robot_, data_, DiagnosisOptions{}, Progress{});
+    all_ = candidate_rows(*linearised_, data_);
   }
 
   const DataSet& having(const std::string& words) const {
@@ -42,8 +42,8 @@ class Arm {
   /// The geometry as it was fitted.
   std::shared_ptr<const Robot> robot_with_values() const {
     Problems problems;
-    return make_robot(view_->geometry().text().describe(view_->adjusted().fitted.state.xi),
-                      problems);
+    return make_robot(
+        linearised_->geometry().text().describe(linearised_->adjusted().fitted.state.xi), problems);
   }
 
   /// How far the tip is from that of the nearest row at hand (m), and where that is.
@@ -61,7 +61,7 @@ class Arm {
 
   DataSet data_;
   std::shared_ptr<const Robot> robot_;
-  std::unique_ptr<LinearisedModel> view_;
+  std::unique_ptr<LinearisedModel> linearised_;
   std::vector<CandidateRows> all_;
 };
 

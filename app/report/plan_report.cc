@@ -1,8 +1,8 @@
-#include "app/report/plan_words.h"
+#include "app/report/plan_report.h"
 
 #include <algorithm>
 
-#include "app/report/curve_words.h"
+#include "app/report/curve_report.h"
 #include "app/report/format.h"
 #include "io/files/json_parts.h"
 
@@ -34,8 +34,8 @@ Json figures_json(const PlanFigures& figures) {
 
 }  // namespace
 
-std::string plan_words(const Robot& robot, const PlanRequest& request,
-                       const ConfigurationPlan& plan, double target) {
+std::string plan_report(const Robot& robot, const PlanRequest& request,
+                        const ConfigurationPlan& plan, double target) {
   const bool pairs = std::ranges::any_of(plan.units, [](const Unit& u) { return u.size() > 1; });
   std::string text =
       printed("%s by %s: %zu of %d configurations%s, chosen by %s\n", robot.name().c_str(),
@@ -69,7 +69,7 @@ std::string plan_words(const Robot& robot, const PlanRequest& request,
   }
   text += printed("motion: %s in this order, %s in a random one\n", duration(plan.way).c_str(),
                   duration(plan.way_random).c_str());
-  text += curve_words(plan.curve, target, "of them", "");
+  text += curve_report(plan.curve, target, "of them", "");
   return text;
 }
 

@@ -1,24 +1,24 @@
 // The sets of causes that are visited, and their posterior.
-#include "diagnosis/evidence/search.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <map>
 #include <tuple>
 
 #include "diagnosis/constants.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
 #include "kinematics/expects.h"
 
 namespace selfcal {
-/// One search on a bench: what it has visited so far.
+
+/// One search: what it has visited so far.
 class Search {
  public:
-  Search(const EvidenceEvaluator& bench, bool coarse)
-      : bench_(bench),
+  Search(const EvidenceEvaluator& evaluator, bool coarse)
+      : evaluator_(evaluator),
         coarse_(coarse),
-        candidates_(static_cast<int>(bench.blocks_.size())),
-        kept_(bench.marginal_likelihoods_.size(), 0) {}
+        candidates_(static_cast<int>(evaluator.blocks_.size())),
+        kept_(evaluator.marginal_likelihoods_.size(), 0) {}
 
   Posterior run(int singles, int pairs) {
     visit_singles();
@@ -59,7 +59,7 @@ class Search {
   };
 
   double note(Visit visit, double log_evidence) {
-    visit.log_weight = log_evidence + bench_.log_prior(visit.all(), visit.structure);
+    visit.log_weight = log_evidence + evaluator_.log_prior(visit.all(), visit.structure);
     visited_.push_back(visit);
     top_ = std::max(top_, visit.log_weight);
     return visit.log_weight;
@@ -68,7 +68,7 @@ class Search {
   /// A candidate cannot come near the best, whatever its size.
   bool hopeless(const MarginalLikelihood& marginal_likelihood, int candidate,
                 double log_prior) const {
-    return coarse_ && marginal_likelihood.at_most(bench_.blocks_[candidate]) + log_prior <
+    return coarse_ && marginal_likelihood.at_most(evaluator_.blocks_[candidate]) + log_prior <
                           top_ - kDiagnosis.evidence.hopeless;
   }
 
@@ -85,26 +85,27 @@ class Search {
 
   /// Every candidate alone in every structure; the structures that do best go on.
   void visit_singles() {
-    visited_.reserve(static_cast<std::size_t>(bench_.structures()) * (candidates_ + 1));
+    visited_.reserve(static_cast<std::size_t>(evaluator_.structures()) * (candidates_ + 1));
     std::vector<std::pair<double, int>> ranked;
-    for (int s = 0; s < bench_.structures(); ++s)
-      note({.structure = s}, bench_.marginal_likelihoods_[s].log_evidence({}));
-    for (int s = 0; s < bench_.structures(); ++s) {
+    for (int s = 0; s < evaluator_.structures(); ++s)
+      note({.structure = s}, evaluator_.marginal_likelihoods_[s].log_evidence({}));
+    for (int s = 0; s < evaluator_.structures(); ++s) {
       double best = visited_[static_cast<std::size_t>(s)].log_weight;
       for (int c = 0; c < candidates_; ++c) {
-        if (!bench_.seen_[c] ||
-            hopeless(bench_.marginal_likelihoods_[s], c, bench_.log_prior({&c, 1}, s)))
+        if (!evaluator_.seen_[c] ||
+            hopeless(evaluator_.marginal_likelihoods_[s], c, evaluator_.log_prior({&c, 1}, s)))
           continue;
-        const EvidenceEvaluator::Single single = bench_.weigh_alone(s, c);
+        const EvidenceEvaluator::Single single = evaluator_.weigh_alone(s, c);
         Visit one{.structure = s};
         one.add(c, single.size);
         best = std::max(best, note(one, single.log_sum));
       }
-      kept_[s] = bench_.structure(s).kind == 0;
+      kept_[s] = evaluator_.structure(s).kind == 0;
       if (!kept_[s]) ranked.emplace_back(-best, s);
     }
     std::sort(ranked.begin(), ranked.end());
-    for (size_t i = 0; i < ranked.size() && static_cast<int>(i) < bench_.rule_.most_structures; ++i)
+    for (size_t i = 0; i < ranked.size() && static_cast<int>(i) < evaluator_.rule_.most_structures;
+         ++i)
       kept_[ranked[i].second] = 1;
     distinct_ = visited_.size();
   }
@@ -126,7 +127,7 @@ class Search {
       const Visit& each = *list.back();
       list.pop_back();
       std::vector<int> causes;
-      for (const int c : each.all()) causes.push_back(bench_.cause_[c]);
+      for (const int c : each.all()) causes.push_back(evaluator_.cause_[c]);
       if (++taken[{causes, each.structure}] <= 2) diverse.push_back(each);
     }
     return diverse;
@@ -136,14 +137,14 @@ class Search {
     for (const Visit& each : from) {
       const Hypothesis h = each.hypothesis();
       const MarginalLikelihood rest =
-          bench_.marginal_likelihoods_[h.structure].given(bench_.terms(h));
-      const double held = bench_.held(h);
+          evaluator_.marginal_likelihoods_[h.structure].given(evaluator_.terms(h));
+      const double held = evaluator_.held(h);
       for (int c = 0; c < candidates_; ++c) {
-        if (!bench_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
+        if (!evaluator_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
         Visit more = each;
         more.add(c, 1);
-        if (hopeless(rest, c, held + bench_.log_prior(more.all(), h.structure))) continue;
-        const EvidenceEvaluator::Single single = bench_.weigh(rest, c);
+        if (hopeless(rest, c, held + evaluator_.log_prior(more.all(), h.structure))) continue;
+        const EvidenceEvaluator::Single single = evaluator_.weigh(rest, c);
         more = each;
         more.add(c, single.size);
         note(more, single.log_sum + held);
@@ -158,15 +159,15 @@ class Search {
     const double total = top + std::log(sum);
     expects(std::isfinite(total), "the evidence of finite rows is finite");
     Posterior posterior;
-    posterior.log_total = total - bench_.marginal_likelihoods_.front().log_evidence({});
-    std::vector<double> family(bench_.blocks_.size()), cause(bench_.blocks_.size());
+    posterior.log_total = total - evaluator_.marginal_likelihoods_.front().log_evidence({});
+    std::vector<double> family(evaluator_.blocks_.size()), cause(evaluator_.blocks_.size());
     for (Visit& each : visited_) {
       each.log_weight -= total;
       share_out(each, family, cause, posterior);
     }
     for (const Visit* each : worth_telling()) posterior.hypotheses.push_back(each->hypothesis());
     for (int c = 0; c < candidates_; ++c) {
-      const Candidate& candidate = bench_.all_.list[static_cast<std::size_t>(c)];
+      const Candidate& candidate = evaluator_.all_.list[static_cast<std::size_t>(c)];
       const auto at = static_cast<std::size_t>(c);
       if (family[at] > 0) posterior.family[candidate.effect] = family[at];
       if (cause[at] > 0) posterior.cause[{candidate.effect, candidate.at}] = cause[at];
@@ -183,7 +184,7 @@ class Search {
     };
     for (const Visit& each : visited_) {
       if (each.log_weight > -kDiagnosis.evidence.hardly_possible) list.push_back(&each);
-      look(bench_.structure(each.structure).kind > 0 ? 0 : 1, each);
+      look(evaluator_.structure(each.structure).kind > 0 ? 0 : 1, each);
       for (const int c : each.all()) look(static_cast<std::size_t>(c) + 2, each);
     }
     for (const Visit* each : best)
@@ -199,7 +200,7 @@ class Search {
   void share_out(const Visit& visit, std::vector<double>& family, std::vector<double>& cause,
                  Posterior& posterior) const {
     const double p = std::exp(visit.log_weight);
-    const bool unknown = bench_.structure(visit.structure).kind > 0;
+    const bool unknown = evaluator_.structure(visit.structure).kind > 0;
     if (unknown) posterior.unknown += p;
     if (!unknown && visit.count == 0) posterior.none += p;
     const auto once = [&](const std::vector<int>& number, std::vector<double>& to) {
@@ -210,11 +211,11 @@ class Search {
         if (!before) to[mine] += p;
       }
     };
-    once(bench_.family_, family);
-    once(bench_.cause_, cause);
+    once(evaluator_.family_, family);
+    once(evaluator_.cause_, cause);
   }
 
-  const EvidenceEvaluator& bench_;
+  const EvidenceEvaluator& evaluator_;
   const bool coarse_;
   double top_ = -INFINITY;  ///< log weight of the best so far
   int candidates_;
@@ -229,78 +230,6 @@ Posterior EvidenceEvaluator::search() const {
 
 Posterior EvidenceEvaluator::search_coarsely(int singles) const {
   return Search(*this, true).run(singles, 0);
-}
-
-/// Without one candidate after the other, as long as that makes it more probable.
-Hypothesis EvidenceEvaluator::pruned(Hypothesis h) const {
-  const MarginalLikelihood& marginal_likelihood = marginal_likelihoods_[h.structure];
-  const std::vector<int> all = MarginalLikelihood::unfold(terms(h)).first;
-  const Eigen::MatrixXd G = marginal_likelihood.gram(all, all);
-  const auto weigh_again = [&](Hypothesis& of) {
-    const std::vector<MarginalLikelihood::Term> list = terms(of);
-    std::vector<int> at;  // of its columns, among all
-    for (const int column : MarginalLikelihood::unfold(list).first)
-      at.push_back(static_cast<int>(std::ranges::find(all, column) - all.begin()));
-    of.log_weight = marginal_likelihood.log_evidence(list, G(at, at)) + held(of) +
-                    log_prior(of.candidates, of.structure);
-  };
-  weigh_again(h);
-  for (size_t i = 0; i + 1 < h.candidates.size(); ++i) {
-    Hypothesis less = h;
-    less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
-    less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
-    weigh_again(less);
-    if (less.log_weight <= h.log_weight) continue;
-    h = less;
-    --i;
-  }
-  return h;
-}
-
-bool EvidenceEvaluator::overlap(int a, int b) const {
-  const std::vector<int>&p = all_.list[static_cast<size_t>(a)].main,
-        &q = all_.list[static_cast<size_t>(b)].main;
-  const auto within = [](const std::vector<int>& less, const std::vector<int>& more) {
-    return std::ranges::all_of(less, [&](int i) { return std::ranges::count(more, i) > 0; });
-  };
-  return within(p, q) || within(q, p);
-}
-
-/// Without those that the last one holds.
-Hypothesis EvidenceEvaluator::without_parts(Hypothesis h) const {
-  const int last = h.candidates.back();
-  for (size_t i = h.candidates.size() - 1; i-- > 0;)
-    if (overlap(h.candidates[i], last)) {
-      h.candidates.erase(h.candidates.begin() + static_cast<std::ptrdiff_t>(i));
-      h.sizes.erase(h.sizes.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  return h;
-}
-
-Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
-  h.log_weight = marginal_likelihoods_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
-                 log_prior(h.candidates, h.structure);
-  while (h.candidates.size() < most) {
-    const MarginalLikelihood rest = marginal_likelihoods_[h.structure].given(terms(h));
-    std::set<std::string> families;
-    for (const int c : h.candidates) families.insert(all_.list[static_cast<size_t>(c)].effect);
-    Hypothesis best = h;
-    for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
-      // What a part of it has is dropped below; what holds it already needs no part again.
-      if (!seen_[c] || std::ranges::any_of(h.candidates, [&](int have) {
-            return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
-          }))
-        continue;
-      if (families.size() >= kDiagnosis.evidence.most_families &&
-          !families.contains(all_.list[static_cast<size_t>(c)].effect))
-        continue;
-      Hypothesis more = with(h, c, rest);
-      if (more.log_weight > best.log_weight + 1) best = std::move(more);
-    }
-    if (best.candidates.size() == h.candidates.size()) break;
-    h = pruned(without_parts(std::move(best)));
-  }
-  return h;
 }
 
 }  // namespace selfcal

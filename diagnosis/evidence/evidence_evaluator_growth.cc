@@ -1,0 +1,84 @@
+// A set of causes that grows as far as it goes: each candidate that makes it more probable, without
+// those that others make up for.
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "diagnosis/constants.h"
+#include "diagnosis/evidence/evidence_evaluator.h"
+
+namespace selfcal {
+
+/// Without one candidate after the other, as long as that makes it more probable.
+Hypothesis EvidenceEvaluator::pruned(Hypothesis h) const {
+  const MarginalLikelihood& marginal_likelihood = marginal_likelihoods_[h.structure];
+  const std::vector<int> all = MarginalLikelihood::unfold(terms(h)).first;
+  const Eigen::MatrixXd G = marginal_likelihood.gram(all, all);
+  const auto weigh_again = [&](Hypothesis& of) {
+    const std::vector<MarginalLikelihood::Term> list = terms(of);
+    std::vector<int> at;  // of its columns, among all
+    for (const int column : MarginalLikelihood::unfold(list).first)
+      at.push_back(static_cast<int>(std::ranges::find(all, column) - all.begin()));
+    of.log_weight = marginal_likelihood.log_evidence(list, G(at, at)) + held(of) +
+                    log_prior(of.candidates, of.structure);
+  };
+  weigh_again(h);
+  for (size_t i = 0; i + 1 < h.candidates.size(); ++i) {
+    Hypothesis less = h;
+    less.candidates.erase(less.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+    less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    weigh_again(less);
+    if (less.log_weight <= h.log_weight) continue;
+    h = less;
+    --i;
+  }
+  return h;
+}
+
+bool EvidenceEvaluator::overlap(int a, int b) const {
+  const std::vector<int>&p = all_.list[static_cast<size_t>(a)].main,
+        &q = all_.list[static_cast<size_t>(b)].main;
+  const auto within = [](const std::vector<int>& less, const std::vector<int>& more) {
+    return std::ranges::all_of(less, [&](int i) { return std::ranges::count(more, i) > 0; });
+  };
+  return within(p, q) || within(q, p);
+}
+
+/// Without those that the last one holds.
+Hypothesis EvidenceEvaluator::without_parts(Hypothesis h) const {
+  const int last = h.candidates.back();
+  for (size_t i = h.candidates.size() - 1; i-- > 0;)
+    if (overlap(h.candidates[i], last)) {
+      h.candidates.erase(h.candidates.begin() + static_cast<std::ptrdiff_t>(i));
+      h.sizes.erase(h.sizes.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  return h;
+}
+
+Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
+  h.log_weight = marginal_likelihoods_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
+                 log_prior(h.candidates, h.structure);
+  while (h.candidates.size() < most) {
+    const MarginalLikelihood rest = marginal_likelihoods_[h.structure].given(terms(h));
+    std::set<std::string> families;
+    for (const int c : h.candidates) families.insert(all_.list[static_cast<size_t>(c)].effect);
+    Hypothesis best = h;
+    for (int c = 0; c < static_cast<int>(blocks_.size()); ++c) {
+      // What a part of it has is dropped below; what holds it already needs no part again.
+      if (!seen_[c] || std::ranges::any_of(h.candidates, [&](int have) {
+            return overlap(c, have) && blocks_[have].columns.size() >= blocks_[c].columns.size();
+          }))
+        continue;
+      if (families.size() >= kDiagnosis.evidence.most_families &&
+          !families.contains(all_.list[static_cast<size_t>(c)].effect))
+        continue;
+      Hypothesis more = with(h, c, rest);
+      if (more.log_weight > best.log_weight + 1) best = std::move(more);
+    }
+    if (best.candidates.size() == h.candidates.size()) break;
+    h = pruned(without_parts(std::move(best)));
+  }
+  return h;
+}
+
+}  // namespace selfcal
