@@ -9,11 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kinematics/block_memory.h"
+#include "kinematics/deviations.h"
 #include "kinematics/rotation.h"
-#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
@@ -38,8 +37,7 @@ bool add_up(const Effect& a, const Effect& b) {
 
 class CorrectedRobot final : public Robot, public RobotText {
  public:
-  CorrectedRobot(std::shared_ptr<const Robot> geometry,
-                 std::vector<std::unique_ptr<Effect>> effects)
+  CorrectedRobot(std::shared_ptr<const Robot> geometry, Effects effects)
       : geometry_(std::move(geometry)),
         effects_(std::move(effects)),
         parameters_(geometry_->parameters()),
@@ -61,7 +59,7 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
   const std::shared_ptr<const Robot>& geometry() const { return geometry_; }
-  const std::vector<std::unique_ptr<Effect>>& effects() const { return effects_; }
+  const Effects& effects() const { return effects_; }
 
   std::string_view kind() const override { return geometry_->kind(); }
   const std::string& name() const override { return geometry_->name(); }
@@ -107,9 +105,9 @@ class CorrectedRobot final : public Robot, public RobotText {
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {
-    const auto kept =
-        memory_.of(block, body, bytes_of(block), [&] { return deviations_of(block, body); });
-    const std::vector<Deviation>& deviations = *kept;
+    const auto kept = memory_.of(block, body, bytes_of(block),
+                                 [&] { return deviations_of(*geometry_, effects_, block, body); });
+    const std::vector<LaneDeviation>& deviations = *kept;
     const Eigen::VectorXd own = xi.head(geometry_parameters());
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
     ConfigurationBlock moved{block.q, block.count};
@@ -161,12 +159,6 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
  private:
-  /// Of one lane: the regressors of all effects side by side, and the body as seen from the tip.
-  struct Deviation {
-    Regressor by;
-    Eigen::Vector3d arm;
-  };
-
   std::size_t bytes_of(const ConfigurationBlock& block) const {
     const std::size_t effects =
         parameters_.size() - static_cast<std::size_t>(geometry_parameters());
@@ -176,117 +168,6 @@ class CorrectedRobot final : public Robot, public RobotText {
 
   Eigen::Index geometry_parameters() const {
     return static_cast<Eigen::Index>(geometry_->parameters().size());
-  }
-
-  RegressorInput input_of(const ConfigurationBlock& block, int lane) const {
-    const MeasurementConditions& c = block.conditions;
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    RegressorInput at;
-    at.mechanics = statics() ? &statics()->mechanics() : nullptr;
-    at.q = block.q.row(lane).matrix().transpose();
-    at.poses = seen_poses(*geometry_, at.q);
-    if (c.wrench.rows() > 0 && c.wrench.row(lane).allFinite()) {
-      const Eigen::Matrix3d R = at.poses.back().linear();
-      at.wrench.force = R * c.wrench.row(lane).head<3>().transpose();
-      at.wrench.moment = R * c.wrench.row(lane).tail<3>().transpose();
-    }
-    const auto n = static_cast<int>(joints().size());
-    at.torque.setConstant(n, unknown);
-    for (int j = 0; at.mechanics && j < n; ++j)
-      at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
-    if (const PointMasses* masses = geometry_->masses()) at.gravity = masses->gravity;
-    at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
-                                        : Eigen::VectorXd::Constant(n, unknown);
-    at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;
-    at.time = c.time.size() > 0 ? c.time[lane] : unknown;
-    at.normal = c.normal.rows() > 0 ? Eigen::Vector3d(c.normal.row(lane).transpose())
-                                    : Eigen::Vector3d::Constant(unknown);
-    at.set = c.set.empty() ? -1 : c.set[static_cast<size_t>(lane)];
-    return at;
-  }
-
-  /// Origin of the last moving link.
-  Eigen::Vector3d last_link(const RegressorInput& at) const {
-    if (!at.mechanics)
-      return selfcal::locate(*geometry_, values(*geometry_), at.q, Body::last_link).p;
-    return at.poses[at.mechanics->link_of(static_cast<int>(joints().size()) - 1)].translation();
-  }
-
-  Deviation deviation(const RegressorInput& at, Body body) const {
-    const auto n = static_cast<Eigen::Index>(joints().size());
-    const auto count = static_cast<Eigen::Index>(parameters_.size()) - geometry_parameters();
-    Deviation all{{Eigen::MatrixXd::Zero(n, count), Eigen::MatrixXd::Zero(6, count)},
-                  Eigen::Vector3d::Zero()};
-    if (body == Body::last_link) all.arm = last_link(at) - at.poses.back().translation();
-    Eigen::Index column = 0;
-    for (const auto& effect : effects_) {
-      const auto own = static_cast<Eigen::Index>(effect->parameters().size());
-      Regressor part{Eigen::MatrixXd::Zero(n, own), Eigen::MatrixXd::Zero(6, own)};
-      effect->regressor(at, part);
-      all.by.joints.middleCols(column, own) = part.joints;
-      all.by.tip.middleCols(column, own) = part.tip;
-      column += own;
-    }
-    // What bends the tip leaves the base and the links alone.
-    if (body == Body::first_link || body >= Body::first_passive) all.by.tip.setZero();
-    return all;
-  }
-
-  /// By lane; lanes past the block's count share the last one's.
-  std::vector<Deviation> deviations_of(const ConfigurationBlock& block, Body body) const {
-    std::vector<Deviation> all;
-    const auto any = [&](auto asks) { return std::ranges::any_of(effects_, asks); };
-    const bool of_legs = any([](const auto& effect) { return effect->of_legs(); });
-    const bool of_torques =
-        !geometry_->statics() && any([](const auto& effect) { return effect->of_torques(); });
-    PsiBlock psi;
-    Eigen::MatrixXd work;
-    if (of_legs || of_torques) {
-      ConfigurationBlock plain;
-      plain.q = block.q;
-      plain.count = block.count;
-      plain.start = block.start;
-      Locations X;
-      geometry_->locate(plain, values(*geometry_), Body::endpoint, X, &psi);
-      work = work_of_weights(*geometry_, plain, values(*geometry_));
-    }
-    for (int lane = 0; lane < block.lanes(); ++lane) {
-      if (lane >= std::max(block.count, 1)) {
-        all.push_back(all.back());
-        continue;
-      }
-      RegressorInput at = input_of(block, lane);
-      if (of_legs) see_legs(psi, work, lane, at);
-      if (of_torques) see_torques(psi, work, lane, at);
-      all.push_back(deviation(at, body));
-    }
-    return all;
-  }
-
-  /// `psi` and `work` (of the weights, per parameter) are those of the block's readings with the
-  /// file's own values.
-  void see_legs(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
-                RegressorInput& at) const {
-    const auto n = static_cast<Eigen::Index>(joints().size());
-    at.legs.resize(6, n);
-    at.leg_weights.resize(n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const int length = geometry_->leg_parameter(static_cast<int>(j));
-      for (int c = 0; c < 6; ++c) at.legs(c, j) = psi(c * (psi.rows() / 6) + lane, length);
-      at.leg_weights[j] = work(lane, length);
-    }
-    at.leg_lengths = geometry_->leg_lengths(values(*geometry_), at.q);
-  }
-
-  /// The same of the joints' torques, of a machine that is no chain.
-  void see_torques(const PsiBlock& psi, const Eigen::MatrixXd& work, int lane,
-                   RegressorInput& at) const {
-    Eigen::Matrix<double, 6, 1> wrench;
-    wrench << at.wrench.force, at.wrench.moment;
-    Eigen::RowVectorXd all = work.row(lane);
-    for (int c = 0; c < 6; ++c) all += wrench[c] * psi.row(c * (psi.rows() / 6) + lane);
-    for (Eigen::Index j = 0; j < at.torque.size(); ++j)
-      at.torque[j] = all.dot(geometry_->variable_change(values(*geometry_), static_cast<int>(j)));
   }
 
   /// The name, or of an effect that is at one place again, at another moment, the name with a
@@ -301,7 +182,7 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
   /// `inner` is Psi of the geometry alone.
-  void fill(const std::vector<Deviation>& deviations, const Eigen::VectorXd& xi,
+  void fill(const std::vector<LaneDeviation>& deviations, const Eigen::VectorXd& xi,
             const Eigen::VectorXd& v, const PsiBlock& inner, PsiBlock& psi) const {
     const Eigen::Index own = geometry_parameters(), n = static_cast<Eigen::Index>(joints().size());
     const Eigen::Index lanes = inner.rows() / 6;
@@ -334,11 +215,11 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
 
   std::shared_ptr<const Robot> geometry_;
-  std::vector<std::unique_ptr<Effect>> effects_;
+  Effects effects_;
   std::vector<Parameter> parameters_;
   std::vector<int> preference_;
   /// A, B and a do not follow xi.
-  mutable BlockMemory<std::vector<Deviation>> memory_{kMostKept};
+  mutable BlockMemory<std::vector<LaneDeviation>> memory_{kMostKept};
 };
 
 }  // namespace
@@ -346,7 +227,7 @@ class CorrectedRobot final : public Robot, public RobotText {
 std::unique_ptr<Robot> correct(std::shared_ptr<const Robot> robot, const std::vector<Node>& entries,
                                const MeasurementContext& context, Problems& problems) {
   robot = geometry_of(std::move(robot));
-  std::vector<std::unique_ptr<Effect>> effects;
+  Effects effects;
   for (const Node& entry : entries) {
     auto effect = make_effect(entry, *robot, context, problems);
     if (!effect) return nullptr;
