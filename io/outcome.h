@@ -21,15 +21,15 @@ enum class ResultAnswer : std::uint8_t {
 
 enum class ResultDecision : std::uint8_t {
   none,       ///< of a check: there is nothing to decide
-  rejected,   ///< by the ruling, or by a person
+  rejected,   ///< by the acceptance decision, or by a person
   candidate,  ///< waits for a person
-  applying,   ///< by the ruling alone; begun, and after a power cut still to be done
+  applying,   ///< by the acceptance decision alone; begun, and after a power cut still to be done
   applied,
   replaced,     ///< by a newer candidate, before anybody had decided
   rolled_back,  ///< applied, and given up by a person afterwards
 };
 
-/// Figures of a session's result, as they are ruled on, stored and published.
+/// Figures of a session's result, as they are decided on, stored and published.
 struct ResultFigures {
   double p_value = 0;         ///< of the paired test, or that the active model explains the touches
   double check_before = 0;    ///< m, rms on rows kept aside with the active model; of a check, what

@@ -7,7 +7,7 @@
 #include "app/bridge/touch_relay.h"
 #include "app/commands/subcommand.h"
 #include "app/commands/support/signals.h"
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "io/dds/context.h"
 #include "io/files/yaml.h"
 #include "io/triggers.h"

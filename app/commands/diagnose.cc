@@ -14,7 +14,7 @@
 #include "app/report/format.h"
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/progress_line.h"
-#include "app/service/cause_search.h"
+#include "app/service/session/cause_search.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"

@@ -13,8 +13,8 @@
 #include "app/report/live/message_json.h"
 #include "app/report/page/history_page.h"
 #include "app/report/past.h"
-#include "app/service/config.h"
-#include "app/service/session.h"
+#include "app/service/config/config.h"
+#include "app/service/session/decoding.h"
 #include "io/files/file.h"
 #include "io/files/json_parts.h"
 

@@ -9,7 +9,7 @@
 #include "app/report/page/diagnosis_page.h"
 #include "app/report/page/identification_page.h"
 #include "app/report/progress_line.h"
-#include "app/service/state.h"
+#include "app/service/transitions/state.h"
 #include "constraints/estimation/engagements.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/file.h"

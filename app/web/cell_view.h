@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "io/dds/participant.h"
 
 namespace selfcal {

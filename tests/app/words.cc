@@ -189,8 +189,8 @@ std::vector<std::string> keys_of_table(const std::string& file) {
 
 TEST(Words, ThePageOfConfigurationsNamesEveryKeyOfTheTables) {
   const std::string configurations = page("app/selfcal-config.5");
-  for (const std::string file :
-       {"app/service/config.h", "io/can/settings.h", "sim/scenario.h", "sim/machine_scenario.h"}) {
+  for (const std::string file : {"app/service/config/config.h", "io/can/settings.h",
+                                 "sim/scenario.h", "sim/machine_scenario.h"}) {
     const std::vector<std::string> keys = keys_of_table(file);
     EXPECT_GT(keys.size(), 10u) << file;
     for (const std::string& key : keys)

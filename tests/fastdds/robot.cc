@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "io/clock.h"
 #include "tests/fastdds/cdr.h"
 

@@ -6,7 +6,7 @@
 #include "app/report/live/message_json.h"
 #include "app/report/live/message_lines.h"
 #include "app/report/live/monitor_view.h"
-#include "app/service/command_rules.h"
+#include "app/service/config/command_rules.h"
 #include "app/web/changes.h"
 #include "io/dds/convert.h"
 #include "io/dds/names.h"

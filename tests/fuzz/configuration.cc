@@ -1,5 +1,5 @@
 // A service's configuration, CONFIG.yaml, robot.yaml and a DBC file parted by =====.
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 
 #include "tests/fuzz/given.h"
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <random>
 
-#include "app/service/senses/sensor_front_end.h"
+#include "app/service/front_end/sensor_front_end.h"
 #include "io/can/encoders.h"
 #include "io/can/faults.h"
 #include "io/clock.h"
@@ -86,22 +86,22 @@ Pairs Pairing::pair(int touches, int step_every) {
   const auto trigger = must(GpioTrigger::open({.chip = wires.chip, .line = wires.line}, wakeup));
   const Ports ports{&clock, encoders.get(), trigger.get(), &motion, nullptr};
   Reflex reflex(ports, 2 * kMillisecond);
-  SensorFrontEnd senses(ports, reflex, 1e-4, kSecond);
+  SensorFrontEnd front_end(ports, reflex, Eigen::ArrayXd::Ones(kMostJoints), 1e-4, kSecond);
   Pairs pairs;
   std::deque<Edge> waiting;
   const Nanoseconds end = clock.now() + touches * 200 * kMillisecond;
   for (int made = 0; made < touches && clock.now() < end;) {
     clock.wait(2 * kMillisecond);
     std::deque<Event> events;
-    senses.listen(clock.now(), events);
+    front_end.listen(clock.now(), events);
     for (const Event& event : events)
-      if (event.what == Event::What::closed && senses.closing()) {
-        waiting.push_back(*senses.closing());
-        senses.forget_closing();
+      if (event.what == Event::What::closed && front_end.closing()) {
+        waiting.push_back(*front_end.closing());
+        front_end.forget_closing();
       }
     while (!waiting.empty()) {
       const Edge edge = waiting.front();
-      const auto around = senses.samples().around(edge.time);
+      const auto around = front_end.samples().around(edge.time);
       if (!around && clock.now() - edge.time < kSecond / 5) break;
       waiting.pop_front();
       ++made;

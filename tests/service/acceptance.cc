@@ -1,5 +1,5 @@
 // What becomes of a result.
-#include "app/service/acceptance.h"
+#include "app/service/session/acceptance.h"
 
 #include <gmock/gmock.h>
 

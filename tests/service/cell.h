@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "tests/io/scratch.h"
 #include "tests/sim/simulated_robot.h"
 

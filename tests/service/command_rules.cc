@@ -1,5 +1,5 @@
 // Who may command, and what is believed to keep strangers out.
-#include "app/service/command_rules.h"
+#include "app/service/config/command_rules.h"
 
 #include <gmock/gmock.h>
 

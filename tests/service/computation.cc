@@ -1,5 +1,5 @@
 // Computations beside the loop: never waited for, given up at their next word.
-#include "app/service/computation.h"
+#include "app/service/loop/computation.h"
 
 #include <gtest/gtest.h>
 

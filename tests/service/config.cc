@@ -1,5 +1,5 @@
-// The configuration against the table of its keys at the head of app/service/config.h.
-#include "app/service/config.h"
+// The configuration against the table of its keys at the head of app/service/config/config.h.
+#include "app/service/config/config.h"
 
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ std::optional<std::pair<double, double>> range_in(const std::string& text) {
 
 /// The table at the head of config.h; keys of a part as "part.key".
 std::vector<Key> documented_keys() {
-  std::ifstream file(std::filesystem::path(SELFCAL_SOURCE_DIR) / "app/service/config.h");
+  std::ifstream file(std::filesystem::path(SELFCAL_SOURCE_DIR) / "app/service/config/config.h");
   static const std::regex kRow(R"(^//   (  )?([a-z_]+) +(.*)$)");
   static const std::regex kDefault(
       R"(^((?:the robot's name|frames' names|\$STATE_DIRECTORY or state|[^ ]+)) *(.*)$)");

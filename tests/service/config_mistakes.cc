@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "app/service/session.h"
+#include "app/service/session/decoding.h"
 #include "tests/service/cell.h"
 #include "tests/support/text.h"
 
@@ -121,7 +121,9 @@ TEST(Config, LoadsTheExampleThatIsShipped) {
 
 TEST(Config, ChangesTheMeaningOfASessionWithWhatItsRowsMeanOnly) {
   const std::vector<EncoderScale> scales(6);
-  const auto decoding = [&](const CellKeys& keys) { return decoding_text(*load_cell(keys), scales); };
+  const auto decoding = [&](const CellKeys& keys) {
+    return decoding_text(*load_cell(keys), scales);
+  };
   using Keys = CellKeys;
   const std::string usual = decoding(Keys{});
   EXPECT_EQ(decoding(Keys{{"schedule.every_hours", "24"}, {"motion.speed", "2"}}), usual);

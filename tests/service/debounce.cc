@@ -1,5 +1,5 @@
 // A chattering contact: which level counts, and since when.
-#include "app/service/senses/debounce.h"
+#include "app/service/front_end/debounce.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which parameters are active: those of the slot, or the last good ones where the store is damaged.
-#include "app/service/models.h"
+#include "app/service/models/models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <set>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "constraints/planning/touch_plan.h"
 #include "constraints/planning/tour.h"
 #include "tests/sim/simulated_robot.h"

@@ -1,5 +1,5 @@
 // What the service answers to a pose, by the active robot's own forward kinematics.
-#include "app/service/pose_answers.h"
+#include "app/service/models/pose_answers.h"
 
 #include <gmock/gmock.h>
 

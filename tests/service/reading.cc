@@ -1,5 +1,5 @@
 // What the joints read at the moment of an edge, against numbers worked out by hand.
-#include "app/service/senses/reading.h"
+#include "app/service/front_end/reading.h"
 
 #include <gtest/gtest.h>
 
@@ -123,13 +123,14 @@ TEST(SampleHistory, KeepsTheLastSamplesOnly) {
 
 TEST(SampleHistory, TellsWhetherTheJointsStandOnceItHasThreeSamples) {
   const std::vector<EncoderScale> scales = {{1e-6, 0}, {-1e-6, 0}};
+  const Eigen::ArrayXd units = Eigen::ArrayXd::Ones(2);
   constexpr double kSpeed = 1e-3;  // 20 counts over 20 ms
   const Nanoseconds span = 20 * kMillisecond;
   const auto moved = [&](std::int64_t counts) {
     SampleHistory history;
     for (int i = 0; i <= 10; ++i)
       history.add(sample_of(i * 2 * kMillisecond, {7, counts * i / 10}));
-    return history.at_rest(scales, kSpeed, span);
+    return history.at_rest(scales, units, kSpeed, span);
   };
   EXPECT_EQ(moved(0), true);
   // And a dither of 10 counts (10 urad).
@@ -139,18 +140,31 @@ TEST(SampleHistory, TellsWhetherTheJointsStandOnceItHasThreeSamples) {
 
   SampleHistory history;
   history.add(sample_of(0, {0, 0}));
-  EXPECT_FALSE(history.at_rest(scales, kSpeed, span));
+  EXPECT_FALSE(history.at_rest(scales, units, kSpeed, span));
   history.add(sample_of(2 * kMillisecond, {0, 0}));
-  EXPECT_FALSE(history.at_rest(scales, kSpeed, span)) << "two samples say little";
+  EXPECT_FALSE(history.at_rest(scales, units, kSpeed, span)) << "two samples say little";
   history.add(sample_of(4 * kMillisecond, {0, 0}));
-  EXPECT_EQ(history.at_rest(scales, kSpeed, span), true);
+  EXPECT_EQ(history.at_rest(scales, units, kSpeed, span), true);
+}
+
+TEST(SampleHistory, ForgivesASlideADitherInProportionToItsWay) {
+  for (const double half_way : {0.05, 5.0}) {  // m: of a machine of 10 cm, of one of 10 m
+    const std::vector<EncoderScale> scales = {{1e-2 * 1e-5 * half_way, 0}};
+    const auto rests_after = [&](std::int64_t counts) {
+      SampleHistory history;
+      for (int i = 0; i < 3; ++i) history.add(sample_of(i * 2 * kMillisecond, {counts * i / 2}));
+      return history.at_rest(scales, Eigen::ArrayXd::Constant(1, half_way), 0, 10 * kMillisecond);
+    };
+    EXPECT_EQ(rests_after(98), true) << half_way;
+    EXPECT_EQ(rests_after(102), false) << half_way;
+  }
 }
 
 TEST(SampleHistory, ForgivesOneCountBetweenTwoSteps) {
   const std::vector<EncoderScale> coarse = {{1e-3, 0}};
   SampleHistory history;
   for (int i = 0; i < 11; ++i) history.add(sample_of(i * 2 * kMillisecond, {i / 10}));
-  EXPECT_EQ(history.at_rest(coarse, 1e-4, 20 * kMillisecond), true);
+  EXPECT_EQ(history.at_rest(coarse, Eigen::ArrayXd::Ones(1), 1e-4, 20 * kMillisecond), true);
 }
 
 }  // namespace

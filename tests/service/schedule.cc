@@ -1,6 +1,6 @@
 // When a session begins by itself. Moments are worked out from the calendar by hand: day 20000
 // since 1970 (2024-10-04) began at 20000 * 86400 s UTC.
-#include "app/service/schedule.h"
+#include "app/service/config/schedule.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/service/transition.h"
+#include "app/service/transitions/transition.h"
 
 namespace selfcal {
 

@@ -1,8 +1,9 @@
 // What is stored with a session, which touch comes next, and which count.
-#include "app/service/session.h"
+#include "app/service/session/session.h"
 
 #include <gmock/gmock.h>
 
+#include "app/service/session/touch_decision.h"
 #include "tests/service/stored_session.h"
 
 namespace selfcal {

@@ -1,7 +1,9 @@
 // Configurations visited under a lock: which are put aside, and what each engagement makes.
 #include <gmock/gmock.h>
 
-#include "app/service/session.h"
+#include "app/service/session/session.h"
+#include "app/service/session/session_rows.h"
+#include "app/service/session/touch_decision.h"
 #include "tests/service/cell.h"
 
 namespace selfcal {

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "app/service/session.h"
+#include "app/service/session/session.h"
+#include "app/service/session/session_rows.h"
 #include "tests/service/cell.h"
 
 namespace selfcal {

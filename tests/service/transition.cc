@@ -1,5 +1,5 @@
 // The way of a session and of its touches through the states, as the state machine alone sees it.
-#include "app/service/transition.h"
+#include "app/service/transitions/transition.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/service/session.h"
+#include "app/service/session/session.h"
+#include "app/service/session/touch_decision.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "io/files/robot_file.h"
 #include "kinematics/inverse/compensation.h"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/service/session.h"
+#include "app/service/session/session.h"
 #include "tests/support/cell.h"
 
 namespace selfcal {

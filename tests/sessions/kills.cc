@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "app/service/session.h"
+#include "app/service/session/decoding.h"
 #include "io/clock.h"
 #include "tests/support/cell.h"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/service/session.h"
+#include "app/service/session/session.h"
 #include "tests/support/cell.h"
 #include "tests/support/end_position.h"
 #include "tests/support/text.h"

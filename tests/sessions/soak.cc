@@ -8,7 +8,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "app/service/service.h"
+#include "app/service/loop/service.h"
 #include "kinematics/description.h"
 #include "sim/ports.h"
 #include "tests/support/cell.h"

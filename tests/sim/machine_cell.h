@@ -1,7 +1,7 @@
 // A simulated robot over a table, and one touch of it.
 #pragma once
 
-#include "app/service/senses/reading.h"
+#include "app/service/front_end/reading.h"
 #include "constraints/planning/touch_plan.h"
 #include "sim/machine.h"
 #include "tests/sim/simulated_robot.h"

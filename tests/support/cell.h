@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/commands/support/simulated_robot.h"
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "io/dds/clients/commander.h"
 #include "io/dds/clients/monitor.h"
 #include "io/store/store.h"

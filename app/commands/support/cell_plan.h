@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "constraints/planning/touch_plan.h"
 #include "constraints/progress.h"
 

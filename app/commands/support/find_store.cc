@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 
 namespace selfcal {
 

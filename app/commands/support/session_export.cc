@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "app/report/format.h"
-#include "app/service/cause_search.h"
-#include "app/service/session.h"
+#include "app/service/session/cause_search.h"
+#include "app/service/session/session_rows.h"
 #include "io/files/file.h"
 #include "io/files/observations_text.h"
 #include "io/files/robot_file.h"

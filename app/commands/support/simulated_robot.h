@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "app/service/config.h"
+#include "app/service/config/config.h"
 #include "sim/machine.h"
 
 namespace selfcal {

@@ -1,0 +1,49 @@
+// When a session begins by itself, as a pure function of what has happened since the last one.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "app/service/transitions/state.h"
+
+namespace selfcal {
+
+struct Schedule {
+  std::optional<double> every_hours;
+  std::optional<int> at_minute;  ///< of the local day
+  std::optional<double> after_motion_hours;
+  std::optional<double> temperature_change;  ///< K
+  bool check_first = true;
+  int check_touches = 12;
+  double check_p = 0.01;
+  int full_after_checks = 30;
+  bool any() const { return every_hours || at_minute || after_motion_hours || temperature_change; }
+};
+
+/// What the schedule is measured against; unknown ones are missing.
+struct Since {
+  std::int64_t unix_ms = 0;           ///< of the last session or check; 0 before the first
+  double motion_hours = 0;            ///< since then
+  std::optional<double> temperature;  ///< at that time
+  int checks = 0;                     ///< since the last full session
+  bool calibrated = false;            ///< the active parameters come from a session
+};
+
+struct Due {
+  SessionKind kind = SessionKind::full;
+  std::string why;
+};
+
+/// By how much local time is ahead of UTC (s), as the system has it.
+int utc_offset(std::int64_t unix_ms);
+
+/// What is due now, if anything. `utc_offset_s` is that of the local time.
+std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
+                       std::optional<double> temperature, int utc_offset_s);
+
+/// When the clock alone makes the next one due (ms since 1970); 0 when it never does.
+std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
+                      int utc_offset_s);
+
+}  // namespace selfcal

@@ -1,0 +1,63 @@
+#include "app/service/loop/context.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "app/service/session/decoding.h"
+
+namespace selfcal {
+namespace {
+
+constexpr std::size_t kMostEvents = 1024;
+constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the store
+
+}  // namespace
+
+void ServiceContext::put(Event event) {
+  event.now = now;
+  if (events.size() < kMostEvents) events.push_back(std::move(event));
+}
+
+void ServiceContext::put(Event::What what, bool ok, std::string why) {
+  Event event;
+  event.what = what;
+  event.ok = ok;
+  event.why = std::move(why);
+  put(std::move(event));
+}
+
+bool ServiceContext::store_failed(const Failure& failure) {
+  spdlog::error("{}", failure.what);
+  put(Event::What::broken, false, "store: " + failure.what);
+  return false;
+}
+
+void ServiceContext::tell(const std::string& level, const std::string& text) {
+  if (level == "error")
+    spdlog::error("{}", text);
+  else if (level == "warning")
+    spdlog::warn("{}", text);
+  else
+    spdlog::info("{}", text);
+  // A robot that is switched off must not fill the store with one sentence.
+  if (text == last_told && now - last_told_at < kTellAgain) return;
+  last_told = text;
+  last_told_at = now;
+  journal.add(EventRecord{0, unix_ms(), level, text});
+}
+
+std::string ServiceContext::config_hash() const {
+  return selfcal::config_hash(config, ports.encoders->scales());
+}
+
+void ServiceContext::remember_use() {
+  char line[160];
+  std::snprintf(line, sizeof line, "%.6f %lld %.6f %.3f %d", use.motion_hours,
+                static_cast<long long>(use.since.unix_ms), use.since.motion_hours,
+                use.since.temperature.value_or(std::nan("")), use.since.checks);
+  stored(store.remember("use", line));
+}
+
+}  // namespace selfcal

@@ -1,0 +1,57 @@
+// What the parts of the service share: the configuration, the world outside, the parameters in use,
+// the state, and the events on their way to the transition.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "app/service/config/config.h"
+#include "app/service/config/schedule.h"
+#include "app/service/loop/journal.h"
+#include "app/service/models/models.h"
+#include "app/service/transitions/transition.h"
+#include "io/messages.h"
+
+namespace selfcal {
+
+/// How much the robot has been used, which outlives a restart.
+struct Usage {
+  Since since;
+  double motion_hours = 0;
+};
+
+/// All references outlive it.
+struct ServiceContext {
+  Config config;
+  Ports ports;
+  Messenger& messenger;
+  Store& store;
+  Journal& journal;
+  Models models;
+  ExtendedState extended_state = {};
+  Usage use = {};
+  std::deque<Event> events = {};
+  Nanoseconds now = 0;  ///< of the turn
+  std::string last_told = {};
+  Nanoseconds last_told_at = 0;
+
+  void put(Event event);
+  void put(Event::What what, bool ok = true, std::string why = {});
+  /// False, with a fault on its way, when the store has failed.
+  template <class T>
+  bool stored(const Result<T>& result) {
+    return result ? true : store_failed(result.error());
+  }
+  /// To the log and, the same sentence once an hour at most, to the store.
+  void tell(const std::string& level, const std::string& text);
+  std::int64_t unix_ms() const { return ports.clock->unix_ms(); }
+  /// Of what the touches mean; see session.h.
+  std::string config_hash() const;
+  /// Keeps how much the robot has been used.
+  void remember_use();
+
+ private:
+  bool store_failed(const Failure& failure);
+};
+
+}  // namespace selfcal

@@ -1,0 +1,181 @@
+#include "app/service/loop/service.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace selfcal {
+namespace {
+
+constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
+constexpr Nanoseconds kRemember = 60 * kSecond;       // between two savings of the hours of motion
+
+}  // namespace
+
+Service::Service(Config config, const Ports& ports, Messenger& messenger, Store& store,
+                 Journal& journal, Models models, const std::string& damaged)
+    : c_{std::move(config), ports, messenger, store, journal, std::move(models)},
+      collector_(c_),
+      analyst_(c_, collector_),
+      reporter_(c_, collector_, analyst_, damaged) {
+  c_.now = test_began_ = last_turn_ = began_ = c_.ports.clock->now();
+  c_.extended_state.since = c_.now;
+  c_.extended_state.why = "testing encoders, trigger and store";
+  testing_ = true;
+  if (!damaged.empty())
+    c_.tell("error", "the store was damaged: " + damaged);
+  else
+    reporter_.recall_damage();
+  if (!c_.models.refused().empty()) c_.tell("error", c_.models.refused());
+  const auto unfinished = c_.store.unfinished();
+  if (c_.stored(unfinished)) c_.extended_state.unfinished = unfinished->has_value();
+  finish_interrupted_apply();
+  recall();
+  c_.extended_state.candidate = c_.models.candidate();
+  if (c_.extended_state.unfinished) {  // of an earlier life, told to stop until it stands
+    collector_.expect_motion();
+    collector_.stop("the service has started");
+  }
+  c_.tell("info", "started with " + c_.models.name() + " parameters");
+  reporter_.ready();
+}
+
+void Service::turn() {
+  c_.now = c_.ports.clock->now();
+  collector_.listen();
+  if (collector_.front_end().moving()) c_.use.motion_hours += seconds(c_.now - last_turn_) / 3600;
+  handle_commands();
+  check_rivals();
+  check_self();
+  collector_.check_rest();
+  collector_.check_stop();
+  check_schedule();
+  analyst_.take();
+  c_.put(Event::What::tick);
+  handle_events();
+  reporter_.report();
+  remember();
+  if (collector_.reflex().alive(c_.now)) reporter_.alive();
+  last_turn_ = c_.now;
+  c_.ports.clock->wait(longest_wait());
+}
+
+void Service::handle_events() {
+  while (!c_.events.empty()) {
+    const Event event = std::move(c_.events.front());
+    c_.events.pop_front();
+    if (event.what == Event::What::moved) collector_.arrived();
+    Transition transition = step(c_.extended_state, event, c_.config.limits);
+    const bool held = c_.extended_state.held;
+    const auto wanted = c_.extended_state.wanted;
+    c_.extended_state = std::move(transition.next);
+    if (c_.extended_state.held != held)
+      c_.stored(c_.store.remember("held", c_.extended_state.held ? "yes" : ""));
+    // Before the command is answered: what was granted is not lost.
+    if (const auto& now = c_.extended_state.wanted; now != wanted)
+      c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
+    for (const Action& action : transition.actions) act(action);
+  }
+}
+
+Nanoseconds Service::longest_wait() const {
+  switch (c_.extended_state.state) {
+    case ServiceState::collecting:
+      // An edge ends the wait early where the trigger can say so.
+      return c_.extended_state.phase == Phase::touch || c_.extended_state.phase == Phase::settle
+                 ? 8 * kMillisecond
+                 : 20 * kMillisecond;
+    case ServiceState::idle:
+    case ServiceState::awaiting_acceptance:
+    case ServiceState::fault:
+      return 100 * kMillisecond;
+    default:
+      return 20 * kMillisecond;
+  }
+}
+
+void Service::begin_test() {
+  testing_ = true;
+  test_began_ = c_.now;
+}
+
+/// Two services of one robot would both move it: neither does.
+void Service::check_rivals() {
+  if (testing_ || c_.extended_state.state == ServiceState::fault) return;
+  if (std::string others = collector_.rivals(); !others.empty())
+    c_.put(Event::What::broken, false, std::move(others));
+}
+
+void Service::check_self() {
+  if (!testing_) return;
+  const std::string why = collector_.missing();
+  if (!why.empty() && c_.now - test_began_ < c_.config.limits.self_test) return;
+  testing_ = false;
+  Event event;
+  event.what = Event::What::self_tested;
+  event.ok = why.empty();
+  event.why = why;
+  event.resume = c_.config.resume && !c_.extended_state.tested && c_.now - began_ < kResumeWithin;
+  c_.put(std::move(event));
+}
+
+void Service::check_schedule() {
+  if (c_.extended_state.state != ServiceState::idle || !c_.config.schedule.any()) return;
+  if (c_.now - last_due_ < kSecond) return;
+  last_due_ = c_.now;
+  const std::int64_t unix_ms = c_.unix_ms();
+  Since& last = c_.use.since;
+  // Before the first session, and after the clock was set back, the interval begins now.
+  if (last.unix_ms == 0 || last.unix_ms > unix_ms + 3'600'000) last.unix_ms = unix_ms;
+  Since since = last;
+  since.motion_hours = c_.use.motion_hours - last.motion_hours;
+  since.calibrated = analyst_.can_check();
+  const auto next = due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(),
+                        utc_offset(unix_ms));
+  if (!next) return;
+  Event event;
+  event.what = Event::What::due;
+  event.kind = next->kind;
+  event.why = next->why;
+  c_.put(std::move(event));
+}
+
+/// Writing may take long: not while the robot is to be stopped at a touch.
+void Service::remember() {
+  const bool touching =
+      c_.extended_state.state == ServiceState::collecting &&
+      (c_.extended_state.phase == Phase::touch || c_.extended_state.phase == Phase::settle);
+  if (c_.now - last_remembered_ < kRemember || touching) return;
+  last_remembered_ = c_.now;
+  c_.remember_use();
+}
+
+void Service::recall() {
+  // What cannot be read must not let the robot begin by itself.
+  const auto held = c_.store.remembered("held");
+  c_.extended_state.held = !held || *held == "yes";
+  if (const auto wanted = c_.store.remembered("wanted"); wanted)
+    c_.extended_state.wanted = kind_of(*wanted);
+  const auto line = c_.store.remembered("use");
+  Since& since = c_.use.since;
+  long long unix_ms = 0;
+  double temperature = std::nan("");
+  if (line && std::sscanf(line->c_str(), "%lf %lld %lf %lf %d", &c_.use.motion_hours, &unix_ms,
+                          &since.motion_hours, &temperature, &since.checks) == 5) {
+    since.unix_ms = unix_ms;
+    if (!std::isnan(temperature)) since.temperature = temperature;
+  }
+  const auto results = c_.store.results(1);
+  if (!results || results->empty()) return;
+  const auto last = c_.store.result(results->front().session);
+  if (c_.stored(last) && *last) reporter_.result(**last);
+}
+
+void Service::shut_down() {
+  if (may_move(c_.extended_state.state)) collector_.stop("the service is shutting down");
+  if (c_.extended_state.engaged) collector_.release();
+  c_.remember_use();
+  c_.tell("info", "shut down");
+  reporter_.stopping();
+}
+
+}  // namespace selfcal

@@ -1,0 +1,65 @@
+// The parameters in use: what becomes of a result.
+#include "app/service/loop/service.h"
+
+namespace selfcal {
+
+bool Service::reload_models() {
+  auto models = Models::load(c_.models.factory(), c_.store);
+  if (!models) {
+    c_.put(Event::What::broken, false, "store: " + models.error().what);
+    return false;
+  }
+  c_.models = std::move(*models);
+  if (const auto written = c_.models.write_active(c_.config.state); !written) {
+    c_.put(Event::What::broken, false, written.error().what);
+    return false;
+  }
+  return true;
+}
+
+void Service::apply(const std::string& why) {
+  if (!c_.stored(c_.store.accept(c_.unix_ms())) || !reload_models()) return;
+  analyst_.forget_check();
+  c_.tell("info", c_.models.name() + " is active: " + why);
+  c_.put(Event::What::applied);
+}
+
+void Service::finish_interrupted_apply() {
+  const auto last = c_.store.results(1);
+  if (!last || last->empty() || last->front().decision != ResultDecision::applying) return;
+  const auto slot = c_.store.slot(Slot::candidate);
+  if (!slot || !*slot || (*slot)->session != last->front().session ||
+      (*slot)->model_hash != c_.models.hash())
+    return;
+  if (c_.stored(c_.store.accept(c_.unix_ms())) && reload_models())
+    c_.tell("info", c_.models.name() + " is active: the power had failed while it was applied");
+}
+
+void Service::reject() {
+  if (c_.stored(c_.store.reject(c_.unix_ms()))) reload_models();
+}
+
+void Service::roll_back() {
+  const std::string given_up = c_.models.name();
+  const auto done = c_.store.roll_back(c_.unix_ms());
+  if (!done) {
+    if (command_) refuse(*command_, done.error().what + "; active: " + c_.models.name());
+    return;
+  }
+  if (!reload_models()) return;
+  const std::string said = c_.models.name() + " is active now; " + given_up +
+                           " was rolled back and is not used again by itself";
+  if (command_) c_.messenger.reply({command_->id, command_->verb, true, said});
+  c_.tell("warning", said);
+}
+
+void Service::publish() {
+  const auto results = c_.store.results(1);
+  if (results && !results->empty()) {
+    const auto result = c_.store.result(results->front().session);
+    if (c_.stored(result) && *result) reporter_.result(**result);
+  }
+  c_.put(Event::What::published);
+}
+
+}  // namespace selfcal

@@ -1,0 +1,106 @@
+// What a person asks for: granted and done, or refused with the reason.
+#include "app/service/transitions/transition_step.h"
+
+namespace selfcal {
+namespace {
+
+constexpr const char* kResultWaits = "a result waits for acceptance: accept or reject it first";
+constexpr const char* kNoResultWaits = "no result waits for acceptance";
+
+}  // namespace
+
+void TransitionStep::asked() {
+  switch (event_.verb) {
+    case Verb::start:
+      return asked_to_start(SessionKind::full);
+    case Verb::check:
+      return asked_to_start(SessionKind::check);
+    case Verb::diagnose:
+      return asked_to_start(SessionKind::cause);
+    case Verb::done:
+      return told_done();
+    case Verb::abort:
+      return asked_to_abort();
+    case Verb::accept:
+      return asked_to_accept();
+    case Verb::reject:
+      return asked_to_reject();
+    case Verb::rollback:
+      return asked_to_roll_back();
+  }
+}
+
+void TransitionStep::asked_to_start(SessionKind kind) {
+  if (s_.state == ServiceState::fault) {
+    s_.held = false;
+    act(Do::grant, "testing first; what is unfinished goes on with another start");
+    return test();
+  }
+  if (s_.state == ServiceState::awaiting_acceptance) return refuse(kResultWaits);
+  if (s_.state != ServiceState::idle) return refuse_in_this_state();
+  if (kind != SessionKind::full && s_.unfinished)
+    return refuse("an unfinished session waits: start or abort it first");
+  s_.held = false;
+  grant();
+  if (s_.unfinished) return resume("resumed by command");
+  begin(kind, "by command");
+}
+
+void TransitionStep::told_done() {
+  if (s_.state != ServiceState::awaiting_person)
+    return refuse("nothing is waited for that a person does");
+  grant();
+  s_.loaded = s_.next_loaded;
+  enter(ServiceState::collecting, "goes on after the payload was changed");
+  s_.next_via_home = !s_.closed;  // out of a contact that an earlier life has left, first
+  go_on_loaded();
+}
+
+void TransitionStep::asked_to_abort() {
+  const bool running = in_session();
+  if (!running && !s_.unfinished) return refuse("no session is running");
+  if (s_.state == ServiceState::applying || s_.state == ServiceState::publishing)
+    return refuse_in_this_state();
+  grant();
+  act(Do::stop, "aborted by command");
+  let_go();
+  tell_of_load();
+  act(Do::abort, "aborted by command");
+  s_.unfinished = false;
+  s_.wanted.reset();
+  s_.held = true;
+  if (running || s_.state == ServiceState::idle)
+    go_idle("aborted by command; what was collected is kept");
+}
+
+/// One that waits is not decided on while its cause is looked for.
+void TransitionStep::refuse_without_result() {
+  if (s_.candidate && in_session()) return refuse_in_this_state();
+  refuse(kNoResultWaits);
+}
+
+void TransitionStep::asked_to_accept() {
+  if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
+  grant();
+  s_.candidate = false;
+  enter(ServiceState::applying, "accepted by command");
+  act(Do::apply, "accepted by command");
+}
+
+void TransitionStep::asked_to_reject() {
+  if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
+  grant();
+  s_.candidate = false;
+  act(Do::reject, "rejected by command");
+  s_.why = "rejected by command";
+  publish();
+}
+
+void TransitionStep::asked_to_roll_back() {
+  if (s_.candidate) return refuse(kResultWaits);
+  if (s_.state != ServiceState::idle && s_.state != ServiceState::fault)
+    return refuse_in_this_state();
+  act(Do::roll_back);  // answers the command: the store knows whether there is something
+}
+
+}  // namespace selfcal
