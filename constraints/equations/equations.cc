@@ -11,6 +11,7 @@
 #include "kinematics/corrected_robot.h"
 #include "kinematics/kernels/kernels.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -77,6 +78,9 @@ Equations::Equations(const Robot& robot, const DataSet& data, Use use)
     nuisance_count_.push_back(plans_[s].items.empty() ? 0
                                                       : data.sets[s].method->tangent_dimension());
     nuisance_end_ += nuisance_count_.back();
+    for (int i = 0; i < nuisance_count_.back(); ++i)
+      nuisance_unit_.push_back(
+          data.sets[s].method->tangent_quantity(i) == Quantity::length ? size_of(robot) : 1);
     quantities_.push_back(data.sets[s].method->equations());
     known_at_.push_back(known_end_);
     if (!plans_[s].items.empty())

@@ -169,6 +169,9 @@ class Equations {
   /// First column of the own freedoms of `set`, and their count (0 for a set without rows here).
   int own_at(int set) const { return nuisance_at_[set]; }
   int tangent_dimension(int set) const { return nuisance_count_[set]; }
+  /// What a change of nuisance column `column` is measured by: the robot's size where it is a
+  /// length, else 1.
+  double nuisance_unit(int column) const { return nuisance_unit_[column - robot_columns()]; }
   /// Columns before Delta Y, without those beside the unknowns.
   int columns() const { return nuisance_end_; }
   /// Lengths that the entries of sets with rows here give (Method::known_lengths), and the place of
@@ -290,6 +293,7 @@ class Equations {
   std::vector<char> shared_;                       ///< by set: another one refers to it
   std::vector<OpenRow> open_rows_;
   std::vector<int> nuisance_at_, nuisance_count_, known_at_;
+  std::vector<double> nuisance_unit_;  ///< by nuisance column
   int nuisance_end_ = 0, known_end_ = 0;
 };
 

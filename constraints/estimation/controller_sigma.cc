@@ -12,13 +12,15 @@
 #include "kinematics/inverse/controller_fit.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kComparedPoses = 200, kSteps = 4;
-constexpr double kEpsilon = 1e-6;  ///< m
-constexpr double kMotion = 50e-3;  ///< m or rad, of the motion that is taken out
+// In the robot's size, or rad.
+constexpr double kEpsilon = 1e-6;  ///< what an end position may be off at the end of the steps
+constexpr double kMotion = 50e-3;  ///< of the motion that is taken out
 
 /// End positions (3 a pose) with `xi`, and their derivative to `columns`.
 struct EndPositions {
@@ -64,23 +66,27 @@ ControllerSigma controller_sigma(const Robot& robot, const DataSet& data,
   for (Eigen::Index i = 0; i < q.rows() && motion.cols() > 0; ++i)
     motion.middleRows<3>(3 * i) << Eigen::Matrix3d::Identity(),
         -skew(Eigen::Vector3d(wanted.segment<3>(3 * i)));
+  const double size = size_of(robot), epsilon = kEpsilon * size;
   Eigen::VectorXd xi = nominal_values(robot), left;
   for (const int i : taken) xi[i] = solution.values[i];
   for (int step = 0; step <= kSteps; ++step) {
     const EndPositions ends = end_positions(robot, xi, q, taken);
     const Eigen::Index n = ends.J.cols() + motion.cols();
     Eigen::VectorXd unit = Eigen::VectorXd::Constant(n, kMotion);
-    for (size_t i = 0; i < taken.size(); ++i)
+    if (motion.cols() > 0) unit.segment<3>(ends.J.cols()) *= size;
+    for (size_t i = 0; i < taken.size(); ++i) {
+      const Parameter& p = robot.parameters()[static_cast<size_t>(taken[i])];
       unit[static_cast<Eigen::Index>(i)] =
-          std::max(robot.parameters()[static_cast<size_t>(taken[i])].tolerance, kEpsilon);
+          std::max(p.tolerance, kEpsilon * (p.quantity == Quantity::length ? size : 1));
+    }
     Eigen::MatrixXd both(wanted.size(), n);
     both << ends.J, motion;
     left = wanted - ends.p;
     Eigen::MatrixXd A(wanted.size() + n, n);
-    A.topRows(wanted.size()) = both * unit.asDiagonal() / kEpsilon;
+    A.topRows(wanted.size()) = both * unit.asDiagonal() / epsilon;
     A.bottomRows(n).setIdentity();
     Eigen::VectorXd y = Eigen::VectorXd::Zero(A.rows());
-    y.head(wanted.size()) = left / kEpsilon;
+    y.head(wanted.size()) = left / epsilon;
     const Eigen::VectorXd s = unit.cwiseProduct(least_squares(A, y));
     if (step == kSteps)
       left -= both * s;

@@ -13,16 +13,18 @@
 
 #include "kinematics/description.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kOwnSigma = 100;
-constexpr double kOwnScale = 50e-3;  ///< m or rad, of own freedoms where a step must be short
+// Of nuisance parameters, in the robot's size or rad.
+constexpr double kHardlyKnown = 100;  ///< prior sigma
+constexpr double kShortStep = 50e-3;  ///< where a step must be short
 constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
 constexpr int kBarred = 3;           ///< of them barred by a loop that does not close
-constexpr double kRounding = 1e-13;  ///< a step this short (m or rad) is nothing
+constexpr double kRounding = 1e-13;  ///< a step this short (of the robot's size, or rad) is nothing
 constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
 /// Of a pivot of the normal equations over its diagonal, which rounding blurs by some 1e-15: the
 /// step of a direction is then good to a thousandth, and the next iteration does the rest.
@@ -35,13 +37,27 @@ enum class NoiseStage {
   nuisance,  ///< far rows put aside, each set's own, which is then kept
 };
 
+/// What a change of each column is measured by: the robot's size where it is a length, else 1.
+Eigen::VectorXd units_of_columns(const Equations& equations) {
+  Eigen::VectorXd units(equations.columns());
+  const double size = size_of(equations.robot());
+  for (int c = 0; c < equations.columns(); ++c)
+    units[c] =
+        c >= equations.robot_columns() ? equations.nuisance_unit(c)
+        : equations.robot().parameters()[static_cast<std::size_t>(c)].quantity == Quantity::length
+            ? size
+            : 1;
+  return units;
+}
+
 class Iteration {
  public:
   Iteration(const Equations& equations, const State& start, const Prior& prior, const FitRule& rule)
       : equations_(equations),
         prior_(prior),
         rule_(rule),
-        columns_(free_columns(equations, prior)) {
+        columns_(free_columns(equations, prior)),
+        units_(units_of_columns(equations)) {
     fit_.state = start;
     if (rule.near) stage_ = NoiseStage::pooled;
     fit_.noise = estimate_noise(equations, equations.norms(start), noise_rule(stage_, 0));
@@ -198,8 +214,8 @@ class Iteration {
   Eigen::VectorXd damping() const {
     Eigen::VectorXd D(static_cast<Eigen::Index>(columns_.size()));
     for (Eigen::Index i = 0; i < D.size(); ++i)
-      D[i] =
-          columns_[i] < equations_.robot_columns() ? 1 / prior_.sigma[columns_[i]] : 1 / kOwnScale;
+      D[i] = 1 / (columns_[i] < equations_.robot_columns() ? prior_.sigma[columns_[i]]
+                                                           : kShortStep * units_[columns_[i]]);
     return D;
   }
 
@@ -284,7 +300,7 @@ class Iteration {
   std::optional<std::string> arrival(double distance, const Eigen::VectorXd& step) const {
     if (distance < rule_.step_tolerance)
       return "step below " + format_number(rule_.step_tolerance) + " sigma";
-    if (step.norm() < kRounding) return "the step is down to rounding";
+    if (step.cwiseQuotient(units_).norm() < kRounding) return "the step is down to rounding";
     return std::nullopt;
   }
 
@@ -359,6 +375,7 @@ class Iteration {
   const Prior& prior_;
   const FitRule& rule_;
   std::vector<int> columns_;
+  const Eigen::VectorXd units_;
   Fit fit_;
   bool by_factor_ = false;  ///< the normal equations would leave a direction to rounding
   Linearised factor_;
@@ -380,7 +397,8 @@ std::vector<int> free_columns(const Equations& equations, const Prior& prior) {
 }
 
 double prior_weight(const Equations& equations, const Prior& prior, int column) {
-  if (column >= equations.robot_columns()) return 1 / kOwnSigma;
+  if (column >= equations.robot_columns())
+    return 1 / (kHardlyKnown * equations.nuisance_unit(column));
   return prior.use ? 1 / prior.sigma[column] : 0;
 }
 

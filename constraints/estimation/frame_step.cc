@@ -10,6 +10,7 @@
 #include "constraints/estimation/lock_slip.h"
 #include "kinematics/readable.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -26,7 +27,8 @@ constexpr int kBeside = 10;        ///< rows on either side that must show it
 constexpr int kMostSplits = 500;   ///< tried of a long set
 constexpr int kMostPlaced = 1000;  ///< rows at which another explanation is tried
 constexpr double kAsMuch = 0.97;   ///< of the squares explained: another explains as much
-constexpr double kDifference = 1e-5;  ///< rad or m, for derivatives
+constexpr double kDifference = 1e-5;  ///< units of a reading, for derivatives
+constexpr double kRegular = 1e-12;    ///< of its squares, that regularises a motion
 
 struct Row {
   int row = 0;
@@ -48,7 +50,9 @@ struct Sums {
     return {A - other.A, b - other.b, squares - other.squares};
   }
   Vector6d motion() const {
-    return (A + 1e-9 * Eigen::Matrix<double, 6, 6>::Identity()).ldlt().solve(b);
+    Eigen::Matrix<double, 6, 6> regular = A;
+    regular.diagonal() *= 1 + kRegular;
+    return regular.ldlt().solve(b);
   }
   double left() const { return std::max(0.0, squares - b.dot(motion())); }
 };
@@ -118,6 +122,7 @@ class SetSteps {
     // Columns: the rigid motion of all, then what each alternative moves the rows by. The point
     // that is seen may lie anywhere in the body.
     const Body body = data.sets[static_cast<std::size_t>(set)].method->body();
+    const Eigen::ArrayXd units = units_of_readings(robot);
     Eigen::MatrixXd rigid(3 * some.size(), 6), turn(3 * some.size(), 3),
         readings(3 * some.size(), 4 * joints);
     Eigen::VectorXd ways(3 * some.size());
@@ -130,11 +135,11 @@ class SetSteps {
       turn.middleRows<3>(at) = locate(robot, xi, q, body).R;
       for (Eigen::Index j = 0; j < joints; ++j) {
         Eigen::VectorXd more = q, less = q;
-        more[j] += kDifference;
-        less[j] -= kDifference;
+        const double h = kDifference * units[j];
+        more[j] += h;
+        less[j] -= h;
         const Location up = locate(robot, xi, more, body), down = locate(robot, xi, less, body);
-        readings.block<3, 4>(at, 4 * j) << (up.p - down.p) / (2 * kDifference),
-            (up.R - down.R) / (2 * kDifference);
+        readings.block<3, 4>(at, 4 * j) << (up.p - down.p) / (2 * h), (up.R - down.R) / (2 * h);
       }
       ways.segment<3>(at) = row.way;
       after.segment<3>(at).setConstant(some[s] >= split.at ? 1 : 0);

@@ -8,13 +8,16 @@
 #include <limits>
 #include <random>
 
+#include "kinematics/size.h"
+
 namespace selfcal {
 namespace {
 
 constexpr int kDraws = 300;
 constexpr double kOfOne = 0.3;          // of the rows: the smaller of two has less than the larger
 constexpr double kFarFromPlane = 10;    // times the quantile
-constexpr double kLeastOfPlane = 1e-3;  // m: nearer is the same plane by any robot's tolerances
+constexpr double kLeastOfPlane = 1e-3;  // of the robot's size: nearer is the same plane
+constexpr double kHardlyApart = 1e-6;   // of its square: three points that span no plane
 constexpr double kLeastOther = 0.2;     // of the rows
 
 struct TouchedPlane {
@@ -33,8 +36,8 @@ double quantile_off(const TouchedPlane& plane, const std::vector<Eigen::Vector3d
   return *at;
 }
 
-/// The plane near most of the points.
-TouchedPlane plane_of_most(const std::vector<Eigen::Vector3d>& points) {
+/// The plane near most of the points of a robot of size `size` (m).
+TouchedPlane plane_of_most(const std::vector<Eigen::Vector3d>& points, double size) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> draw(0, points.size() - 1);
   TouchedPlane best;
@@ -43,7 +46,7 @@ TouchedPlane plane_of_most(const std::vector<Eigen::Vector3d>& points) {
     const Eigen::Vector3d a = points[draw(random)], b = points[draw(random)],
                           c = points[draw(random)];
     const Eigen::Vector3d across = (b - a).cross(c - a);
-    if (across.norm() < 1e-6) continue;  // m²: the three are hardly apart
+    if (across.norm() < kHardlyApart * size * size) continue;
     TouchedPlane plane{across.normalized(), 0};
     plane.distance = plane.normal.dot(a);
     const double off = quantile_off(plane, points, kOfOne);
@@ -67,8 +70,10 @@ std::optional<DataSet> parted_planes(const Robot& robot, const DataSet& data, in
   }
   constexpr std::size_t kFewest = 10;
   if (rows.size() < kFewest) return std::nullopt;
-  const TouchedPlane plane = plane_of_most(points);
-  const double near = std::max(kFarFromPlane * quantile_off(plane, points, kOfOne), kLeastOfPlane);
+  const double size = size_of(robot);
+  const TouchedPlane plane = plane_of_most(points, size);
+  const double near =
+      std::max(kFarFromPlane * quantile_off(plane, points, kOfOne), kLeastOfPlane * size);
   DataSet parted = data;
   std::size_t others = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

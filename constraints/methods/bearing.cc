@@ -89,6 +89,7 @@ class Bearing final : public Method {
   bool point_unknown() const override { return seen_.point_unknown(); }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return seen_.freedom(); }
+  Quantity tangent_quantity(int i) const override { return seen_.quantity(i); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,

@@ -37,6 +37,9 @@ class FixedPointDistance final : public Method {
   bool may_leave_scale_free() const override { return unknown_.scale && !centre_; }
   bool point_unknown() const override { return unknown_.point; }
   int tangent_dimension() const override { return point_at() + (unknown_.point ? 3 : 0); }
+  Quantity tangent_quantity(int i) const override {
+    return unknown_.scale && i == scale_at() ? Quantity::ratio : Quantity::length;
+  }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,

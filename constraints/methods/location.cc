@@ -26,6 +26,7 @@ class LocationMethod final : public Method {
   bool constrains() const override { return false; }
   bool frame_unknown() const override { return frame_; }
   int tangent_dimension() const override { return frame_ ? DeviceFrame::kFreedom : 0; }
+  Quantity tangent_quantity(int i) const override { return DeviceFrame::quantity(i); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,

@@ -40,6 +40,7 @@ class LockedJoint final : public Method {
   bool sees_point() const override { return false; }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return 2; }
+  Quantity tangent_quantity(int) const override { return Quantity::angle; }
   Planned planned() const override { return Planned::lock; }
   std::string lock() const override {
     return "leg " + std::to_string(chain_ + 1) +

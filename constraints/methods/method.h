@@ -176,6 +176,8 @@ class Method {
   virtual bool can_refer_to(const Method& other) const;
 
   virtual int tangent_dimension() const { return 0; }
+  /// What freedom `i` of the tangent changes: a length, an angle or a ratio.
+  virtual Quantity tangent_quantity(int) const { return Quantity::length; }
   /// Own values that fit locations X (of body()) of the rows best, as a start.
   virtual Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                                 const Observations& data, const Eigen::VectorXd* reference,

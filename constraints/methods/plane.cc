@@ -88,6 +88,9 @@ class OnePlane final : public Touch {
 
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return known_ ? 0 : 3; }
+  Quantity tangent_quantity(int i) const override {
+    return i < 2 ? Quantity::angle : Quantity::length;
+  }
   bool place_known() const override { return known_.has_value(); }
   std::vector<KnownLength> known_lengths() const override {
     if (!known_) return {};

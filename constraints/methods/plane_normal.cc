@@ -24,6 +24,7 @@ class PlaneNormal final : public Method {
   bool shares_touches() const override { return true; }
   bool may_leave_scale_free() const override { return true; }
   int tangent_dimension() const override { return known_ ? 0 : 2; }
+  Quantity tangent_quantity(int) const override { return Quantity::angle; }
   bool place_known() const override { return known_.has_value(); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,

@@ -18,6 +18,7 @@ class Position final : public Method {
   bool frame_unknown() const override { return seen_.frame_unknown(); }
   bool point_unknown() const override { return seen_.point_unknown(); }
   int tangent_dimension() const override { return seen_.freedom(); }
+  Quantity tangent_quantity(int i) const override { return seen_.quantity(i); }
 
   Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                         const Observations& data, const Eigen::VectorXd*,

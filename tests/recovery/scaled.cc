@@ -75,31 +75,21 @@ TEST_P(Scaled, RobotsOfTenCentimetresAndTenMetresGetTheAnswerOfOneOfOneMetre) {
   }
 }
 
-/// A file's robot with all its lengths, tolerances of 1 mm to `k` times them and ways of sliding
-/// joints `k` times as long.
-std::shared_ptr<const Robot> machine_of_size(std::string_view kind, double k) {
+/// An arm with a sliding joint, all its lengths, tolerances and ways `k` times as long.
+std::shared_ptr<const Robot> slider_of_size(double k) {
   const auto m = [&](double length) { return format_number(k * length); };
-  std::string text;
-  if (kind == "linear-delta") {
-    text = "robot: printer\nkind: linear-delta\ntool: [0.0, 0.0, " + m(-0.02) + "]\ntowers:\n";
-    for (const double angle : {3.6652, 5.7596, 1.5708})
-      text += "  - {radius: " + m(0.105) + ", angle: " + format_number(angle) +
-              ", rod: " + m(0.2153) + ", endstop: " + m(0.4821) + ", limits: [" + m(-0.35) +
-              ", 0], tolerance: {radius: " + m(2e-3) + ", rod: " + m(2e-3) +
-              ", endstop: " + m(2e-3) + "}}\n";
-  } else {
-    const std::string believed = ", tolerance: {d: " + m(2e-3) + ", r: " + m(2e-3) + "}}\n";
-    const std::string placed = ", tolerance: {d: " + m(50e-3) + ", r: " + m(50e-3) + "}}\n";
-    text = "robot: slider\nkind: serial\nframes:\n  - {name: base, joint: fixed, r: " + m(0.4) +
-           placed + "  - {name: j1, joint: revolute, limits: [-2.5, 2.5]" + believed +
-           "  - {name: j2, joint: revolute, alpha: -pi/2, d: " + m(0.15) + ", limits: [-1.5, 1.5]" +
-           believed + "  - {name: j3, joint: prismatic, alpha: pi/2, r: " + m(0.5) + ", limits: [" +
-           m(-0.1) + ", " + m(0.3) + "]" + believed +
-           "  - {name: j4, joint: revolute, r: " + m(0.1) + ", limits: [-3, 3]" + believed +
-           "  - {name: j5, joint: revolute, alpha: pi/2, limits: [-2, 2]" + believed +
-           "  - {name: tool, joint: fixed, d: " + m(0.15) + ", r: " + m(0.12) + placed;
-  }
-  auto robot = selfcal::robot_of(text, "machine");
+  const std::string believed = ", tolerance: {d: " + m(2e-3) + ", r: " + m(2e-3) + "}}\n";
+  const std::string placed = ", tolerance: {d: " + m(50e-3) + ", r: " + m(50e-3) + "}}\n";
+  auto robot = selfcal::robot_of(
+      "robot: slider\nkind: serial\nframes:\n  - {name: base, joint: fixed, r: " + m(0.4) + placed +
+          "  - {name: j1, joint: revolute, limits: [-2.5, 2.5]" + believed +
+          "  - {name: j2, joint: revolute, alpha: -pi/2, d: " + m(0.15) + ", limits: [-1.5, 1.5]" +
+          believed + "  - {name: j3, joint: prismatic, alpha: pi/2, r: " + m(0.5) + ", limits: [" +
+          m(-0.1) + ", " + m(0.3) + "]" + believed +
+          "  - {name: j4, joint: revolute, r: " + m(0.1) + ", limits: [-3, 3]" + believed +
+          "  - {name: j5, joint: revolute, alpha: pi/2, limits: [-2, 2]" + believed +
+          "  - {name: tool, joint: fixed, d: " + m(0.15) + ", r: " + m(0.12) + placed,
+      "machine");
   EXPECT_TRUE(robot.has_value()) << robot.error().what;
   return std::move(*robot);
 }
@@ -110,7 +100,8 @@ struct Measured {
   Diagnosis diagnosis;
 };
 Measured measured(std::string_view kind, double k) {
-  const auto robot = machine_of_size(kind, k);
+  const std::shared_ptr<const Robot> robot =
+      kind == "slider" ? slider_of_size(k) : delta_of_size(k);
   Random random(11);
   std::normal_distribution<double> normal;
   Eigen::VectorXd truth = nominal_values(*robot);

@@ -1,4 +1,4 @@
-// One arm in any size, for what must not depend on it.
+// One arm and one delta in any size, for what must not depend on it.
 #pragma once
 
 #include <memory>
@@ -9,5 +9,9 @@ namespace selfcal {
 
 /// A six-axis arm whose lengths and their tolerances are `scale` times those of a robot of 1 m.
 std::unique_ptr<Robot> arm_of_size(double scale);
+
+/// A linear delta of three towers whose lengths, limits and tolerances are `scale` times those of a
+/// printer.
+std::unique_ptr<Robot> delta_of_size(double scale);
 
 }  // namespace selfcal

@@ -9,6 +9,10 @@ namespace selfcal {
 struct DeviceFrame {
   static constexpr int kValues = 7, kFreedom = 6;
 
+  /// Of freedom `i`, three shifts and three turns.
+  static Quantity quantity(int i) {
+    return i >= 3 && i < kFreedom ? Quantity::angle : Quantity::length;
+  }
   static Eigen::VectorXd world();
   static Location pose(const Eigen::VectorXd& values);
   static void retract(Eigen::Ref<Eigen::VectorXd> values, const Eigen::VectorXd& step);

@@ -19,6 +19,7 @@ class SeenPoint {
   bool frame_unknown() const { return frame_; }
   bool point_unknown() const { return point_; }
   int freedom() const { return point_at() + (point_ ? 3 : 0); }
+  Quantity quantity(int i) const { return frame_ ? DeviceFrame::quantity(i) : Quantity::length; }
 
   Eigen::VectorXd start(const Location& tool) const;
   void retract(Eigen::VectorXd& values, const Eigen::VectorXd& step) const;
