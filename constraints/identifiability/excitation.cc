@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <string>
+#include <tuple>
 
 #include "constraints/identifiability/lost.h"
 #include "constraints/sampling/configurations.h"
 
 namespace selfcal {
 namespace {
+
+constexpr int kRows = 80;  ///< random ones of a set that tell what such rows can
 
 /// Range of joint j over the rows that identify, and over what it could do.
 struct Movement {
@@ -63,6 +68,31 @@ std::string what_is_missing(const Robot& robot, const DataSet& data, const Param
          text + " would help";
 }
 
+/// By set, so many random rows that they tell all that such sets can: of sets alike, many together
+/// what a few do, and each enough for what is its own. None of a set that does not identify.
+std::vector<int> rows_that_tell(const DataSet& data) {
+  constexpr int kOfAlike = 4 * kRows;
+  constexpr int kBeyondOwn = 12;  // equations beside those that a set's own values take
+  std::vector<char> used(data.sets.size(), 0);
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
+  using Kind = std::tuple<std::string, Body, int, bool>;
+  const auto kind = [&](size_t s) {
+    const Method& method = *data.sets[s].method;
+    return Kind(method.name(), method.body(), method.tangent_dimension(),
+                data.sets[s].reference >= 0);
+  };
+  std::map<Kind, int> alike;
+  for (size_t s = 0; s < used.size(); ++s)
+    if (used[s]) ++alike[kind(s)];
+  std::vector<int> rows(data.sets.size(), 0);
+  for (size_t s = 0; s < used.size(); ++s)
+    if (used[s])
+      rows[s] = std::clamp(kOfAlike / alike[kind(s)],
+                           data.sets[s].method->tangent_dimension() + kBeyondOwn, kRows);
+  return rows;
+}
+
 /// What is told of the robot with all joints free, but not with those held.
 std::vector<Lost> lost_by_holding(const Robot& robot, const Identifiability& free,
                                   const Identifiability& locked, const std::vector<int>& held) {
@@ -85,7 +115,7 @@ std::vector<Lost> lost_by_holding(const Robot& robot, const Identifiability& fre
 
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
                           const std::vector<char>& free_mask, int rows, unsigned long long seed,
-                          const std::vector<char>& used, const std::vector<int>& held) {
+                          const std::vector<int>& most, const std::vector<int>& held) {
   DataSet data;
   std::vector<SampleRequest> requests;
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -93,7 +123,7 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
     data.sets.back().groups.clear();
     SampleRequest request;
     request.set = static_cast<int>(s);
-    request.rows = used.empty() || used[s] ? rows : 0;
+    request.rows = most.empty() ? rows : std::min(rows, most[s]);
     request.held = held;
     requests.push_back(request);
   }
@@ -116,7 +146,7 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
   if (!robot.frame_motions(xi).empty())
     result.lost = lost_directions(equations, at.R, state, free_mask, asked - result.rank.total());
   if (held.empty() || !result.unreached.empty()) return result;
-  const StructuralRank free = structural(robot, sets, free_mask, rows, seed, used);
+  const StructuralRank free = structural(robot, sets, free_mask, rows, seed, most);
   if (free.unreached.empty())
     for (Lost& lost : lost_by_holding(robot, free.rank, result.rank, held))
       result.lost.push_back(std::move(lost));
@@ -129,11 +159,8 @@ std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Ident
         return status == Status::grouped || status == Status::no_effect;
       }))
     return {};  // other rows could tell no more
-  std::vector<char> used(data.sets.size(), 0);
-  for (int row = 0; row < data.rows.rows(); ++row)
-    if (!data.rows.check[row]) used[data.rows.set[row]] = 1;
-  constexpr int kRows = 80;
-  const Identifiability possible = structural(robot, data.sets, free_mask, kRows, 1, used).rank;
+  const Identifiability possible =
+      structural(robot, data.sets, free_mask, kRows, 1, rows_that_tell(data)).rank;
   std::vector<Note> notes;
   for (size_t i = 0; i < robot.parameters().size(); ++i)
     if (possible.status[i] == Status::identified &&

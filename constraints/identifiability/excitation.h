@@ -22,11 +22,11 @@ struct StructuralRank {
 };
 
 /// The structural answer: status of every parameter on random configurations that satisfy the
-/// methods of `sets` (fresh random surfaces and groups), `rows` of each set that `used` marks (all
-/// when it is empty), the joints `held` locked at random readings.
+/// methods of `sets` (fresh random surfaces and groups), `rows` of each set, no more than `most`
+/// says of it where it is given, the joints `held` locked at random readings.
 StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
                           const std::vector<char>& free_mask, int rows, unsigned long long seed,
-                          const std::vector<char>& used = {}, const std::vector<int>& held = {});
+                          const std::vector<int>& most = {}, const std::vector<int>& held = {});
 
 /// Parameters identified structurally but not by `rank`, each with what is missing.
 std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Identifiability& rank,
