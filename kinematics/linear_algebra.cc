@@ -10,6 +10,12 @@
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
                         int* info);
+extern "C" void dpotri_(const char* triangle, const int* n, double* A, const int* stride,
+                        int* info);
+extern "C" void dtrtri_(const char* triangle, const char* diagonal, const int* n, double* A,
+                        const int* stride, int* info);
+extern "C" void dgeqrf_(const int* rows, const int* columns, double* A, const int* stride,
+                        double* factors, double* work, const int* work_size, int* info);
 extern "C" void dsyevd_(const char* vectors, const char* triangle, const int* n, double* A,
                         const int* stride, double* values, double* work, const int* work_size,
                         int* integers, const int* integers_size, int* info);
@@ -42,6 +48,17 @@ Symmetric large_symmetric_eigen(const Eigen::MatrixXd& A) {
   return eigen;
 }
 
+/// QR in blocks, R on and above the diagonal.
+void large_qr(Eigen::Ref<Eigen::MatrixXd> A) {
+  constexpr Eigen::Index kBlock = 64;  // columns that are reflected together
+  const int rows = width(A.rows()), columns = width(A.cols()), stride = width(A.outerStride());
+  Eigen::VectorXd factors(std::min(A.rows(), A.cols())), work(kBlock * A.cols());
+  const int work_size = width(work.size());
+  int info = 0;
+  dgeqrf_(&rows, &columns, A.data(), &stride, factors.data(), work.data(), &work_size, &info);
+  expects(info == 0, "every matrix has a QR decomposition");
+}
+
 bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
   return B.cols() > 1 && static_cast<double>(L.size() * B.cols()) >= kWorthACall;
 }
@@ -49,7 +66,10 @@ bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
 }  // namespace
 
 void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
-  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(A);
+  if (A.cols() < kLarge)
+    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(A);
+  else
+    large_qr(A);
   A.triangularView<Eigen::StrictlyLower>().setZero();
 }
 
@@ -79,7 +99,26 @@ std::vector<Eigen::Index> eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index 
 }
 
 Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) {
-  return R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
+  if (R.rows() < kLarge)
+    return R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
+  Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>();
+  const int n = width(R.rows());
+  int info = 0;
+  dtrtri_("U", "N", &n, inverse.data(), &n, &info);
+  return inverse;
+}
+
+Eigen::MatrixXd inverse_of_square(const Eigen::Ref<const Eigen::MatrixXd>& R) {
+  if (R.rows() < kLarge) {
+    const Eigen::MatrixXd inverse = inverse_of_triangle(R);
+    return inverse * inverse.transpose();
+  }
+  Eigen::MatrixXd C = R.triangularView<Eigen::Upper>();
+  const int n = width(R.rows());
+  int info = 0;
+  dpotri_("U", &n, C.data(), &n, &info);
+  C.triangularView<Eigen::StrictlyLower>() = C.transpose();
+  return C;
 }
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
@@ -152,7 +191,9 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
 }
 
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {
-  return Eigen::LLT<Eigen::MatrixXd>(A).solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  if (A.rows() < kLarge)
+    return Eigen::LLT<Eigen::MatrixXd>(A).solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  return inverse_of_square(cholesky_root(A).transpose());
 }
 
 SingularValues singular_values(const Eigen::MatrixXd& A) {

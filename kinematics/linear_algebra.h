@@ -18,6 +18,9 @@ std::vector<Eigen::Index> eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index 
 /// Inverse of the upper triangular `R`.
 Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R);
 
+/// (R^T R)^-1 of the upper triangular `R`.
+Eigen::MatrixXd inverse_of_square(const Eigen::Ref<const Eigen::MatrixXd>& R);
+
 /// x of least length that minimises |A x - b| (complete orthogonal decomposition).
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 

@@ -22,7 +22,7 @@ constexpr double kChance = 1.5;
 
 Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
   const Eigen::MatrixXd& C = adjusted.fitted.covariance;
-  return C * prior_precision(equations, adjusted.prior).asDiagonal() * C;
+  return transposed_product(C, prior_precision(equations, adjusted.prior).asDiagonal() * C);
 }
 
 /// The noise of the rows by where it comes from; `all` is what they add up to.
@@ -63,12 +63,12 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
                               EndpointQuestion question) {
   const HalfSamples halves = half_samples(equations, adjusted);
+  const Eigen::Index n = equations.robot_columns();
   const auto squared = [&](const Eigen::MatrixXd& C) {
-    const Eigen::Index n = equations.robot_columns();
-    question.covariance = C.topLeftCorner(n, n);
+    question.covariance = C;
     return std::pow(endpoint_sigma(question).rms, 2);
   };
-  const double seen = squared(halves.seen), expected = squared(halves.expected);
+  const double seen = squared(halves.seen.topLeftCorner(n, n)), expected = squared(halves.expected);
   return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
 }
 

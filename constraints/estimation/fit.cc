@@ -363,11 +363,8 @@ class Iteration {
   Eigen::MatrixXd covariance() {
     const Eigen::MatrixXd Rz = triangle();
     const Eigen::Index n = Rz.cols() - 1;
-    const Eigen::MatrixXd inverse = inverse_of_triangle(Rz.topLeftCorner(n, n));
-    const Eigen::MatrixXd C = inverse * inverse.transpose();
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(equations_.columns(), equations_.columns());
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) spread(columns_[i], columns_[j]) = C(i, j);
+    spread(columns_, columns_) = inverse_of_square(Rz.topLeftCorner(n, n));
     return spread;
   }
 

@@ -36,10 +36,10 @@ std::vector<int> stretches(const Equations& equations) {
   return of_row;
 }
 
-/// What one half of the rows and the priors give: columns() entries, and their posterior.
+/// What one half of the rows and the priors give.
 struct HalfFit {
-  Eigen::VectorXd step;
-  Eigen::MatrixXd C;
+  Eigen::VectorXd step;  ///< columns() entries
+  Eigen::MatrixXd C;     ///< of their posterior, the robot's columns
 };
 
 /// `R` is the system of the half's rows.
@@ -48,11 +48,16 @@ HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Eigen
   const Eigen::MatrixXd A =
       triangle_with_priors(equations, adjusted.prior, columns, R, adjusted.fitted.state.xi, true);
   const auto n = static_cast<Eigen::Index>(columns.size());
-  const Eigen::MatrixXd inverse = inverse_of_triangle(A.topLeftCorner(n, n));
+  const Eigen::MatrixXd C = inverse_of_square(A.topLeftCorner(n, n));
   HalfFit fit{Eigen::VectorXd::Zero(equations.columns()),
-              Eigen::MatrixXd::Zero(equations.columns(), equations.columns())};
-  fit.step(columns) = inverse * A.col(n).head(n);
-  fit.C(columns, columns) = inverse * inverse.transpose();
+              Eigen::MatrixXd::Zero(equations.columns(), equations.robot_columns())};
+  const Eigen::VectorXd step =
+      A.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(A.col(n).head(n));
+  fit.step(columns) = step;
+  const auto of_robot = static_cast<Eigen::Index>(std::ranges::count_if(
+      columns, [&](int column) { return column < equations.robot_columns(); }));
+  for (Eigen::Index j = 0; j < of_robot; ++j)  // they lead
+    fit.C(columns, columns[static_cast<size_t>(j)]) = C.col(j);
   return fit;
 }
 
@@ -101,9 +106,12 @@ class Parts {
 }  // namespace
 
 HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
-  const Eigen::Index n = equations.columns();
+  const Eigen::Index n = equations.columns(), of_robot = equations.robot_columns();
   const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
-  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
+  const auto explained = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    return C.transpose() * lambda.asDiagonal() * C;
+  };
   const Parts parts(equations, adjusted);
   for (const int with : kSplits) {
     std::vector<int> left = {1, 2, 3};
@@ -113,8 +121,8 @@ HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
     const Eigen::VectorXd difference = (a.step - b.step) / 2;
     const Eigen::MatrixXd shrunk = b.C - a.C;
     result.seen += difference * difference.transpose() / kSplits.size();
-    result.expected += (shrunk * lambda.asDiagonal() * shrunk + a.C -
-                        a.C * lambda.asDiagonal() * a.C + b.C - b.C * lambda.asDiagonal() * b.C) /
+    result.expected += (explained(shrunk) + a.C.topRows(of_robot) - explained(a.C) +
+                        b.C.topRows(of_robot) - explained(b.C)) /
                        (4.0 * kSplits.size());
   }
   return result;

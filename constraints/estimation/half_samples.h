@@ -8,10 +8,12 @@
 
 namespace selfcal {
 
-/// Means over the splits of the squares, columns() x columns().
+/// Means over the splits of the squares.
 struct HalfSamples {
-  Eigen::MatrixXd seen;      ///< of half the differences of the fits of either half
-  Eigen::MatrixXd expected;  ///< the same where the rows err apart and the priors hold
+  /// Of half the differences of the fits of either half, columns() x columns().
+  Eigen::MatrixXd seen;
+  /// The same where the rows err apart and the priors hold, robot_columns() x robot_columns().
+  Eigen::MatrixXd expected;
 };
 
 /// Linearised at `adjusted.fitted`. Each set's rows are taken as four stretches in their order, and

@@ -68,7 +68,7 @@ class Information {
     const auto m = n + kMotionColumns * static_cast<Eigen::Index>(places_.size());
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(m, m);
     const Eigen::MatrixXd W = R_(Eigen::all, columns_);
-    H.topLeftCorner(n, n) = W.transpose() * W;
+    H.topLeftCorner(n, n) = transposed_product(W, W);
     for (Eigen::Index i = 0; i < n; ++i) H(i, i) += std::pow(weights_[i], 2);
     Eigen::Index at = n;
     for (const GivenPlace& place : places_) {
