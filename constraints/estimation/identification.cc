@@ -154,7 +154,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.scale = scale.scale;
   const Identifiability rank = add_posterior(equations, adjusted, R, C, solution);
 
-  const Judged before = judge(robot, data, equations, adjusted.before);
+  const Judged before = judge(robot, data, equations, adjusted.before, true);
   const Judged after = judge(robot, data, equations, fitted);
   solution.residual = residual_figures(data, before, after, fitted.noise.outlier);
   solution.rejected = outlier_rows(data, after, fitted.noise.outlier);

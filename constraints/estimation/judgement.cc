@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "constraints/statistics.h"
+#include "kinematics/expects.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -20,75 +21,81 @@ constexpr double kRise = 1.645, kLittle = 0.1;
 /// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
 const double kFar = NoiseRule{}.far_quantile;
 
-struct Pair {
-  const RowResidual* before;
-  const RowResidual* after;
+RowNorm norm_of_row(const RowResidual& r) { return {r.length, r.angle}; }
+
+/// As RowResidual::size, of the same row under the other model.
+double size_before(const RowNorm& norm, const RowResidual& same) {
+  return same.lengths > 0 ? norm.length : norm.angle;
+}
+
+/// Figures of rows that come one by one.
+class Tally {
+ public:
+  void add(const RowNorm& before, const RowResidual& after, bool left_out) {
+    add_angle(before, after);
+    const double b = size_before(before, after), a = after.size();
+    ++f_.rows;
+    f_.rms_before += b * b;
+    f_.rms_after += a * a;
+    f_.mean_after += a;
+    f_.max_after = std::max(f_.max_after, a);
+    angle_alone_ = angle_alone_ && after.lengths == 0;
+    if (left_out) return;
+    kept_ += a * a;
+    ++kept_rows_;
+  }
+
+  Figures figures() const {
+    Figures f = f_;
+    if (f.rows == 0) return f;
+    f.angle_alone = angle_alone_;
+    f.rms_before = std::sqrt(f.rms_before / f.rows);
+    f.rms_after = std::sqrt(f.rms_after / f.rows);
+    f.mean_after /= f.rows;
+    f.rms_without_rejected = kept_rows_ > 0 ? std::sqrt(kept_ / kept_rows_) : 0;
+    if (f.angle.rows == 0) return f;
+    f.angle.rms_before = std::sqrt(f.angle.rms_before / f.angle.rows);
+    f.angle.rms_after = std::sqrt(f.angle.rms_after / f.angle.rows);
+    f.angle.mean_after /= f.angle.rows;
+    return f;
+  }
+
+ private:
+  void add_angle(const RowNorm& before, const RowResidual& after) {
+    if (after.angles == 0) return;
+    AngleFigures& f = f_.angle;
+    ++f.rows;
+    f.rms_before += before.angle * before.angle;
+    f.rms_after += after.angle * after.angle;
+    f.mean_after += after.angle;
+    f.max_after = std::max(f.max_after, after.angle);
+  }
+
+  Figures f_;  ///< sums
+  bool angle_alone_ = true;
+  double kept_ = 0, kept_rows_ = 0;
 };
-
-AngleFigures angle_figures(const std::vector<Pair>& pairs) {
-  AngleFigures f;
-  for (const Pair& pair : pairs) {
-    if (pair.after->angles == 0) continue;
-    const double b = pair.before->angle, a = pair.after->angle;
-    ++f.rows;
-    f.rms_before += b * b;
-    f.rms_after += a * a;
-    f.mean_after += a;
-    f.max_after = std::max(f.max_after, a);
-  }
-  if (f.rows == 0) return f;
-  f.rms_before = std::sqrt(f.rms_before / f.rows);
-  f.rms_after = std::sqrt(f.rms_after / f.rows);
-  f.mean_after /= f.rows;
-  return f;
-}
-
-Figures figures(const std::vector<Pair>& pairs, const std::vector<char>& left_out) {
-  Figures f;
-  double kept = 0, kept_rows = 0;
-  for (const Pair& pair : pairs) {
-    ++f.rows;
-    const double b = pair.before->size(), a = pair.after->size();
-    f.rms_before += b * b;
-    f.rms_after += a * a;
-    f.mean_after += a;
-    f.max_after = std::max(f.max_after, a);
-    if (left_out[pair.after->row]) continue;
-    kept += a * a;
-    ++kept_rows;
-  }
-  f.angle = angle_figures(pairs);
-  f.angle_alone = !pairs.empty() &&
-                  std::ranges::all_of(pairs, [](const Pair& p) { return p.after->lengths == 0; });
-  if (f.rows == 0) return f;
-  f.rms_before = std::sqrt(f.rms_before / f.rows);
-  f.rms_after = std::sqrt(f.rms_after / f.rows);
-  f.mean_after /= f.rows;
-  f.rms_without_rejected = kept_rows > 0 ? std::sqrt(kept / kept_rows) : 0;
-  return f;
-}
 
 /// Of so many rows every one is shown; of more of them every second, third …
 constexpr int kMostFigures = 100000;
 int shown_every(const DataSet& data) { return 1 + (data.rows.rows() - 1) / kMostFigures; }
 
-/// One of the models' lists of rows.
-struct RowList {
-  const std::vector<RowResidual>& residuals;
-  const std::vector<RowPlace>& places;
-};
-
-/// Adds those rows that are shown; `rejected` by row of the data set.
-void add_figures(const RowList& before, const RowList& after, bool check,
+/// Adds those rows of `after` that are shown; `was` says the norms of its i-th row before,
+/// `rejected` is by row of the data set.
+template <class Was>
+void add_figures(const std::vector<RowResidual>& after, const Was& was,
+                 const std::vector<RowPlace>& places_before,
+                 const std::vector<RowPlace>& places_after, bool check,
                  const std::vector<char>& rejected, int every, std::vector<RowFigure>& rows) {
   size_t shown = 0;
-  for (size_t i = 0; i < after.residuals.size(); ++i) {
-    const RowResidual &b = before.residuals[i], &a = after.residuals[i];
+  for (size_t i = 0; i < after.size(); ++i) {
+    const RowResidual& a = after[i];
     if (a.row % every != 0) continue;
-    const RowPlace &was = before.places[shown], &is = after.places[shown];
+    const RowNorm b = was(i);
     const bool both = a.lengths > 0 && a.angles > 0;
-    rows.push_back({a.row, a.set, check, rejected[a.row] != 0, b.size(), a.size(),
-                    both ? b.angle : 0, both ? a.angle : 0, is.at, was.way, is.way});
+    rows.push_back({a.row, a.set, check, rejected[a.row] != 0, size_before(b, a), a.size(),
+                    both ? b.angle : 0, both ? a.angle : 0, places_after[shown].at,
+                    places_before[shown].way, places_after[shown].way});
     ++shown;
   }
 }
@@ -99,10 +106,12 @@ std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, co
                                    const std::vector<char>& far) {
   std::vector<RowFigure> rows;
   const int every = shown_every(data);
-  add_figures({before.fit, before.fit_places}, {after.fit, after.fit_places}, false, put_aside,
-              every, rows);
-  add_figures({before.check, before.check_places}, {after.check, after.check_places}, true, far,
-              every, rows);
+  add_figures(
+      after.fit, [&](size_t i) { return before.fit_norms[i]; }, before.fit_places, after.fit_places,
+      false, put_aside, every, rows);
+  add_figures(
+      after.check, [&](size_t i) { return norm_of_row(before.check[i]); }, before.check_places,
+      after.check_places, true, far, every, rows);
   std::ranges::stable_sort(rows, {}, &RowFigure::row);
   return rows;
 }
@@ -114,10 +123,13 @@ bool is_outlier(const RowResidual& r, const Judged& judged) {
 }  // namespace
 
 Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
-             const Fit& fitted) {
+             const Fit& fitted, bool norms_alone) {
   Judged judged;
   judged.state = fitted.state;
-  judged.fit = fit_equations.residuals(fitted.state);
+  if (norms_alone)
+    judged.fit_norms = fit_equations.norms(fitted.state);
+  else
+    judged.fit = fit_equations.residuals(fitted.state);
   judged.fit_places = fit_equations.places(fitted.state, shown_every(data));
   judged.check_scale = fitted.noise.used;
   judged.aligned.assign(data.sets.size(), 0);
@@ -147,27 +159,28 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
 
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier) {
+  expects(before.fit_norms.size() == after.fit.size() && before.check.size() == after.check.size(),
+          "both models are judged by the same rows");
   Residuals result;
-  std::vector<Pair> fit, check;
+  Tally fit, check;
   for (size_t i = 0; i < after.fit.size(); ++i)
-    if (!outlier[after.fit[i].row]) fit.push_back({&before.fit[i], &after.fit[i]});
+    if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
   std::vector<char> far(outlier.size(), 0);
+  std::vector<Tally> of_set(data.sets.size());
   for (size_t i = 0; i < after.check.size(); ++i) {
-    check.push_back({&before.check[i], &after.check[i]});
-    far[after.check[i].row] = is_outlier(after.check[i], after);
-    result.check_rows.push_back({after.check[i].size(), far[after.check[i].row] != 0});
+    const RowResidual& row = after.check[i];
+    const bool is_far = is_outlier(row, after);
+    far[row.row] = is_far;
+    result.check_rows.push_back({row.size(), is_far});
+    check.add(norm_of_row(before.check[i]), row, is_far);
+    of_set[row.set].add(norm_of_row(before.check[i]), row, is_far);
   }
   result.rows = row_figures(data, before, after, outlier, far);
-  result.fit = figures(fit, outlier);
-  result.check = figures(check, far);
-  for (size_t s = 0; s < data.sets.size(); ++s) {
-    std::vector<Pair> of_set;
-    for (const Pair& pair : check)
-      if (pair.after->set == static_cast<int>(s)) of_set.push_back(pair);
-    if (!of_set.empty())
-      result.check_by_set.push_back(
-          {data.sets[s].name, after.aligned[s] != 0, figures(of_set, far)});
-  }
+  result.fit = fit.figures();
+  result.check = check.figures();
+  for (size_t s = 0; s < data.sets.size(); ++s)
+    if (const Figures figures = of_set[s].figures(); figures.rows > 0)
+      result.check_by_set.push_back({data.sets[s].name, after.aligned[s] != 0, figures});
   return result;
 }
 

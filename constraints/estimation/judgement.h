@@ -13,6 +13,7 @@ namespace selfcal {
 /// Residuals of one model (before or after) on every row that counts.
 struct Judged {
   std::vector<RowResidual> fit, check;
+  std::vector<RowNorm> fit_norms;  ///< in place of `fit`, where these alone were asked for
   /// Of those of them that Residuals::rows shows.
   std::vector<RowPlace> fit_places, check_places;
   std::vector<OpenRow> open, open_check;  ///< rows that gave no equation
@@ -23,10 +24,12 @@ struct Judged {
 };
 
 /// Fits the unknowns of sets and groups that have only `check` rows with the robot of `fit` held,
-/// and takes the residuals of all rows.
+/// and takes the residuals of all rows; with `norms_alone` of the rows that identify no more than
+/// their norms, which take a fifth of the memory.
 Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
-             const Fit& fit);
+             const Fit& fit, bool norms_alone = false);
 
+/// `before` has the norms alone.
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier);
 
