@@ -229,8 +229,13 @@ class Equations {
   std::size_t items_of_all() const;
   void make_parts(int set);
   void make_plan(int set, Use use);
-  /// By item, why the robot cannot take it with its maker's figures; empty where it can.
-  std::vector<std::string> why_open(int set, const std::vector<SetPlan::Item>& items) const;
+  /// An item that the robot cannot take with its maker's figures.
+  struct OpenItem {
+    SetPlan::Item item;
+    std::string why;
+  };
+  /// Takes such out of `items`.
+  std::vector<OpenItem> take_open(int set, std::vector<SetPlan::Item>& items) const;
   void evaluate(int set, int first, int count, const State& state, Block& block,
                 bool jacobian) const;
   /// Finds what makes the equations of each row of a set with noise_joints independent.

@@ -102,12 +102,14 @@ Closure Equations::closure_at(const std::vector<int>& rows, Body body,
   return robot_.locate(block, xi, body, X, nullptr);
 }
 
-std::vector<std::string> Equations::why_open(int set,
-                                             const std::vector<SetPlan::Item>& items) const {
-  std::vector<std::string> why(items.size());
+std::vector<Equations::OpenItem> Equations::take_open(int set,
+                                                      std::vector<SetPlan::Item>& items) const {
+  if (!robot_.has_loops()) return {};
+  std::vector<OpenItem> open;
+  std::vector<SetPlan::Item> closed;
   const Body body = data_.sets[set].method->body();
   const Eigen::VectorXd xi = nominal_values(robot_);
-  for (size_t first = 0; robot_.has_loops() && first < items.size(); first += kLanes) {
+  for (size_t first = 0; first < items.size(); first += kLanes) {
     const size_t count = std::min<size_t>(kLanes, items.size() - first);
     std::vector<int> now, before;
     for (size_t i = first; i < first + count; ++i) {
@@ -117,34 +119,35 @@ std::vector<std::string> Equations::why_open(int set,
     Closure closure = closure_at(now, body, xi);
     closure.add(closure_at(before, body, xi));
     for (size_t lane = 0; lane < count; ++lane)
-      if (!closure.closes(static_cast<int>(lane))) why[first + lane] = closure.why[lane];
+      if (closure.closes(static_cast<int>(lane)))
+        closed.push_back(items[first + lane]);
+      else
+        open.push_back({items[first + lane], closure.why[lane]});
   }
-  return why;
+  items = std::move(closed);
+  return open;
 }
 
 void Equations::make_plan(int set, Use use) {
   const Method& method = *data_.sets[set].method;
   SetPlan& plan = plans_[set];
-  const std::vector<Item> all = all_items(data_, set);
-  const std::vector<std::string> open = why_open(set, all);
-  std::vector<Item> items;
-  for (size_t i = 0; i < all.size(); ++i)
-    if (open[i].empty()) items.push_back(all[i]);
+  std::vector<Item> items = all_items(data_, set);
+  const std::vector<OpenItem> open = take_open(set, items);
   const std::vector<char> fitted = fitted_groups(data_, set, items);
   const bool any_fit = std::any_of(items.begin(), items.end(),
                                    [&](const Item& item) { return !is_check(data_, item); });
   const bool grouped = method.group_freedom() > 0;
-  for (size_t i = 0; i < all.size(); ++i) {
-    const Item& item = all[i];
+  const auto takes_part = [&](const Item& item) {
     const bool check = is_check(data_, item);
-    bool take = use == Use::fit ? !check : check;
     if (use == Use::align)
-      take = check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
-    if (take && open[i].empty())
-      plan.items.push_back(item);
-    else if (take)
-      open_rows_.push_back({item.row, set, open[i]});
-  }
+      return check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
+    return use == Use::fit ? !check : check;
+  };
+  for (const OpenItem& each : open)
+    if (takes_part(each.item)) open_rows_.push_back({each.item.row, set, each.why});
+  std::erase_if(items, [&](const Item& item) { return !takes_part(item); });
+  items.shrink_to_fit();
+  plan.items = std::move(items);
   if (plan.items.empty()) return;
   if (!grouped || use == Use::check) {
     plan.clusters.push_back({0, static_cast<int>(plan.items.size()), {}, {}});

@@ -83,6 +83,7 @@ class Iteration {
     NoiseRule told = noise_rule(stage_, freedom(fit_.covariance));
     told.pool = false;  // each set's own
     fit_.noise.estimated = estimate_noise(equations_, fit_.at.norms, told).estimated;
+    fit_.at.norms = {};
     return std::move(fit_);
   }
 

@@ -28,7 +28,7 @@ struct FitRule {
 struct Fit {
   State state;
   Noise noise;
-  Linearised at;               ///< at `state`
+  Linearised at;               ///< at `state`, without the rows' norms
   Eigen::MatrixXd covariance;  ///< of columns(): posterior; zero rows for what is not free
   double objective = 0;   ///< -2 log posterior up to a constant: compares fits of the same rows
   std::vector<int> rows;  ///< by set, that gave an equation

@@ -30,9 +30,11 @@ double determined(const Equations& equations, const Adjusted& adjusted) {
 /// Residuals that took part, over the noise of their sets, in the order of the rows.
 std::vector<const RowResidual*> used_rows(const Judged& after, const Noise& noise) {
   std::vector<const RowResidual*> rows;
+  rows.reserve(after.fit.size());
   for (const RowResidual& r : after.fit)
     if (!noise.outlier[static_cast<size_t>(r.row)]) rows.push_back(&r);
-  std::ranges::stable_sort(rows, {}, &RowResidual::row);
+  if (!std::ranges::is_sorted(rows, {}, &RowResidual::row))
+    std::ranges::stable_sort(rows, {}, &RowResidual::row);
   return rows;
 }
 
