@@ -37,9 +37,11 @@ EvidenceEvaluator::Found EvidenceEvaluator::better(const Hypothesis& one,
   return {best, best.log_weight - none(one.structure).log_weight};
 }
 
-std::vector<EvidenceEvaluator::Found> EvidenceEvaluator::best_found_in(const Statistics& statistics) {
+std::vector<EvidenceEvaluator::Found> EvidenceEvaluator::best_found_in(
+    const Statistics& statistics) {
   Eigen::Index count = 0;
-  for (const MarginalLikelihood::Statistics& each : statistics) count = std::max(count, each.yy.size());
+  for (const MarginalLikelihood::Statistics& each : statistics)
+    count = std::max(count, each.yy.size());
   std::vector<Hypothesis> ones;
   std::vector<std::set<int>> columns(statistics.size());  // of those, by structure
   for (Eigen::Index i = 0; i < count; ++i) {
