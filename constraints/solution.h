@@ -249,9 +249,9 @@ struct Solution {
   double prior_dof = 0;
   double prior_widening = 1;
   Observability observability;
-  std::vector<FrameStep> frame_steps;        ///< of sets of positions, the largest of each
-  std::vector<LockSlip> slips;               ///< of locked joints, in the order of the rows
-  std::vector<std::string> locks_put_aside;  ///< sets of which nothing was used, for their slips
+  std::vector<FrameStep> frame_steps;       ///< of sets of positions, the largest of each
+  std::vector<LockSlip> slips;              ///< of locked joints, in the order of the rows
+  std::vector<std::string> locks_left_out;  ///< sets of which nothing was used, for their slips
   std::vector<std::string> warnings;
   Eigen::VectorXd values;  ///< of every parameter, in the robot's order
 };

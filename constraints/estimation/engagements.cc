@@ -17,7 +17,7 @@ int set_of(const std::vector<Set>& sets, const std::string& name) {
 
 class Splitter {
  public:
-  explicit Splitter(DataSet data) : origin_(data.sets.size()), aside_(data.sets.size(), 0) {
+  explicit Splitter(DataSet data) : origin_(data.sets.size()), left_out_(data.sets.size(), 0) {
     std::iota(origin_.begin(), origin_.end(), 0);
     out_.data = std::move(data);
     out_.kept.resize(static_cast<std::size_t>(out_.data.rows.rows()));
@@ -53,10 +53,10 @@ class Splitter {
     slip.before = row(slip.before);
     slip.after = row(slip.after);
     const int set = set_of(out_.data.sets, slip.set), origin = origin_[set];
-    if (std::ranges::count(origin_, origin) > kMostSlips) return put_aside(origin);
+    if (std::ranges::count(origin_, origin) > kMostSlips) return leave_out(origin);
     const int later = add_engagement(out_.data.sets, set);
     origin_.push_back(origin);
-    aside_.push_back(0);
+    left_out_.push_back(0);
     bool after = false;
     for (const int each : rows_in_time(out_.data.rows, set)) {
       after = after || each == slip.after;
@@ -65,10 +65,10 @@ class Splitter {
     slips_.push_back(std::move(slip));
   }
 
-  void put_aside(int origin) {
+  void leave_out(int origin) {
     for (std::size_t s = 0; s < origin_.size(); ++s)
-      if (origin_[s] == origin) aside_[s] = 1;
-    std::erase_if(out_.kept, [&](int each) { return aside_[out_.data.rows.set[each]] != 0; });
+      if (origin_[s] == origin) left_out_[s] = 1;
+    std::erase_if(out_.kept, [&](int each) { return left_out_[out_.data.rows.set[each]] != 0; });
   }
 
   void tell() {
@@ -77,23 +77,23 @@ class Splitter {
     for (Outlier& each : solution.rejected) each.row = row(each.row - 1) + 1;
     const Observations& rows = out_.data.rows;
     for (int each = 0; each < rows.rows(); ++each)
-      if (aside_[rows.set[each]])
+      if (left_out_[rows.set[each]])
         solution.rejected.push_back({.row = each + 1,
                                      .set = out_.data.sets[rows.set[each]].name,
                                      .residual = HUGE_VAL,
                                      .check = rows.check[each] != 0,
                                      .why = "its lock slipped again and again"});
     std::ranges::stable_sort(solution.rejected, {}, &Outlier::row);
-    for (std::size_t s = 0; s < aside_.size(); ++s)
-      if (aside_[s] && origin_[s] == static_cast<int>(s))
-        solution.locks_put_aside.push_back(out_.data.sets[s].name);
+    for (std::size_t s = 0; s < left_out_.size(); ++s)
+      if (left_out_[s] && origin_[s] == static_cast<int>(s))
+        solution.locks_left_out.push_back(out_.data.sets[s].name);
     std::ranges::stable_sort(slips_, {}, &LockSlip::before);
     for (LockSlip& slip : slips_) measure(slip);
     solution.slips = slips_;
     for (const LockSlip& slip : slips_)
       solution.warnings.push_back(slip_words(slip) +
                                   ": the rows after it have a direction of their own");
-    for (const std::string& name : solution.locks_put_aside)
+    for (const std::string& name : solution.locks_left_out)
       solution.warnings.push_back("set " + name +
                                   ": its lock slipped again and again: all its rows are put aside");
   }
@@ -114,8 +114,8 @@ class Splitter {
   }
 
   Engagements out_;
-  std::vector<int> origin_;  // by set, the one as given
-  std::vector<char> aside_;  // by set
+  std::vector<int> origin_;     // by set, the one as given
+  std::vector<char> left_out_;  // by set
   std::vector<LockSlip> slips_;
 };
 

@@ -100,18 +100,19 @@ void add_figures(const std::vector<RowResidual>& after, const Was& was,
   }
 }
 
-/// `put_aside` and `far` by row of the data set, of those that identify and of those that judge.
+/// `outlier` and `check_outlier` by row of the data set, of those that identify and of those that
+/// judge.
 std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, const Judged& after,
-                                   const std::vector<char>& put_aside,
-                                   const std::vector<char>& far) {
+                                   const std::vector<char>& outlier,
+                                   const std::vector<char>& check_outlier) {
   std::vector<RowFigure> rows;
   const int every = shown_every(data);
   add_figures(
       after.fit, [&](size_t i) { return before.fit_norms[i]; }, before.fit_places, after.fit_places,
-      false, put_aside, every, rows);
+      false, outlier, every, rows);
   add_figures(
       after.check, [&](size_t i) { return norm_of_row(before.check[i]); }, before.check_places,
-      after.check_places, true, far, every, rows);
+      after.check_places, true, check_outlier, every, rows);
   std::ranges::stable_sort(rows, {}, &RowFigure::row);
   return rows;
 }
@@ -165,17 +166,17 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   Tally fit, check;
   for (size_t i = 0; i < after.fit.size(); ++i)
     if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
-  std::vector<char> far(outlier.size(), 0);
+  std::vector<char> check_outlier(outlier.size(), 0);
   std::vector<Tally> of_set(data.sets.size());
   for (size_t i = 0; i < after.check.size(); ++i) {
     const RowResidual& row = after.check[i];
     const bool is_far = is_outlier(row, after);
-    far[row.row] = is_far;
+    check_outlier[row.row] = is_far;
     result.check_rows.push_back({row.size(), is_far});
     check.add(norm_of_row(before.check[i]), row, is_far);
     of_set[row.set].add(norm_of_row(before.check[i]), row, is_far);
   }
-  result.rows = row_figures(data, before, after, outlier, far);
+  result.rows = row_figures(data, before, after, outlier, check_outlier);
   result.fit = fit.figures();
   result.check = check.figures();
   for (size_t s = 0; s < data.sets.size(); ++s)

@@ -1,9 +1,13 @@
-// How the time grows: with the joints of an arm, with the planes that it touches.
+// How the time grows: with the joints of an arm, with the planes that it touches. What a session
+// waits for after its last touch.
 #include <numbers>
 #include <random>
 
+#include "constraints/estimation/engagements.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/sampling/configurations.h"
+#include "io/files/robot_file.h"
+#include "io/files/solution_json.h"
 #include "kinematics/expects.h"
 #include "kinematics/make_robot.h"
 #include "tests/bench/tasks.h"
@@ -39,7 +43,7 @@ std::unique_ptr<Robot> arm_of(int joints) {
 }
 
 /// Rows shared among sets that `entry` describes, with 20 um of noise.
-DataSet rows_of(const Robot& robot, const Node& entry, int sets) {
+DataSet rows_of(const Robot& robot, const Node& entry, int sets, int rows = kRowsOfGrowth) {
   DataSet data;
   Node all = Node::map();
   for (int s = 0; s < sets; ++s) all.set("s" + std::to_string(s), entry);
@@ -52,7 +56,7 @@ DataSet rows_of(const Robot& robot, const Node& entry, int sets) {
   for (int s = 0; s < sets; ++s) {
     SampleRequest request;
     request.set = s;
-    request.rows = kRowsOfGrowth / sets;
+    request.rows = rows / sets;
     request.together = true;
     const auto equations = static_cast<Eigen::Index>(
         data.sets[static_cast<std::size_t>(s)].method->equations().size());
@@ -86,6 +90,20 @@ void planes(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(identify(example_robot(), data).verdict);
 }
 
+/// From the rows of a session to what is judged, stored and published of it.
+void result(benchmark::State& state) {
+  const Robot& robot = example_robot();
+  DataSet data = rows_of(robot, method_of("plane"), 6, static_cast<int>(state.range(0)));
+  for (Eigen::Index row = 0; row < data.rows.rows(); row += 3)
+    data.rows.check[static_cast<std::size_t>(row)] = 1;
+  for (auto _ : state) {
+    const Engagements found = identify_engagements(robot, data, {});
+    benchmark::DoNotOptimize(judge_as_it_is(robot, data).verdict);
+    benchmark::DoNotOptimize(to_json(found.solution, robot.name(), {}).dump());
+    benchmark::DoNotOptimize(robot_text(robot, found.solution.values));
+  }
+}
+
 }  // namespace
 
 void add_growth() {
@@ -93,6 +111,7 @@ void add_growth() {
     add_task("joints/selfcal", joints)->Arg(count)->Unit(benchmark::kMillisecond);
   for (const int count : {1, 4, 10, 40, 100})
     add_task("planes/selfcal", planes)->Arg(count)->Unit(benchmark::kMillisecond);
+  add_task("result/selfcal", result)->Arg(400)->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace selfcal::bench

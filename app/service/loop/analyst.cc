@@ -179,7 +179,7 @@ void Analyst::keep_solution(Engagements found) {
                            configuration(slip.after) + " of " +
                            std::to_string(collector_.session().plan.size()) +
                            "; those after it have a direction of their own");
-  for (const std::string& name : found.solution.locks_put_aside)
+  for (const std::string& name : found.solution.locks_left_out)
     c_.tell("warning",
             "set " + name + ": its lock slipped again and again; all of it is put aside");
   solution_ = std::make_shared<Solution>(std::move(found.solution));

@@ -110,7 +110,7 @@ AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& activ
                             sigma.parameter->parameter.name.c_str(), 1e3 * sigma.change,
                             std::string(unit(sigma.parameter->parameter.quantity)).c_str(),
                             std::abs(sigma.change) / sigma.parameter->sigma);
-  for (const std::string& set : candidate.locks_put_aside) {
+  for (const std::string& set : candidate.locks_left_out) {
     decided.asks = true;
     decided.why += "; not applied by itself: the lock of set " + set + " slipped again and again";
   }
