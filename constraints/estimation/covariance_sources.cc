@@ -12,6 +12,7 @@
 #include "constraints/estimation/half_samples.h"
 #include "constraints/estimation/noise.h"
 #include "constraints/estimation/posterior.h"
+#include "constraints/identifiability/endpoint_sigma.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -61,12 +62,11 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
 
 /// What halves of the rows differ by more than they should.
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
-                              EndpointQuestion question) {
+                              const Eigen::MatrixXd& weight) {
   const HalfSamples halves = half_samples(equations, adjusted);
   const Eigen::Index n = equations.robot_columns();
   const auto squared = [&](const Eigen::MatrixXd& C) {
-    question.covariance = C;
-    return std::pow(endpoint_sigma(question).rms, 2);
+    return std::pow(endpoint_rms(weight, C), 2);
   };
   const double seen = squared(halves.seen.topLeftCorner(n, n)), expected = squared(halves.expected);
   return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
@@ -76,7 +76,7 @@ Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjust
 
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
-                                                 const EndpointQuestion& question) {
+                                                 const Eigen::MatrixXd& weight) {
   const Eigen::MatrixXd& fitted = adjusted.fitted.covariance;
   const Eigen::MatrixXd priors = prior_part(equations, adjusted), noise = fitted - priors;
   const Eigen::MatrixXd exact =
@@ -85,7 +85,7 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
   sources.push_back({"what was given", posterior(equations, adjusted, R, true) - exact});
-  sources.push_back({"rows that share errors", shared_errors(equations, adjusted, question)});
+  sources.push_back({"rows that share errors", shared_errors(equations, adjusted, weight)});
   return sources;
 }
 

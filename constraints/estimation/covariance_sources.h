@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "constraints/estimation/adjustment.h"
-#include "constraints/identifiability/endpoint_sigma.h"
 
 namespace selfcal {
 
@@ -18,11 +17,11 @@ struct CovarianceSource {
 
 /// Noise of the rows (beside the rounding of the encoders and what repeats differ by), the maker's
 /// tolerances, the scale where a length is held for it, what was given (see posterior.h), and what
-/// halves of the rows differ by beside all that, judged by the end position at the poses of
-/// `question`. `R` is whitened, with the columns beside the unknowns.
+/// halves of the rows differ by beside all that, judged by the end position with `weight` (see
+/// endpoint_weight()). `R` is whitened, with the columns beside the unknowns.
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
-                                                 const EndpointQuestion& question);
+                                                 const Eigen::MatrixXd& weight);
 
 /// The sum of all.
 Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources);

@@ -144,8 +144,9 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   EndpointQuestion where_it_counts = question;
   where_it_counts.poses =
       workspace_poses(robot, question.xi, data.workspace, data.rows.q, kPoses, options.seed);
+  const Eigen::MatrixXd weight = endpoint_weight(where_it_counts);
   std::vector<CovarianceSource> sources = covariance_sources(
-      equations, adjusted, R, where_it_counts.poses.rows() > 0 ? where_it_counts : question);
+      equations, adjusted, R, weight.isZero(0) ? endpoint_weight(question) : weight);
   const ScaleJudgement scale =
       nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
   for (const Eigen::VectorXd& doubt : scale.doubts)
@@ -176,7 +177,8 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   solution.endpoint = endpoint_sigma(question);
   where_it_counts.covariance = question.covariance;
   solution.workspace = endpoint_sigma(where_it_counts);
-  solution.uncertainty = uncertainty(equations, adjusted, sources, after, where_it_counts);
+  solution.uncertainty =
+      uncertainty(equations, adjusted, sources, after, where_it_counts, weight, solution.workspace);
   solution.orientation_seen = orientation_is_seen(equations);
   Grounds grounds{solution.endpoint,
                   solution.workspace,

@@ -34,11 +34,11 @@ struct Eliminated {
 class ScaleTest {
  public:
   ScaleTest(const Equations& equations, const Adjusted& adjusted, const Eigen::MatrixXd& R,
-            EndpointQuestion question)
+            Eigen::MatrixXd weight)
       : equations_(equations),
         adjusted_(adjusted),
         R_(R),
-        question_(std::move(question)),
+        weight_(std::move(weight)),
         prior_(as_the_maker_says(equations.robot(), adjusted)),
         columns_(free_columns(equations, prior_)) {}
 
@@ -150,10 +150,9 @@ class ScaleTest {
     return squares > 0 ? change / squares : 0;
   }
 
-  double end_position(const Eigen::VectorXd& step) {
+  double end_position(const Eigen::VectorXd& step) const {
     const Eigen::VectorXd moved = step.head(equations_.robot_columns());
-    question_.covariance = moved * moved.transpose();
-    return endpoint_sigma(question_).rms;
+    return endpoint_rms(weight_, moved * moved.transpose());
   }
 
   /// By how much the robot's shape, no length being given, is beyond the maker's tolerances: the
@@ -256,8 +255,8 @@ class ScaleTest {
   const Equations& equations_;
   const Adjusted& adjusted_;
   const Eigen::MatrixXd& R_;
-  EndpointQuestion question_;
-  Prior prior_;  ///< with the maker's own tolerances
+  Eigen::MatrixXd weight_;  ///< of the end position
+  Prior prior_;             ///< with the maker's own tolerances
   std::vector<int> columns_;
   std::vector<int> known_;   ///< columns of R_, by length
   std::vector<char> place_;  ///< by length found: the distance of a known plane from the origin
@@ -268,9 +267,9 @@ class ScaleTest {
 }  // namespace
 
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
-                           const Eigen::MatrixXd& R, EndpointQuestion question) {
+                           const Eigen::MatrixXd& R, const EndpointQuestion& question) {
   if (!adjusted.prior.use || equations.known_lengths() == 0) return {};
-  return ScaleTest(equations, adjusted, R, std::move(question)).run();
+  return ScaleTest(equations, adjusted, R, endpoint_weight(question)).run();
 }
 
 }  // namespace selfcal

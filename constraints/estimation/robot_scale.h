@@ -20,6 +20,6 @@ struct ScaleJudgement {
 /// length of the robot is held or fixed, though they are tested; without priors, or where nothing
 /// is free, they are not.
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
-                           const Eigen::MatrixXd& R, EndpointQuestion question);
+                           const Eigen::MatrixXd& R, const EndpointQuestion& question);
 
 }  // namespace selfcal

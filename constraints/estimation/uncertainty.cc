@@ -196,25 +196,22 @@ std::vector<GridCell> grid(const DataSet& data, const EndpointQuestion& question
 
 Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
                         const std::vector<CovarianceSource>& sources, const Judged& after,
-                        EndpointQuestion question) {
+                        EndpointQuestion question, const Eigen::MatrixXd& weight,
+                        const EndpointSigma& sigma) {
   const DataSet& data = equations.data();
   const Noise& noise = adjusted.fitted.noise;
   const Eigen::Index n = equations.robot_columns();
   Uncertainty result;
   result.freedoms = adjusted.fitted.at.equations - determined(equations, adjusted);
   result.k = student_quantile((1 + kCoverage) / 2, std::max(result.freedoms, 1.0));
-  for (const CovarianceSource& source : sources) {
-    question.covariance = source.C.topLeftCorner(n, n);
-    result.budget.push_back({std::string(source.name), endpoint_sigma(question).rms});
-  }
-  const Eigen::MatrixXd C = sum(sources);
-  question.covariance = C.topLeftCorner(n, n);
-  const EndpointSigma sigma = endpoint_sigma(question);
+  for (const CovarianceSource& source : sources)
+    result.budget.push_back(
+        {std::string(source.name), endpoint_rms(weight, source.C.topLeftCorner(n, n))});
   result.expanded = result.k * sigma.rms;
   const std::vector<const RowResidual*> rows = used_rows(after, noise);
   result.lack_of_fit = lack_of_fit(data, rows, noise, result.freedoms);
   result.residuals = residual_tests(rows, noise);
-  result.correlations = correlations(equations.robot(), C);
+  result.correlations = correlations(equations.robot(), sum(sources));
   result.repeats = pose_repeats(data, after);
   question.covariance.setZero();
   for (const CovarianceSource& source : sources)

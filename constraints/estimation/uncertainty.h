@@ -6,13 +6,16 @@
 
 #include "constraints/estimation/covariance_sources.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/identifiability/endpoint_sigma.h"
 
 namespace selfcal {
 
-/// `sources` add up to the covariance; `question` is of the workspace, its covariance is not looked
-/// at; `after` are the residuals of the calibrated robot.
+/// `sources` add up to the covariance; `question` is of the workspace, `weight` its
+/// endpoint_weight() and `sigma` its answer with that covariance; `after` are the residuals of the
+/// calibrated robot.
 Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
                         const std::vector<CovarianceSource>& sources, const Judged& after,
-                        EndpointQuestion question);
+                        EndpointQuestion question, const Eigen::MatrixXd& weight,
+                        const EndpointSigma& sigma);
 
 }  // namespace selfcal

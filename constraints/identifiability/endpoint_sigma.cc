@@ -100,9 +100,14 @@ EndpointSigma endpoint_sigma(const EndpointQuestion& question) {
 
 Eigen::MatrixXd endpoint_weight(const EndpointQuestion& question) {
   const auto parameters = static_cast<Eigen::Index>(question.robot->parameters().size());
+  if (question.poses.rows() == 0) return Eigen::MatrixXd::Zero(parameters, parameters);
   Deviations D = deviations(question, Eigen::MatrixXd::Identity(parameters, parameters));
   if (D.unseen_shift.cols() > 0) align(D);
-  return D.shift.transpose() * D.shift / static_cast<double>(question.poses.rows());
+  return transposed_product(D.shift, D.shift) / static_cast<double>(question.poses.rows());
+}
+
+double endpoint_rms(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
+  return std::sqrt(std::max(0.0, weight.cwiseProduct(C).sum()));
 }
 
 }  // namespace selfcal

@@ -21,7 +21,11 @@ struct EndpointQuestion {
 EndpointSigma endpoint_sigma(const EndpointQuestion& question);
 
 /// A, parameters x parameters, with which the rms of any covariance C is sqrt(trace(A C)); that of
-/// the question is not looked at. There must be poses.
+/// the question is not looked at. Without poses it is zero.
 Eigen::MatrixXd endpoint_weight(const EndpointQuestion& question);
+
+/// The rms of EndpointSigma for covariance `C`, from endpoint_weight(): as quick as a product, for
+/// many covariances of one question. Zero of a `C` that takes more away than it gives.
+double endpoint_rms(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C);
 
 }  // namespace selfcal
