@@ -1,4 +1,4 @@
-// One subcommand of the program: each has app/NAME.cc and a line in main.cc.
+// One subcommand of the program: each has app/commands/NAME.cc and a line in main.cc.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinematics/expects.h"
 #include "kinematics/make_robot.h"
 #include "sim/trials/trial_world.h"
 
@@ -80,7 +81,9 @@ std::unique_ptr<Robot> draw_arm(Random& random) {
   robot.set("kind", Node::of(std::string("serial")));
   robot.set("frames", frames);
   Problems problems;
-  return make_robot(robot, problems);
+  auto arm = make_robot(robot, problems);
+  expects(arm != nullptr && !problems.any(), "a trial's arm is well formed");
+  return arm;
 }
 
 Eigen::VectorXd draw_geometry(const Robot& robot, Random& random) {

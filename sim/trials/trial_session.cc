@@ -8,6 +8,7 @@
 
 #include "constraints/sampling/configurations.h"
 #include "constraints/sampling/random_poses.h"
+#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 #include "sim/trials/trial_robot.h"
 
@@ -57,6 +58,7 @@ class SessionMaker {
     if (!plan_.touches) entry.set("noise", Node::of(2e-5));
     Problems problems;
     out_.data.sets.push_back(make_set(name, entry, problems));
+    expects(!problems.any(), "a trial's set is well formed");
   }
 
   void place_surfaces() {
