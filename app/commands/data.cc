@@ -36,7 +36,7 @@ int print_first_look(const FirstLook& look) {
 
 int data_check(const std::string& folder) {
   const auto loaded = load_data_set(folder);
-  if (!loaded) return tell(loaded.error());
+  if (!loaded) return tell(with_likely_wrong(loaded.error(), folder));
   print_notices(*loaded);
   const auto look = look_at_files(folder, *loaded, loaded->robot);
   return look ? print_first_look(*look) : tell(look.error());

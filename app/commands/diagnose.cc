@@ -68,7 +68,7 @@ Result<void> load_simulated(const DiagnoseArguments& arguments, Inputs& inputs) 
 /// All of them, before anything that takes long.
 Result<Inputs> load(const DiagnoseArguments& arguments) {
   auto measured = load_data_set(arguments.data_set);
-  if (!measured) return tl::unexpected(measured.error());
+  if (!measured) return tl::unexpected(with_likely_wrong(measured.error(), arguments.data_set));
   print_notices(*measured);
   const std::shared_ptr<const Robot> robot = std::move(measured->robot);
   auto before = load_other(arguments.since, *robot);

@@ -96,7 +96,7 @@ void look_first(const std::string& path, const LoadedDataSet& loaded,
 
 int identify_command(const IdentifyArguments& arguments) {
   auto loaded = load_data_set(arguments.data_set);
-  if (!loaded) return tell(loaded.error());
+  if (!loaded) return tell(with_likely_wrong(loaded.error(), arguments.data_set));
   print_notices(*loaded);
   std::optional<CircleRobot> circles;
   if (of_circles_alone(loaded->data)) {

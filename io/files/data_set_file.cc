@@ -70,7 +70,7 @@ std::string folder_name(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
+Result<LoadedDataSet> load_data_set(const std::filesystem::path& path, Readings readings) {
   std::error_code error;
   const bool is_folder = std::filesystem::is_directory(path, error);
   const std::filesystem::path file = is_folder ? path / "dataset.yaml" : path;
@@ -90,8 +90,9 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path) {
   loaded.robot = std::move(*robot);
   if (const std::string why = lacking_body(*loaded.robot, loaded.data.sets); !why.empty())
     return bad_input(file.string() + ": " + why);
-  const Result<void> read = read_observations(folder / description.observations, *loaded.robot,
-                                              description.map, loaded.data, loaded.notices);
+  const Result<void> read =
+      read_observations(folder / description.observations, *loaded.robot, description.map, readings,
+                        loaded.data, loaded.notices);
   if (!read) return tl::unexpected(read.error());
   if (const auto checked = check_references(loaded.data, file.string()); !checked)
     return tl::unexpected(checked.error());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "io/files/plausible.h"
 #include "io/result.h"
 #include "kinematics/robot.h"
 
@@ -23,6 +24,7 @@ struct LoadedDataSet {
 
 /// Reads the data set at `path`, a folder or the dataset.yaml in it. Everything that a file breaks
 /// is refused with its line, or its row and column.
-Result<LoadedDataSet> load_data_set(const std::filesystem::path& path);
+Result<LoadedDataSet> load_data_set(const std::filesystem::path& path,
+                                    Readings readings = Readings::within_limits);
 
 }  // namespace selfcal

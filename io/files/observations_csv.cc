@@ -45,13 +45,14 @@ constexpr double kOftenBack = 0.1;  // of the rows: sets that follow each other 
 class RowReader {
  public:
   /// `configurations`: rows need no measurement.
-  RowReader(const Robot& robot, const ColumnMap& map, DataSet& data, bool configurations)
+  RowReader(const Robot& robot, const ColumnMap& map, DataSet& data, bool configurations,
+            Readings readings)
       : data_(data),
         map_(map),
         configurations_(configurations),
         joints_(robot.joints()),
         labels_(data.sets),
-        numbers_(robot) {}
+        numbers_(robot, readings) {}
 
   const ColumnMap& map() const { return map_; }
   /// Of the file, before its header.
@@ -245,9 +246,9 @@ Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
 }  // namespace
 
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
-                               const ColumnMap& map, DataSet& data,
+                               const ColumnMap& map, Readings readings, DataSet& data,
                                std::vector<std::string>& notices) {
-  RowReader reader(robot, map, data, false);
+  RowReader reader(robot, map, data, false, readings);
   if (Result<void> done = read_rows(path, reader); !done) return done;
   for (const std::string& notice : reader.notices()) {
     notices.push_back(path.string() + ": " + notice);
@@ -259,7 +260,7 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
 Result<void> read_configurations(const std::filesystem::path& path, const Robot& robot,
                                  DataSet& data) {
   const ColumnMap map;
-  RowReader reader(robot, map, data, true);
+  RowReader reader(robot, map, data, true, Readings::within_limits);
   if (Result<void> done = read_rows(path, reader); !done) return done;
   reader.hand_over();
   return {};

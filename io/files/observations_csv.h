@@ -7,6 +7,7 @@
 
 #include "constraints/methods/data_set.h"
 #include "io/files/column_map.h"
+#include "io/files/plausible.h"
 #include "io/result.h"
 #include "kinematics/robot.h"
 
@@ -19,7 +20,7 @@ namespace selfcal {
 /// tabs may stand between the cells of any, and decimal commas in numbers then. After a failure
 /// `data` is not to be used.
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
-                               const ColumnMap& map, DataSet& data,
+                               const ColumnMap& map, Readings readings, DataSet& data,
                                std::vector<std::string>& notices);
 
 /// The same of rows at which nothing need have been measured: set, group and readings are asked

@@ -51,13 +51,15 @@ std::optional<std::string> celsius_fault(double value) {
          (value > kHottest ? " (kelvin?)" : "");
 }
 
-std::optional<std::string> joint_fault(const Joint& joint, double reading) {
+std::optional<std::string> joint_fault(const Joint& joint, double reading, Readings readings) {
   if (joint.quantity == Quantity::length) {
     if (auto fault = metres_fault(reading)) return fault;
   } else if (std::abs(reading) > kMostTurned) {
     return format_number(reading) + " is more than four turns (degrees instead of radians?)";
   }
-  if (excess(joint, reading) <= kFarOutside * (joint.upper - joint.lower)) return std::nullopt;
+  if (readings == Readings::any ||
+      excess(joint, reading) <= kFarOutside * (joint.upper - joint.lower))
+    return std::nullopt;
   return format_number(reading) + " is far outside " + limits_of(joint) +
          likely_slip(joint, reading);
 }

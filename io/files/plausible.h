@@ -15,9 +15,14 @@ std::optional<std::string> metres_fault(double value);
 /// Why `value` (degrees Celsius) is no temperature of a robot at work; nothing when it may be.
 std::optional<std::string> celsius_fault(double value);
 
+/// What readings may be: such as the joints' limits allow; or any, where what is wrong with them is
+/// to be found out.
+enum class Readings { within_limits, any };
+
 /// Why `reading` cannot be one of the joint: many turns, or beyond the limits by more than a tenth
 /// of their range. Readings a little beyond are common and allowed.
-std::optional<std::string> joint_fault(const Joint& joint, double reading);
+std::optional<std::string> joint_fault(const Joint& joint, double reading,
+                                       Readings readings = Readings::within_limits);
 
 /// True when the reading is beyond the limits by more than their rounding.
 bool outside_limits(const Joint& joint, double reading);

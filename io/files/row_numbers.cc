@@ -61,7 +61,7 @@ std::optional<RowFault> NumberReader::check_joints(int row) {
     const std::size_t column = layout_->q[i];
     const Joint& joint = robot_.joints()[i];
     if (std::isnan(values_[column])) return RowFault{"expected a number, got nothing", column};
-    if (auto fault = joint_fault(joint, values_[column])) {
+    if (auto fault = joint_fault(joint, values_[column], readings_)) {
       return RowFault{std::move(*fault), column};
     }
     if (!outside_limits(joint, values_[column])) continue;

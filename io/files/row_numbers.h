@@ -9,6 +9,7 @@
 
 #include "io/files/columns.h"
 #include "io/files/csv.h"
+#include "io/files/plausible.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -16,7 +17,7 @@ namespace selfcal {
 /// Reads and judges the numbers of one row after the other, over and over in the same memory.
 class NumberReader {
  public:
-  explicit NumberReader(const Robot& robot) : robot_(robot) {}
+  NumberReader(const Robot& robot, Readings readings) : robot_(robot), readings_(readings) {}
 
   /// `layout` must outlive the reader.
   void begin(const Layout& layout);
@@ -42,6 +43,7 @@ class NumberReader {
   std::optional<RowFault> read_vector(const Columns<N>& places, std::array<double, N>& vector);
 
   const Robot& robot_;
+  Readings readings_;
   const Layout* layout_ = nullptr;
   std::vector<double> values_;  // per column
   std::array<double, 3> position_{}, normal_{};

@@ -77,8 +77,8 @@ TEST_F(ObservationsCsv, KeepsTheColumnsThatAMethodBringsAlong) {
     data.sets[0].name = "plumb";
     data.sets[0].method = std::make_shared<Plumb>();
     std::vector<std::string> told;
-    const auto done =
-        read_observations(scratch().folder() / "plumb.csv", *arm->robot, {}, data, told);
+    const auto done = read_observations(scratch().folder() / "plumb.csv", *arm->robot, {},
+                                        Readings::within_limits, data, told);
     EXPECT_THAT(told, ElementsAre());
     return done ? std::string() : without_folder(done.error().what);
   };

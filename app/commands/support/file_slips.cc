@@ -85,6 +85,14 @@ Result<FirstLook> look_at_files(const std::string& path, const LoadedDataSet& lo
   return first_look(robot, loaded.data, slips_of_robot(*file));
 }
 
+Failure with_likely_wrong(Failure refused, const std::string& path) {
+  const auto loaded = load_data_set(path, Readings::any);
+  if (!loaded) return refused;
+  const auto look = look_at_files(path, *loaded, loaded->robot);
+  if (look && !look->found.empty()) refused.what += "; likely wrong: " + look->found;
+  return refused;
+}
+
 std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
                          const std::shared_ptr<const Robot>& robot, const NominalFit& nominal) {
   const double gross = gross_misfit(*robot, nominal.lengths);

@@ -16,6 +16,10 @@ namespace selfcal {
 Result<FirstLook> look_at_files(const std::string& path, const LoadedDataSet& loaded,
                                 const std::shared_ptr<const Robot>& robot);
 
+/// `refused`, which load_data_set() said of `path`, and what a first look at the rows says of it
+/// where nothing but the joints' limits was in their way.
+Failure with_likely_wrong(Failure refused, const std::string& path);
+
 /// What a fit to all rows found: of the maker's robot, and of the tool.
 struct NominalFit {
   double rms = 0;       ///< of the robot as its maker says, base and tool placed (m or rad)
