@@ -150,6 +150,18 @@ TEST_F(DataCheck, SaysWhichJointsZeroIsElsewhere) {
   expect_likely_wrong("the zero of j3 is 10.1 degrees from where the robot's file has it");
 }
 
+TEST_F(DataCheck, SaysWhatIsWrongOfRowsThatTheJointsLimitsRefuse) {
+  change_rows({"q4"}, [](auto& q) { q[0] *= 2; });
+  for (const char* command : {"data check ", "identify ", "diagnose "}) {
+    const Ran ran = run_selfcal(command + (folder_ / "data").string());
+    EXPECT_EQ(ran.status, 3) << command;
+    EXPECT_THAT(ran.out, testing::AllOf(testing::HasSubstr("is far outside the limits"),
+                                        testing::HasSubstr("; likely wrong: the readings of j4 are "
+                                                           "twice what it moves")))
+        << command;
+  }
+}
+
 TEST_F(DataCheck, SaysWhichReadingsAreTwiceWhatTheJointMoves) {
   change_rows({"q4"}, [](auto& q) { q[0] *= 2; });
   free_of_limits();
