@@ -145,8 +145,9 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   where_it_counts.poses =
       workspace_poses(robot, question.xi, data.workspace, data.rows.q, kPoses, options.seed);
   const Eigen::MatrixXd weight = endpoint_weight(where_it_counts);
-  std::vector<CovarianceSource> sources = covariance_sources(
-      equations, adjusted, R, weight.isZero(0) ? endpoint_weight(question) : weight);
+  std::vector<CovarianceSource> sources =
+      covariance_sources(equations, adjusted, R,
+                         where_it_counts.poses.rows() > 0 ? weight : endpoint_weight(question));
   const ScaleJudgement scale =
       nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
   for (const Eigen::VectorXd& doubt : scale.doubts)

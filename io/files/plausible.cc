@@ -29,7 +29,8 @@ std::string limits_of(const Joint& joint) {
 std::string likely_slip(const Joint& joint, double reading) {
   const double size = std::abs(reading);
   const double reach = std::max(std::abs(joint.lower), std::abs(joint.upper));
-  if (joint.quantity == Quantity::angle && size > 2 * std::numbers::pi) {
+  // A gear of two, or a sign, takes a reading no farther than twice its limits.
+  if (joint.quantity == Quantity::angle && size > 2 * std::max(reach, std::numbers::pi)) {
     return " (degrees instead of radians?)";
   }
   if (joint.quantity == Quantity::length && size > 100 * reach) {
