@@ -56,6 +56,9 @@ Result<CommandReplyMessage> ask_service(const DdsParticipant& participant, const
 void say_where(const WebAddress& address, const PageOptions& options, const std::string& token) {
   const bool own = !token.empty() && options.token_file.empty();
   const std::string url = address.url() + (own ? "#token=" + token : "");
+  std::fprintf(stderr, "selfcal: watching %s in DDS domain %d, topics rt/selfcal/%s/...\n",
+               options.robot.empty() ? "every robot" : options.robot.c_str(), options.domain,
+               options.robot.empty() ? "ROBOT" : options.robot.c_str());
   std::fprintf(stderr, "selfcal: the page is at %s%s\n", url.c_str(),
                !token.empty() && !own ? ", and asks for the token" : "");
   std::fprintf(stderr, "selfcal: %s\n",

@@ -4,6 +4,7 @@
 
 #include <dds/ddsrt/log.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -57,6 +58,16 @@ Result<std::shared_ptr<DdsEntity>> domain_of(std::uint32_t number) {
 }
 
 }  // namespace
+
+Result<int> domain_of_environment() {
+  const char* const text = std::getenv("ROS_DOMAIN_ID");
+  if (!text || !*text) return 0;
+  const auto number = parse_number(text);
+  if (number && *number >= 0 && *number <= kMostDdsDomain && *number == std::floor(*number))
+    return static_cast<int>(*number);
+  return bad_input("ROS_DOMAIN_ID is '" + std::string(text) + "', and must be 0 to " +
+                   std::to_string(kMostDdsDomain));
+}
 
 Result<DdsParticipant> DdsParticipant::open(std::uint32_t domain, const std::string& name) {
   if (domain > kMostDdsDomain)

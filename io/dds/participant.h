@@ -16,6 +16,11 @@
 namespace selfcal {
 
 inline constexpr std::uint32_t kMostDdsDomain = 232;  ///< beyond it the ports run out
+
+/// The domain that the environment names (ROS_DOMAIN_ID), as it is for ROS 2; 0 where it names
+/// none.
+Result<int> domain_of_environment();
+
 /// A message beyond this is neither sent nor taken, whoever sends it: none of ours comes near.
 inline constexpr std::size_t kMostMessageBytes = std::size_t{4} << 20;
 

@@ -84,6 +84,19 @@ TEST_F(Program, RefusesUnknownNamesAndMethodsAsWrongUsage) {
   EXPECT_EQ(run_selfcal("calibrate").status, 2);
 }
 
+TEST_F(Program, AsksTheEnvironmentForADomainOnlyWhereItNeedsOne) {
+  setenv("ROS_DOMAIN_ID", "many", 1);
+  const Ran file = run_selfcal("robot check " SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml");
+  const Ran asked = run_selfcal("monitor --wait 0.1");
+  const Ran named = run_selfcal("monitor --wait 0.1 --domain 231");
+  unsetenv("ROS_DOMAIN_ID");
+  EXPECT_EQ(file.status, 0) << file.out;
+  EXPECT_EQ(asked.status, 2) << asked.out;
+  EXPECT_NE(asked.out.find("ROS_DOMAIN_ID is 'many', and must be 0 to 232"), std::string::npos)
+      << asked.out;
+  EXPECT_NE(named.out.find("domain 231"), std::string::npos) << named.out;
+}
+
 TEST_F(Program, AsksWhetherANearWordWasMeant) {
   for (const auto& [typed, said] : std::map<std::string, std::string>{
            {"identfy x", "selfcal has no command 'identfy'; did you mean 'identify'?"},

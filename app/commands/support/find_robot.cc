@@ -15,10 +15,16 @@ constexpr Nanoseconds kOthers = kSecond / 2;
 
 void add_whom(CLI::App& command, Whom& whom, const std::string& what_waits) {
   command.add_option("--robot", whom.robot, "Id of the robot (default: the only one heard)");
-  command.add_option("--domain", whom.domain, "DDS domain")
-      ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, static_cast<int>(kMostDdsDomain)))
-      ->capture_default_str();
+  const CLI::Option* domain =
+      command.add_option("--domain", whom.domain, "DDS domain (default: ROS_DOMAIN_ID, or 0)")
+          ->check(CLI::Range(0, static_cast<int>(kMostDdsDomain)));
+  // An envname() would be read for commands that were not asked for, too.
+  command.parse_complete_callback([&whom, domain] {
+    if (domain->count() > 0) return;
+    const auto of_environment = domain_of_environment();
+    if (!of_environment) throw CLI::ValidationError(of_environment.error().what);
+    whom.domain = *of_environment;
+  });
   command.add_option("--wait", whom.wait, what_waits)
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 
 #include "app/service/config/config_motion.h"
@@ -107,20 +106,16 @@ class Reader {
       c_.workspace = read_workspace(*workspace, problems_);
       workspace_text_ = *workspace;
     }
-    c_.domain = fields.integer("domain", domain_of_environment(fields), 0,
-                               static_cast<int>(kMostDdsDomain));
+    c_.domain =
+        fields.integer("domain", standard_domain(fields), 0, static_cast<int>(kMostDdsDomain));
   }
 
   /// Where `monitor`, `command` and ROS 2 are, too.
-  static int domain_of_environment(Fields& fields) {
-    const char* text = std::getenv("ROS_DOMAIN_ID");
-    if (!text || !*text || fields.has("domain")) return 0;
-    const auto number = parse_number(text);
-    if (number && *number >= 0 && *number <= kMostDdsDomain && *number == std::floor(*number))
-      return static_cast<int>(*number);
-    fields.fail("domain", "0 to " + std::to_string(kMostDdsDomain) +
-                              ", as ROS_DOMAIN_ID must be (" + std::string(text) + ")");
-    return 0;
+  static int standard_domain(Fields& fields) {
+    if (fields.has("domain")) return 0;
+    const auto domain = domain_of_environment();
+    if (!domain) fields.fail("domain", "a number, for " + domain.error().what);
+    return domain.value_or(0);
   }
 
   void read_commands(Fields& f) {
