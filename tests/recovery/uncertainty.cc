@@ -219,7 +219,10 @@ double given_by_probe(const char* tolerance, bool opposite) {
     for (int row = 0; row < rows.rows(); ++row)
       if (rows.set[static_cast<size_t>(row)] == 1) rows.normal.row(row) *= -1;
   }
-  return budget(identify(*robot, session.data), "what was given");
+  const Solution solution = identify(*robot, session.data);
+  EXPECT_TRUE(solution.converged);
+  for (const BudgetLine& line : solution.uncertainty.budget) EXPECT_LT(line.sigma, 5e-3);
+  return budget(solution, "what was given");
 }
 
 TEST(Uncertainty, HasTheDoubtOfAProbesRadiusInItWhereItTouchesOppositeFaces) {
