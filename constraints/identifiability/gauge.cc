@@ -76,12 +76,11 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
   for (Eigen::Index i = 0; i < n; ++i)
     if (others[i] < equations.robot_columns())
       bounded(K + i, i) = 1 / robot.parameters()[others[i]].tolerance;
-  // Of a robot made smaller with all that it touches, the rows' misfit shrinks, too: that much of
-  // the column is misfit and says nothing of the scale, however many rows there are.
-  Eigen::MatrixXd asked = Eigen::MatrixXd::Zero(K + n, 2);
-  asked.topRows(K) << scale, R.rightCols(1);
-  asked = beyond(bounded, asked);
-  const double seen = asked.col(0).squaredNorm() - asked.col(1).squaredNorm();
+  // Of a robot made smaller with all that it touches, a row's misfit shrinks by its own share: that
+  // much of its column says nothing of the scale. R's last column is the misfit turned round.
+  Eigen::VectorXd told = Eigen::VectorXd::Zero(K + n);
+  told.head(K) = scale + R.rightCols(1);
+  const double seen = beyond(bounded, told).squaredNorm();
   if (seen * std::pow(p.tolerance, 2) > std::pow(p.nominal, 2)) return std::nullopt;
   return last;
 }

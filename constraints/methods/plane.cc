@@ -76,6 +76,16 @@ class Touch : public Method {
     if (probe_radius_ > 0) P -= probe_radius_ * in.data->normal.row(in.rows[lane]).transpose();
     return P;
   }
+  /// Where the mean of the points that were touched lies along n, of endpoints X.
+  double distance_along(const Eigen::Vector3d& n, const std::vector<Location>& X,
+                        const std::vector<int>& rows, const Observations& data) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < X.size(); ++i) {
+      sum += n.dot(X[i].p);
+      if (probe_radius_ > 0) sum -= probe_radius_ * data.normal.row(rows[i]).dot(n);
+    }
+    return sum / static_cast<double>(X.size());
+  }
 
  private:
   double probe_radius_;
@@ -104,14 +114,12 @@ class OnePlane final : public Touch {
     return values_of(plane.n, *plane.d);
   }
 
-  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
-                        const Observations&, const Eigen::VectorXd*,
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
+                        const Observations& data, const Eigen::VectorXd*,
                         const Location&) const override {
     if (known_) return values_of(known_->n, known_->d);
     const Eigen::Vector3d n = best_normal(X);
-    double d = 0;
-    for (const Location& each : X) d += n.dot(each.p) / static_cast<double>(X.size());
-    return values_of(n, d);
+    return values_of(n, distance_along(n, X, rows, data));
   }
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     if (known_) return;
@@ -170,12 +178,10 @@ class ParallelPlane final : public Touch {
     return Plane{reference->head<3>(), nuisance[0]};
   }
 
-  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
-                        const Observations&, const Eigen::VectorXd* reference,
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
+                        const Observations& data, const Eigen::VectorXd* reference,
                         const Location&) const override {
-    double d = 0;
-    for (const Location& each : X)
-      d += reference->head<3>().dot(each.p) / static_cast<double>(X.size());
+    const double d = distance_along(reference->head<3>(), X, rows, data);
     return Eigen::Vector2d(d, d < (*reference)[3] ? -1 : 1);
   }
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
