@@ -34,16 +34,16 @@ void StopWatch::listen() {
   }));
   std::ranges::sort(moments_, {}, &Moment::time);
   const dds_time_t settled = dds_time() - kSettled;
-  std::optional<dds_time_t> contact;
+  const Moment* contact = nullptr;
   std::size_t done = 0;
   for (std::size_t i = 0; i < moments_.size() && moments_[i].time < settled; ++i) {
     const Moment& moment = moments_[i];
-    if (moment.what == What::closed) contact = moment.time;
+    if (moment.what == What::closed) contact = &moment;
     if (moment.what == What::stop && contact) {
-      took_.push_back(1e-9 * static_cast<double>(moment.time - *contact));
-      contact.reset();
+      took_.push_back(1e-9 * static_cast<double>(moment.time - contact->time));
+      contact = nullptr;
     }
-    if (moment.what == What::opened) contact.reset();
+    if (moment.what == What::opened) contact = nullptr;
     if (!contact) done = i + 1;
   }
   moments_.erase(moments_.begin(), moments_.begin() + static_cast<std::ptrdiff_t>(done));
