@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "constraints/estimation/first_look.h"
+#include "constraints/slips/first_look.h"
 #include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"

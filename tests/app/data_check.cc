@@ -33,12 +33,17 @@ frames:
   - {name: tool, joint: fixed, xyz: [0.03, 0.02, 0.15], rpy: [0, 0, 0]}
 )";
 
-constexpr const char* kScenario = R"(robot: arm.robot.yaml
+const std::string kErrors = R"(robot: arm.robot.yaml
 seed: 1
 errors: {length: 1.0e-3, angle: 1.0e-3, base_length: 5.0e-3, base_angle: 5.0e-3, tool_length: 2.0e-3, tool_angle: 2.0e-3}
 sets:
-  tracker: {method: location, noise: 2.0e-5, noise_angle: 2.0e-5, noise_true: 2.5e-5, rows: 60}
 )";
+const std::string kScenario = kErrors +
+                              "  tracker: {method: location, noise: 2.0e-5, noise_angle: 2.0e-5, "
+                              "noise_true: 2.5e-5, rows: 60}\n";
+const std::string kBar = kErrors + "  bar: {method: distance, noise: 2.0e-5, rows: 90}\n";
+const std::string kLevels =
+    kErrors + "  tilt: {method: inclinometers, noise_angle: 2.0e-5, rows: 90}\n";
 
 using Cells = std::vector<std::string>;
 
@@ -59,6 +64,11 @@ class DataCheck : public testing::Test {
     const Ran ran = run_selfcal("simulate " + (folder_ / "s.yaml").string() + " --out " +
                                 (folder_ / "data").string());
     ASSERT_EQ(ran.status, 0) << ran.out;
+  }
+
+  void simulate_sets(const std::string& scenario) {
+    std::ofstream(folder_ / "s.yaml") << scenario;
+    simulate(kTable);
   }
 
   /// Of a robot whose table has `b` for each `a`, and `d` for each `c`.
@@ -106,10 +116,13 @@ class DataCheck : public testing::Test {
         const auto cell = [&](const std::string& name) -> std::string& {
           return cells.at(static_cast<size_t>(std::ranges::find(header, name) - header.begin()));
         };
-        std::vector<double> numbers;
-        for (const std::string& name : columns) numbers.push_back(std::stod(cell(name)));
-        change(numbers);
-        for (size_t i = 0; i < columns.size(); ++i) cell(columns[i]) = format_number(numbers[i]);
+        cells.resize(header.size());  // of a line that ends in a comma the last cell is empty
+        if (std::ranges::all_of(columns, [&](const auto& name) { return !cell(name).empty(); })) {
+          std::vector<double> numbers;
+          for (const std::string& name : columns) numbers.push_back(std::stod(cell(name)));
+          change(numbers);
+          for (size_t i = 0; i < columns.size(); ++i) cell(columns[i]) = format_number(numbers[i]);
+        }
       }
       for (size_t i = 0; i < cells.size(); ++i) out << (i > 0 ? "," : "") << cells[i];
       out << "\n";
@@ -189,6 +202,30 @@ TEST_F(DataCheck, SaysThatPositionsAreMillimetresBelowTheKilometreThatNoFilePass
     for (double& each : p) each *= 1000;
   });
   expect_likely_wrong("the measured positions are millimetres");
+}
+
+TEST_F(DataCheck, SaysThatDistancesAreInAnotherUnit) {
+  for (const auto& [unit, metres] : {std::pair{"centimetres", 1e-2}, std::pair{"inches", 0.0254}}) {
+    simulate_sets(kBar);
+    change_rows({"distance"}, [scale = metres](std::vector<double>& d) { d[0] /= scale; });
+    expect_likely_wrong(std::string("the measured distances are ") + unit);
+  }
+}
+
+TEST_F(DataCheck, SaysThatInclinationsAreDegrees) {
+  simulate_sets(kLevels);
+  change_rows({"alpha", "beta"}, [](std::vector<double>& angles) {
+    for (double& each : angles) each *= 180 / std::numbers::pi;
+  });
+  expect_likely_wrong("the measured angles are degrees");
+}
+
+TEST_F(DataCheck, FindsNothingInSoundDistancesAndInclinations) {
+  for (const std::string& sets : {kBar, kLevels}) {
+    simulate_sets(sets);
+    const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+    EXPECT_EQ(ran.status, 0) << ran.out;
+  }
 }
 
 TEST_F(DataCheck, SaysThatColumnsOfThePositionAreExchanged) {

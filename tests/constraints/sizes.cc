@@ -8,7 +8,7 @@
 #include "constraints/estimation/controller_sigma.h"
 #include "constraints/estimation/fit.h"
 #include "constraints/estimation/frame_step.h"
-#include "constraints/estimation/two_planes.h"
+#include "constraints/slips/two_planes.h"
 #include "kinematics/readable.h"
 #include "tests/recovery/session.h"
 #include "tests/support/arm_of_size.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "constraints/estimation/first_look.h"
+#include "constraints/slips/first_look.h"
 #include "io/files/data_set_file.h"
 
 namespace selfcal {

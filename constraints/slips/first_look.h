@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "constraints/slips/slips_of_rows.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
-
-/// A way in which the files may be wrong: what the robot or the rows would then be.
-struct Slip {
-  std::string what;                    ///< "j3 is read with the other sign"
-  std::shared_ptr<const Robot> robot;  ///< null: as given
-  std::optional<Observations> rows;    ///< nothing: as given
-};
 
 /// What a slip leaves.
 struct TriedSlip {

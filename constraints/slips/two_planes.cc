@@ -1,7 +1,7 @@
 // The plane that most of the rows touch, by the least quantile of distances among planes through
 // three of them drawn by chance (Rousseeuw, Least median of squares regression, 1984, with the
 // share kOfOne in place of the half); what lies far beyond that quantile touches another one.
-#include "constraints/estimation/two_planes.h"
+#include "constraints/slips/two_planes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,9 @@
 // with the sum of the links' lengths for the reach. A slip is believed that leaves a kCollapse-th
 // part: sound rows do not fit so much better when a joint turns the other way. Medians, so that
 // false rows do not decide.
-#include "constraints/estimation/first_look.h"
+#include "constraints/slips/first_look.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,8 +13,9 @@
 #include "constraints/estimation/angles.h"
 #include "constraints/estimation/fit.h"
 #include "constraints/estimation/judgement.h"
-#include "constraints/estimation/two_planes.h"
 #include "constraints/identifiability/gauge.h"
+#include "constraints/slips/slips_of_rows.h"
+#include "constraints/slips/two_planes.h"
 #include "constraints/statistics.h"
 #include "kinematics/readable.h"
 #include "kinematics/size.h"
@@ -105,68 +105,6 @@ double expected_misfit(const Robot& robot, bool lengths) {
   return std::sqrt(squares);
 }
 
-/// Some joint would turn by more than once: its readings may be degrees. Below, readings that are
-/// made 57 times smaller would fit touches ever better, for the robot would hardly move.
-bool beyond_a_turn(const Robot& robot, const Observations& rows) {
-  for (Eigen::Index j = 0; j < rows.q.cols(); ++j)
-    if (robot.joints()[static_cast<size_t>(j)].quantity == Quantity::angle &&
-        rows.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi)
-      return true;
-  return false;
-}
-
-/// The slips of the rows: signs, gear ratios and exchanges of joints, degrees, millimetres,
-/// exchanged columns.
-std::vector<Slip> slips_of_rows(const Robot& robot, const Observations& rows) {
-  std::vector<Slip> list;
-  const auto add = [&](std::string what, auto&& change) {
-    Observations changed = rows;
-    change(changed);
-    list.push_back({std::move(what), nullptr, std::move(changed)});
-  };
-  const std::vector<Joint>& joints = robot.joints();
-  const auto n = static_cast<Eigen::Index>(joints.size());
-  for (Eigen::Index j = 0; j < n; ++j)
-    add(joints[j].name + " is read with the other sign (or its gear turns the other way)",
-        [j](Observations& o) { o.q.col(j) *= -1; });
-  for (const double turns : {0.5, 2.0})
-    for (Eigen::Index j = 0; j < n; ++j)
-      add("the readings of " + joints[j].name + " are " + (turns < 1 ? "twice" : "half") +
-              " what it moves (its gear ratio)",
-          [j, turns](Observations& o) { o.q.col(j) *= turns; });
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index k = 0; k < j; ++k)
-      if (joints[j].quantity == joints[k].quantity)
-        add("the columns of " + joints[k].name + " and " + joints[j].name + " are exchanged",
-            [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
-  if (beyond_a_turn(robot, rows))
-    add("the joint readings are degrees", [&](Observations& o) {
-      for (Eigen::Index j = 0; j < n; ++j)
-        if (joints[j].quantity == Quantity::angle) o.q.col(j) *= std::numbers::pi / 180;
-    });
-  if (rows.position.rows() == 0) return list;
-  static constexpr std::pair<const char*, double> kUnits[] = {
-      {"micrometres", 1e-6}, {"millimetres", 1e-3}, {"centimetres", 1e-2}, {"inches", 0.0254}};
-  for (const auto& [unit, metres] : kUnits)
-    add(std::string("the measured positions are ") + unit,
-        [scale = metres](Observations& o) { o.position *= scale; });
-  static constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
-  if (rows.orientation.rows() == 0) {
-    // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
-    add("two of the columns x, y and z are exchanged, or one has the other sign",
-        [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
-    return list;
-  }
-  for (Eigen::Index a = 0; a < 3; ++a) {
-    add(std::string("the column ") + kAxes[a] + " has the other sign",
-        [a](Observations& o) { o.position.col(a) *= -1; });
-    for (Eigen::Index b = 0; b < a; ++b)
-      add(std::string("the columns ") + kAxes[b] + " and " + kAxes[a] + " are exchanged",
-          [a, b](Observations& o) { o.position.col(a).swap(o.position.col(b)); });
-  }
-  return list;
-}
-
 /// The data set without most rows of a large set: every so manieth one, or where rows belong to
 /// groups, and each may be measured from the one before, the first ones.
 DataSet part_of(const DataSet& data) {
@@ -222,7 +160,7 @@ std::optional<TriedSlip> two_planes_as_one(const Robot& robot, const DataSet& da
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
                              const std::vector<Slip>& others) {
   std::vector<Slip> slips = others;
-  std::ranges::move(slips_of_rows(robot, data.rows), std::back_inserter(slips));
+  std::ranges::move(slips_of_rows(robot, data), std::back_inserter(slips));
   std::vector<TriedSlip> list;
   for (const Slip& slip : slips) {
     DataSet changed = data;
