@@ -2,6 +2,7 @@
 // unknowns that could mimic it are projected out, is lost in the noise.
 #include "constraints/identifiability/gauge.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kinematics/linear_algebra.h"
@@ -21,6 +22,14 @@ bool every_set(const Equations& equations, Predicate holds) {
     if (!holds(*equations.data().sets[s].method)) return false;
   }
   return any;
+}
+
+/// A set gives a length that is compared with its nuisance parameters, not with every row.
+bool length_beside_the_rows(const Equations& equations) {
+  return std::ranges::any_of(equations.data().sets, [](const Set& set) {
+    return std::ranges::any_of(set.method->known_lengths(),
+                               [](const KnownLength& length) { return !length.by_row; });
+  });
 }
 
 }  // namespace
@@ -76,11 +85,17 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
   for (Eigen::Index i = 0; i < n; ++i)
     if (others[i] < equations.robot_columns())
       bounded(K + i, i) = 1 / robot.parameters()[others[i]].tolerance;
-  // Of a robot made smaller with all that it touches, a row's misfit shrinks by its own share: that
-  // much of its column says nothing of the scale. R's last column is the misfit turned round.
+  // Of a robot made smaller with all that it touches, the misfit shrinks, too: what a column owes
+  // to it says nothing of the scale. Row by row it is taken off where a length is given beside the
+  // rows, which does not shrink (R's last column is the misfit turned round); without one, where
+  // the nominal robot is far off and the column is its alone, as if all of it were against the
+  // scale.
+  const bool beside = length_beside_the_rows(equations);
   Eigen::VectorXd told = Eigen::VectorXd::Zero(K + n);
-  told.head(K) = scale + R.rightCols(1);
-  const double seen = beyond(bounded, told).squaredNorm();
+  told.head(K) = scale;
+  if (beside) told.head(K) += R.rightCols(1);
+  const double misfit = beside ? 0 : R.rightCols(1).squaredNorm();
+  const double seen = beyond(bounded, told).squaredNorm() - misfit;
   if (seen * std::pow(p.tolerance, 2) > std::pow(p.nominal, 2)) return std::nullopt;
   return last;
 }
