@@ -41,6 +41,18 @@ Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy) {
       .toRotationMatrix();
 }
 
+Eigen::Matrix3d rotation_of(std::string_view axes, const Eigen::Vector3d& angles) {
+  if (axes.empty()) return exp_rotation(angles);
+  const bool fixed = axes[0] >= 'a';
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(axes[i] - (fixed ? 'x' : 'X'));
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angles[i], axis).toRotationMatrix();
+    R = fixed ? Eigen::Matrix3d(turn * R) : Eigen::Matrix3d(R * turn);
+  }
+  return R;
+}
+
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
   // Where the pitch is a quarter turn, yaw and roll turn about one axis and each alone is rounding;
   // the roll is therefore that of Rot(z, -yaw) R, for whatever yaw was taken.

@@ -8,15 +8,20 @@
 // has an angle that no frame of device and tool changes: robot and instrument must agree in it. A
 // quaternion whose parts are one place off is, up to such frames, that of the inverse orientation:
 // an orthogonal map of its four parts with determinant -1 is q -> a q* b. The two are one slip
-// here.
+// here. Conventions of three angles are alike where one names the axes in turn as the other does
+// (xyz, yzx, zxy): of those the one is told that needs the least turn of device and tool.
 #include "constraints/estimation/angles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
 
 #include "constraints/statistics.h"
 #include "kinematics/readable.h"
+#include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
@@ -25,6 +30,8 @@ constexpr double kTimes = 3;
 constexpr double kLeast =
     10e-3;  ///< rad: less is no slip, where no noise is stated and links are exact
 constexpr size_t kMostTurns = 200;
+constexpr double kMostTurn = 2 * std::numbers::pi;  ///< rad: beyond it, written angles are degrees
+constexpr double kAlike = 1.01;                     ///< readings that leave as much as the best
 constexpr double kCollapse = 0.2;  ///< a slip explains the angles that it makes so much smaller
 
 /// About one axis (rad), of a robot as its maker says.
@@ -52,7 +59,31 @@ struct Reading {
   std::string what = {};
   bool inverse = false;  ///< the orientations are of the world, seen from the tool
   int turned = -1;       ///< joint whose sign is the other one
+  /// Convention that the written angles are of; nothing: the given orientations are right.
+  std::optional<std::string> axes = {};
+  double unit = 1;  ///< of the written angles (rad)
 };
+
+/// Every convention of three angles but the one given, which may be of angles in degrees.
+std::vector<Reading> conventions(const WrittenTurns& turns) {
+  std::vector<Reading> list;
+  if (turns.angles.rows() == 0) return list;
+  const bool degrees = turns.angles.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() > kMostTurn;
+  std::vector<std::string> all = {""};
+  for (const std::string letters : {"xyz", "XYZ"})
+    for (const char a : letters)
+      for (const char b : letters)
+        for (const char c : letters)
+          if (a != b && b != c) all.push_back({a, b, c});
+  for (const std::string& axes : all) {
+    if (axes == turns.axes && !degrees) continue;
+    const std::string of = axes.empty() ? "a rotation vector" : "angles of euler: " + axes;
+    list.push_back({"the three columns are " + of + (degrees ? " in degrees" : "")});
+    list.back().axes = axes;
+    if (degrees) list.back().unit = std::numbers::pi / 180;
+  }
+  return list;
+}
 
 /// Rows of one set, four at a time, and how far the robot and the instrument (or nest) turn in
 /// them.
@@ -75,11 +106,13 @@ class Turns {
   /// Every slip that is looked for.
   std::vector<Reading> slips() const {
     std::vector<Reading> list;
-    if (!nest_)
+    const bool written = data_.rows.turns.angles.rows() > 0;
+    if (!nest_ && !written)
       list.push_back(
           {"the quaternions are read in another order (qx qy qz qw in the columns qw qx qy "
            "qz?) or as inverse ones",
            true});
+    if (!nest_) std::ranges::move(conventions(data_.rows.turns), std::back_inserter(list));
     for (size_t j = 0; j < robot_.joints().size(); ++j)
       list.push_back(
           {robot_.joints()[j].name + " is read with the other sign", false, static_cast<int>(j)});
@@ -100,11 +133,26 @@ class Turns {
     return median(std::move(off));
   }
 
+  /// Median of how far the instrument has the tool turned from where the maker's robot does: the
+  /// fitted one was turned to what the wrong reading says.
+  double apart(const Reading& reading) const {
+    const Eigen::VectorXd nominal = nominal_values(robot_);
+    std::vector<double> off;
+    for (const auto& [a, b, c, d] : turns_)
+      off.push_back(
+          angle(Eigen::Quaterniond(locate(robot_, nominal, data_.rows.q.row(d)).R).conjugate() *
+                read(d, reading)));
+    return median(std::move(off));
+  }
+
  private:
   static double angle(const Eigen::Quaterniond& q) {
     return 2 * std::atan2(q.vec().norm(), std::abs(q.w()));
   }
   Eigen::Quaterniond read(int row, const Reading& reading) const {
+    if (reading.axes)
+      return Eigen::Quaterniond(
+          rotation_of(*reading.axes, reading.unit * data_.rows.turns.angles.row(row).transpose()));
     const auto q = data_.rows.orientation.row(row);
     const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
     return reading.inverse ? turn.conjugate() : turn;
@@ -131,16 +179,22 @@ bool turns_whole(const Method& method) {
 std::string slip_of(const Robot& robot, const DataSet& data, int set, const Eigen::VectorXd& xi,
                     double limit) {
   const Turns turns(robot, xi, data, set);
-  double least = std::min(kTimes * limit, kCollapse * turns.misfit({}));
-  std::string found;
-  for (const Reading& slip : turns.slips()) {
-    const double misfit = turns.misfit(slip);
-    if (!(misfit < least)) continue;
-    least = misfit;
-    found = "they fit where " + slip.what;
+  const std::vector<Reading> slips = turns.slips();
+  std::vector<double> misfits;
+  for (const Reading& slip : slips) misfits.push_back(turns.misfit(slip));
+  const double least = *std::ranges::min_element(misfits);
+  if (least < std::min(kTimes * limit, kCollapse * turns.misfit({}))) {
+    std::string found;
+    double nearest = HUGE_VAL;
+    for (size_t i = 0; i < slips.size(); ++i) {
+      const double apart = misfits[i] < kAlike * least ? turns.apart(slips[i]) : HUGE_VAL;
+      if (apart < nearest) found = slips[i].what;
+      nearest = std::min(apart, nearest);
+    }
+    return "they fit where " + found;
   }
-  if (!found.empty()) return found;
-  return "check the order of the quaternion, the signs and zeros of the joints and how the tool is "
+  return "check how the orientation is written, the signs and zeros of the joints and how the tool "
+         "is "
          "turned; an instrument as coarse as "
          "this needs its noise_angle stated";
 }

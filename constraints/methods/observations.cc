@@ -53,6 +53,7 @@ Observations taken(const Observations& data, const std::vector<int>& rows) {
   some.q = picked(data.q, rows);
   some.position = picked(data.position, rows);
   some.orientation = picked(data.orientation, rows);
+  some.turns = {data.turns.axes, picked(data.turns.angles, rows)};
   some.normal = picked(data.normal, rows);
   some.wrench = picked(data.wrench, rows);
   some.velocity = picked(data.velocity, rows);
@@ -76,6 +77,8 @@ Observations joined(const Observations& a, const Observations& b) {
   all.q = both(&Observations::q);
   all.position = both(&Observations::position);
   all.orientation = both(&Observations::orientation);
+  if (a.turns.axes == b.turns.axes)
+    all.turns = {a.turns.axes, stacked(a.turns.angles, b.turns.angles, n, m, kNaN)};
   all.normal = both(&Observations::normal);
   all.wrench = both(&Observations::wrench);
   all.velocity = both(&Observations::velocity);

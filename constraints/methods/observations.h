@@ -12,15 +12,24 @@
 
 namespace selfcal {
 
-/// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
-/// reader has made sure that the cells a row's method needs are there and finite.
 /// Of Observations::check: the row says what another one says in every digit.
 inline constexpr char kCopy = 2;
 
+/// How a file wrote the orientations, where it did by three angles. `axes`: three letters of x, y
+/// and z, small ones for turns about the fixed axes (extrinsic), capitals for turns about the axes
+/// that turn along (intrinsic), the first turn first; empty for a rotation vector.
+struct WrittenTurns {
+  std::string axes = {};
+  Eigen::MatrixXd angles = {};  ///< rows x 3 (rad); no rows: by quaternions
+};
+
+/// A measurement's columns. A column that the file lacks has no rows; an empty cell is NaN, and the
+/// reader has made sure that the cells a row's method needs are there and finite.
 struct Observations {
   Eigen::MatrixXd q;             ///< rows x joints, readings (rad or m)
   Eigen::MatrixXd position;      ///< rows x 3, x y z (m)
   Eigen::MatrixXd orientation;   ///< rows x 4, qw qx qy qz, unit
+  WrittenTurns turns;            ///< what the orientations were made of
   Eigen::MatrixXd normal;        ///< rows x 3, outward normal of the touched surface, world, unit
   Eigen::MatrixXd wrench;        ///< rows x 6, on the tool at the last frame's origin, in its axes
   Eigen::MatrixXd velocity;      ///< rows x joints, just before the reading (rad/s, m/s)

@@ -76,20 +76,4 @@ ColumnMap read_column_map(Fields& data_set, Problems& problems) {
   return map;
 }
 
-Eigen::Matrix3d rotation_of(const std::string& axes, const Eigen::Vector3d& angles) {
-  if (axes.empty()) {
-    const double angle = angles.norm();
-    if (angle == 0) return Eigen::Matrix3d::Identity();
-    return Eigen::AngleAxisd(angle, angles / angle).toRotationMatrix();
-  }
-  const bool fixed = axes[0] >= 'a';
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(axes[i] - (fixed ? 'x' : 'X'));
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angles[i], axis).toRotationMatrix();
-    R = fixed ? Eigen::Matrix3d(turn * R) : Eigen::Matrix3d(R * turn);
-  }
-  return R;
-}
-
 }  // namespace selfcal

@@ -2,7 +2,6 @@
 // and `header` of dataset.yaml.
 #pragma once
 
-#include <Eigen/Dense>
 #include <array>
 #include <optional>
 #include <string>
@@ -26,9 +25,7 @@ struct MappedColumn {
   NamedHeader from;
 };
 
-/// Three columns that say how the tool is turned. `axes`: three letters of x, y and z, small ones
-/// for turns about the fixed axes (extrinsic), capitals for turns about the axes that turn along
-/// (intrinsic), the first turn first; empty for a rotation vector.
+/// Three columns that say how the tool is turned; `axes` as WrittenTurns has them.
 struct TurnColumns {
   std::string axes;
   std::array<NamedHeader, 3> from;
@@ -46,10 +43,5 @@ struct ColumnMap {
 
 /// Reads the three keys. Refuses a header that two columns are taken from, and axes that are none.
 ColumnMap read_column_map(Fields& data_set, Problems& problems);
-
-/// The rotation that three angles (rad) say in the order of `axes`, as TurnColumns has them: of
-/// small letters R = R(axis 3) R(axis 2) R(axis 1), of capitals R = R(axis 1) R(axis 2) R(axis 3),
-/// of none the exponential of the vector.
-Eigen::Matrix3d rotation_of(const std::string& axes, const Eigen::Vector3d& angles);
 
 }  // namespace selfcal

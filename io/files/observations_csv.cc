@@ -124,6 +124,7 @@ class RowReader {
     rows.q = to_matrix(std::move(q_), layout_.q.size());
     rows.position = to_matrix(std::move(position_), 3);
     rows.orientation = to_matrix(std::move(orientation_), 4);
+    rows.turns = {layout_.turn_axes, to_matrix(std::move(turn_), 3)};
     rows.normal = to_matrix(std::move(normal_), 3);
     rows.wrench = to_matrix(std::move(wrench_), 6);
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
@@ -185,6 +186,7 @@ class RowReader {
     for (const std::size_t column : layout_.q) q_.push_back(numbers_.value(column));
     if (layout_.position) extend(position_, numbers_.position());
     if (layout_.orientation || layout_.turn) extend(orientation_, numbers_.orientation());
+    if (layout_.turn) extend(turn_, numbers_.turn());
     if (layout_.normal) extend(normal_, numbers_.normal());
     for (const std::size_t column : layout_.dq) velocity_.push_back(numbers_.value(column));
     if (layout_.wrench) extend(wrench_, numbers_.wrench());
@@ -215,7 +217,7 @@ class RowReader {
   LabelReader labels_;
   NumberReader numbers_;
   std::vector<std::vector<Need>> needs_;  // per set
-  std::vector<double> q_, position_, orientation_, normal_;
+  std::vector<double> q_, position_, orientation_, turn_, normal_;
   std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
   std::vector<std::vector<double>> measured_;  // per column that a method brings along
   std::size_t times_back_ = 0;                 // rows that were taken before the row above them

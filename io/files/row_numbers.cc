@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "io/files/plausible.h"
+#include "kinematics/rotation.h"
 
 namespace selfcal {
 
@@ -91,11 +92,11 @@ std::optional<RowFault> NumberReader::read_vectors() {
 
 std::optional<RowFault> NumberReader::read_turn() {
   if (!layout_->turn) return std::nullopt;
-  std::array<double, 3> angles{};
-  if (auto fault = read_vector(layout_->turn, angles)) return fault;
-  orientation_.fill(angles[0]);
-  if (std::isnan(angles[0])) return std::nullopt;
-  const Eigen::Quaterniond turn(rotation_of(layout_->turn_axes, {angles[0], angles[1], angles[2]}));
+  if (auto fault = read_vector(layout_->turn, turn_)) return fault;
+  orientation_.fill(turn_[0]);
+  if (std::isnan(turn_[0])) return std::nullopt;
+  const Eigen::Quaterniond turn(
+      rotation_of(layout_->turn_axes, Eigen::Vector3d(turn_[0], turn_[1], turn_[2])));
   orientation_ = {turn.w(), turn.x(), turn.y(), turn.z()};
   return std::nullopt;
 }

@@ -29,6 +29,7 @@ class NumberReader {
   const std::array<double, 3>& normal() const { return normal_; }  ///< unit
   const std::array<double, 6>& wrench() const { return wrench_; }
   const std::array<double, 4>& orientation() const { return orientation_; }  ///< unit
+  const std::array<double, 3>& turn() const { return turn_; }                ///< rad
 
   /// How many readings were a little outside their joint's limits and where the first one was.
   std::optional<std::string> outside_limits_notice() const;
@@ -46,7 +47,7 @@ class NumberReader {
   Readings readings_;
   const Layout* layout_ = nullptr;
   std::vector<double> values_;  // per column
-  std::array<double, 3> position_{}, normal_{};
+  std::array<double, 3> position_{}, normal_{}, turn_{};
   std::array<double, 4> orientation_{};
   std::array<double, 6> wrench_{};
   std::string with_point_;                // a number with a decimal comma, rewritten

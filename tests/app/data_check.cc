@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "kinematics/description.h"
+#include "kinematics/rotation.h"
 #include "tests/app/cell.h"
 #include "tests/shared_data.h"
 #include "tests/support/text.h"
@@ -81,13 +82,16 @@ class DataCheck : public testing::Test {
     simulate(text);
   }
 
-  /// Replaces `from`, which must be there, in the robot's file.
-  void change_robot(const std::string& from, const std::string& to) {
-    std::string text = text_of(folder_ / "data/arm.robot.yaml");
+  /// Replaces `from`, which must be there, in a file.
+  void change_text(const std::string& file, const std::string& from, const std::string& to) {
+    std::string text = text_of(folder_ / file);
     const size_t at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
-    std::ofstream(folder_ / "data/arm.robot.yaml") << text;
+    std::ofstream(folder_ / file) << text;
+  }
+  void change_robot(const std::string& from, const std::string& to) {
+    change_text("data/arm.robot.yaml", from, to);
   }
 
   void free_of_limits() {
@@ -243,6 +247,37 @@ TEST_F(DataCheck, SaysThatTheQuaternionsAreInAnotherOrder) {
   const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
   EXPECT_EQ(ran.status, 1) << ran.out;
   EXPECT_THAT(ran.out, HasSubstr("the quaternions are read in another order"));
+}
+
+TEST_F(DataCheck, SaysByWhichConventionTheAnglesAre) {
+  change_rows({"qw", "qx", "qy", "qz"}, [](std::vector<double>& q) {
+    const Eigen::Vector3d rpy =
+        rpy_of(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix());
+    q = {rpy[2], rpy[1], rpy[0], 0};  // turns about z, the new y, the new x
+  });
+  change_text("data/observations.csv", "qw,qx,qy,qz", "A,B,C,D");
+  const auto read_as = [&](const std::string& axes, const std::string& unit) {
+    std::string text = text_of(folder_ / "data/dataset.yaml");
+    text = text.substr(0, text.find("orientation:"));
+    std::ofstream(folder_ / "data/dataset.yaml") << text << "orientation: {euler: " << axes
+                                                 << ", columns: [A, B, C], unit: " << unit << "}\n";
+  };
+  read_as("ZYX", "rad");
+  EXPECT_EQ(run_selfcal("data check " + (folder_ / "data").string()).status, 0);
+  for (const char* axes : {"zyx", "xyz", "ZYZ"}) {
+    read_as(axes, "rad");
+    expect_likely_wrong("the angles of set tracker");
+    EXPECT_THAT(run_selfcal("data check " + (folder_ / "data").string()).out,
+                HasSubstr("they fit where the three columns are angles of euler: ZYX"));
+    EXPECT_THAT(run_selfcal("identify " + (folder_ / "data").string()).out,
+                HasSubstr("they fit where the three columns are angles of euler: ZYX"));
+  }
+  change_rows({"A", "B", "C"}, [](std::vector<double>& angles) {
+    for (double& each : angles) each *= 180 / std::numbers::pi;
+  });
+  read_as("ZYX", "rad");
+  EXPECT_THAT(run_selfcal("data check " + (folder_ / "data").string()).out,
+              HasSubstr("the three columns are angles of euler: ZYX in degrees"));
 }
 
 TEST_F(DataCheck, SaysThatTheRowsAreOfAnotherRobot) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "io/files/utf8.h"
+#include "kinematics/rotation.h"
 #include "tests/io/data_set_folder.h"
 
 namespace selfcal {
