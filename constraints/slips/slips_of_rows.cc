@@ -1,6 +1,7 @@
 #include "constraints/slips/slips_of_rows.h"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -9,6 +10,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kProportional = 1e-6;  // 1 - correlation of readings that are one in truth
 
 class SlipsOfRows {
  public:
@@ -16,6 +18,7 @@ class SlipsOfRows {
 
   std::vector<Slip> take() {
     of_joints();
+    of_mimicry();
     if (beyond_a_turn())
       add("the joint readings are degrees", [&](Observations& o) {
         for (Eigen::Index j = 0; j < o.q.cols(); ++j)
@@ -52,6 +55,34 @@ class SlipsOfRows {
         if (joint(j).quantity == joint(k).quantity)
           add("the columns of " + joint(k).name + " and " + joint(j).name + " are exchanged",
               [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
+  }
+
+  /// A joint that mimics another may be read as drivers publish it, though the coupling of the
+  /// robot's file moves it already.
+  void of_mimicry() {
+    for (Eigen::Index j = 0; j < rows().q.cols(); ++j) {
+      const Eigen::Index leader = followed(j);
+      if (leader < 0) continue;
+      add("the readings of " + joint(j).name + " follow those of " + joint(leader).name +
+              ", as its coupling does already: they are 0 in every row",
+          [j](Observations& o) { o.q.col(j).setZero(); });
+    }
+  }
+
+  /// A joint whose readings those of joint j are in proportion to; -1 where there is none.
+  Eigen::Index followed(Eigen::Index j) const {
+    const Eigen::VectorXd follower = centred(j);
+    for (Eigen::Index k = 0; k < rows().q.cols(); ++k) {
+      const Eigen::VectorXd leader = centred(k);
+      const double cross = follower.dot(leader);
+      if (k != j && follower.norm() > 0 && leader.norm() > 0 &&
+          std::abs(cross) > (1 - kProportional) * follower.norm() * leader.norm())
+        return k;
+    }
+    return -1;
+  }
+  Eigen::VectorXd centred(Eigen::Index j) const {
+    return rows().q.col(j).array() - rows().q.col(j).mean();
   }
 
   /// Some joint would turn by more than once: its readings may be degrees. Below, readings that are

@@ -190,6 +190,25 @@ TEST_F(DataCheck, SaysWhichJointsAreExchanged) {
   expect_likely_wrong("the columns of j2 and j3 are exchanged");
 }
 
+TEST_F(DataCheck, SaysThatReadingsOfAMimicAreInTheCouplingAlready) {
+  std::string coupled = std::string(kTable) + R"(coupling:
+  - [1, 0, 0, 0, 0, 0]
+  - [0, 1, 0, 0, 0, 0]
+  - [0, -1, 1, 0, 0, 0]
+  - [0, 0, 0, 1, 0, 0]
+  - [0, 0, 0, 0, 1, 0]
+  - [0, 0, 0, 0, 0, 1]
+)";
+  const std::string free = "{name: j3, joint: revolute, d: -0.57155, limits: [-1.0, 1.0]}";
+  const std::string still = "{name: j3, joint: revolute, d: -0.57155, limits: [-1.0e-9, 1.0e-9]}";
+  coupled.replace(coupled.find(free), free.size(), still);
+  simulate(coupled);
+  free_of_limits();
+  ASSERT_EQ(run_selfcal("data check " + (folder_ / "data").string()).status, 0);
+  change_rows({"q2", "q3"}, [](std::vector<double>& q) { q[1] = -q[0]; });
+  expect_likely_wrong("the readings of j3 follow those of j2, as its coupling does already");
+}
+
 TEST_F(DataCheck, SaysThatReadingsAreDegreesBelowTheFourTurnsThatNoFilePasses) {
   // Joints that move through little: 1 rad here, 17 degrees for 0.3 rad there.
   ASSERT_NO_FATAL_FAILURE(simulate_again("1.0]", "0.3]", "-1.0,", "-0.3,"));
