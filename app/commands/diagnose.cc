@@ -16,6 +16,7 @@
 #include "app/report/progress_line.h"
 #include "app/service/session/cause_search.h"
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/report/doubt.h"
 #include "io/files/data_set_file.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
@@ -79,16 +80,19 @@ Result<Inputs> load(const DiagnoseArguments& arguments) {
   return inputs;
 }
 
-/// Where the maker's robot is far from the rows, says first what is likely wrong with the files.
+/// Where the maker's robot is far from the rows, says first what is likely wrong with the files,
+/// and names no cause of a gap that one slip in them explains.
 void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosis& diagnosis) {
-  const std::string wrong =
+  const LikelyWrong wrong =
       likely_wrong(path, inputs.measured, inputs.robot,
                    {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values});
-  if (wrong.empty()) return;
-  diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong);
-  diagnosis.why = wrong + " As the files are: " + diagnosis.why;
+  if (wrong.words.empty()) return;
+  if (wrong.explained && !diagnosis.named.empty())
+    withdraw("one slip in the files explains the rows", diagnosis);
+  diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong.words);
+  diagnosis.why = wrong.words + " As the files are: " + diagnosis.why;
   NextStep step;
-  step.what = wrong;
+  step.what = wrong.words;
   step.probability_after = std::numeric_limits<double>::quiet_NaN();
   diagnosis.next.insert(diagnosis.next.begin(), std::move(step));
 }

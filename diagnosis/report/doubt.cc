@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "constraints/slips/first_look.h"
 #include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/identification.h"
 #include "constraints/estimation/noise.h"
+#include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
@@ -169,6 +169,9 @@ void withdraw(const std::string& doubt, Diagnosis& diagnosis) {
     for (CauseResult& each : diagnosis.candidates) each.probability *= std::min(others, 1.0);
     unknown->probability = kDiagnosis.report.withdrawn;
   }
+  for (CauseResult& each : diagnosis.candidates)
+    if (each.effect != kUnknown)
+      each.probability = std::min(each.probability, 1 - kDiagnosis.report.withdrawn);
   diagnosis.verdict = {.effect = kUnknown, .probability = kDiagnosis.report.withdrawn};
   agree(diagnosis.candidates, diagnosis.verdict);
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
@@ -350,6 +351,36 @@ TEST_F(DataCheck, IsTheFirstAdviceOfAnIdentification) {
     EXPECT_THAT(ran.out, HasSubstr(std::string("\nNext\n  Look at the files first: ") + slip.said))
         << slip.name;
   }
+}
+
+TEST_F(DataCheck, LeavesTheDiagnosisNoCauseOfWhatASlipExplains) {
+  constexpr const char* kBare = R"(robot: irb1600
+kind: serial
+frames:
+  - {name: base, joint: fixed}
+  - {name: j1, joint: revolute, r: 0.4865, limits: [-3.14, 3.14]}
+  - {name: j2, joint: revolute, alpha: -pi/2, d: 0.15, limits: [-1.1, 1.91]}
+  - {name: j3, joint: revolute, d: 0.7, theta: -pi/2, limits: [-4.1, 0.96]}
+  - {name: j4, joint: revolute, alpha: -pi/2, r: 0.6, limits: [-3.49, 3.49]}
+  - {name: j5, joint: revolute, alpha: pi/2, limits: [-2.01, 2.01]}
+  - {name: j6, joint: revolute, alpha: -pi/2, theta: pi, r: 0.065, limits: [-6.98, 6.98]}
+)";
+  std::ofstream(folder_ / "s.yaml") << R"(robot: arm.robot.yaml
+seed: 4
+errors: {length: 0.5e-3, angle: 0.5e-3, tool_length: 2.0e-3, base_length: 2.0e-3}
+check: 0.3
+sets:
+  tracker: {method: position, noise: 2.0e-5, rows: 80}
+)";
+  simulate(std::string(kBare) + "  - {name: tool, joint: fixed, theta: 1.1562, r: 0.036}\n");
+  std::ofstream(folder_ / "data/arm.robot.yaml") << kBare;
+  const Ran ran = run_selfcal("diagnose --json " + (folder_ / "data").string(), true);
+  const auto answer = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(answer["verdict"]["effect"], "unknown");
+  EXPECT_GT(answer["verdict"]["probability"], 0.9);
+  for (const auto& each : answer["candidates"])
+    EXPECT_TRUE(each["effect"] == "unknown" || each["probability"] < 0.1) << each["effect"];
+  EXPECT_THAT(answer["next"][0]["what"].get<std::string>(), HasSubstr("lacks a tool frame"));
 }
 
 TEST_F(DataCheck, IsNoAdviceWhereNothingIsWrong) {

@@ -93,7 +93,7 @@ Failure with_likely_wrong(Failure refused, const std::string& path) {
   return refused;
 }
 
-std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
+LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
                          const std::shared_ptr<const Robot>& robot, const NominalFit& nominal) {
   const double gross = gross_misfit(*robot, nominal.lengths);
   const double tool = nominal.lengths ? tool_moved(nominal.model, nominal.values) : 0;
@@ -112,7 +112,7 @@ std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
     text += " (half the rows are off by more than " + plain_figure(1e3 * look->left) + " " + unit +
             ", the maker's tolerances leave about " + plain_figure(1e3 * look->expected) + " " +
             unit + ")";
-  return text + ".";
+  return {text + ".", look->explained};
 }
 
 }  // namespace selfcal

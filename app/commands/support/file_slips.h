@@ -28,9 +28,14 @@ struct NominalFit {
   const Eigen::VectorXd& values;
 };
 
-/// The same look as a sentence for somebody who asked for something else: empty where nothing is
-/// likely wrong. It costs nothing where `nominal` is not gross.
-std::string likely_wrong(const std::string& path, const LoadedDataSet& loaded,
+/// The same look for somebody who asked for something else.
+struct LikelyWrong {
+  std::string words;       ///< a sentence; empty where nothing is likely wrong
+  bool explained = false;  ///< one slip brings the rows to the robot
+};
+
+/// Costs nothing where `nominal` is not gross.
+LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
                          const std::shared_ptr<const Robot>& robot, const NominalFit& nominal);
 
 }  // namespace selfcal
