@@ -67,6 +67,9 @@ struct Column {
 
 class Table {
  public:
+  /// `decimal_commas`: commas may stand in numbers, for they part no cells.
+  explicit Table(bool decimal_commas) : decimal_commas_(decimal_commas) {}
+
   std::optional<RowFault> take_header(Cells cells) {
     std::vector<Heading> headings;
     for (const std::string_view cell : cells) headings.push_back(heading_of(cell));
@@ -140,9 +143,11 @@ class Table {
     return std::nullopt;
   }
 
-  static tl::expected<double, RowFault> value_of(std::string_view cell, const Column& column,
-                                                 bool slides, std::size_t at) {
-    const auto number = written_number(cell);
+  tl::expected<double, RowFault> value_of(std::string_view cell, const Column& column, bool slides,
+                                          std::size_t at) const {
+    std::string with_point(cell);
+    if (decimal_commas_) std::ranges::replace(with_point, ',', '.');
+    const auto number = written_number(with_point);
     if (!number)
       return tl::unexpected(RowFault{"expected a number, got '" + std::string(cell) + "'", at});
     const bool limit = column.place == Place::least || column.place == Place::most;
@@ -158,6 +163,7 @@ class Table {
     return *number * unit->factor;
   }
 
+  bool decimal_commas_;
   std::vector<Column> columns_;
   std::vector<Node> frames_;
 };
@@ -184,11 +190,11 @@ Result<Node> read_dh_table(const std::filesystem::path& path, const std::string&
   if (!header) return tl::unexpected(header.error());
   const auto separator = separator_of(path, *header);
   if (!separator) return tl::unexpected(separator.error());
-  Table table;
+  const char parted_by = separator->value_or(',');
+  Table table(parted_by != ',');
   const Result<void> read = read_csv(
       path, [&](Cells cells) { return table.take_header(cells); },
-      [&](Cells cells, int row) { return table.take_row(cells, row); },
-      {*header, separator->value_or(',')});
+      [&](Cells cells, int row) { return table.take_row(cells, row); }, {*header, parted_by});
   if (!read) return tl::unexpected(read.error());
   Node frames = Node::list();
   frames.items = std::move(table).frames();

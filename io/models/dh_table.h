@@ -7,6 +7,7 @@
 // brackets or parentheses behind the names (rad and m without). a is the distance along x and d
 // that along z; a table after Khalil and Kleinfinger has d along x and r along z. type is revolute
 // (by default), prismatic or fixed. What a table lacks but theta, which is the joint's own, is 0.
+// Between semicolons or tabs a number may have a decimal comma.
 #pragma once
 
 #include <filesystem>

@@ -75,6 +75,14 @@ TEST_F(DhTable, TakesLimitsTypesAndOffsets) {
   EXPECT_LT((end - Eigen::Vector3d(0, 0.3, 0.35)).norm(), 1e-12);
 }
 
+TEST_F(DhTable, TakesDecimalCommasBetweenSemicolons) {
+  const auto arm = robot("alpha [deg];a [mm];d [mm];theta [deg]\n0;300,5;0,25;0\n");
+  ASSERT_TRUE(arm);
+  const Eigen::Vector3d end = end_of(*arm, Eigen::VectorXd::Zero(1));
+  EXPECT_LT((end - Eigen::Vector3d(0.3005, 0, 0.00025)).norm(), 1e-12);
+  EXPECT_THAT(fault("alpha;a;d\n0;1,000,5;0\n"), HasSubstr("expected a number, got '1,000,5'"));
+}
+
 TEST_F(DhTable, KnowsKhalilsLetters) {
   const auto arm = robot("alpha,d,theta,r\n0,0,0,0.3\npi/2,0.4,0,0.1\n", "modified");
   ASSERT_TRUE(arm);
