@@ -7,6 +7,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -140,6 +141,30 @@ Node parse_document(const std::string& text, Converter& converter) {
   return whole;
 }
 
+/// `text` with quotation marks about every `HEADER [UNIT]` between braces, which YAML asks for and
+/// people leave out; nothing where none lacks them. Lines stay what they are.
+std::optional<std::string> with_units_quoted(std::string_view text) {
+  std::string quoted;
+  std::size_t done = 0;
+  for (std::size_t colon = text.find(": "); colon != std::string_view::npos;
+       colon = text.find(": ", colon + 1)) {
+    const std::size_t begin = text.find_first_not_of(' ', colon + 1);
+    const std::size_t open = text.find_first_of("\"'{}[],#\n", begin);
+    if (open == std::string_view::npos || open == begin || text[open] != '[') continue;
+    const std::size_t close = text.find_first_of("\"'{}[],#\n", open + 1);
+    if (close == std::string_view::npos || text[close] != ']') continue;
+    const std::size_t next = text.find_first_not_of(' ', close + 1);
+    if (next == std::string_view::npos || (text[next] != ',' && text[next] != '}')) continue;
+    quoted.append(text.substr(done, begin - done))
+        .append("\"")
+        .append(text.substr(begin, close + 1 - begin))
+        .append("\"");
+    done = close + 1;
+  }
+  if (done == 0) return std::nullopt;
+  return quoted.append(text.substr(done));
+}
+
 }  // namespace
 
 Result<Node> parse_yaml(std::string_view text, const std::string& name) {
@@ -153,6 +178,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& name) {
     Node node = parse_document(marked(text), converter);
     if (!problems.any()) return node;
   } catch (const YAML::Exception& exception) {
+    if (const auto quoted = with_units_quoted(text)) return parse_yaml(*quoted, name);
     problems.add(converter.place(exception.mark), "is not valid YAML: " + exception.msg);
   } catch (const std::exception& exception) {
     problems.add(converter.place(YAML::Mark::null_mark()), exception.what());

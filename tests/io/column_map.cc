@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "io/files/utf8.h"
+#include "io/files/yaml.h"
 #include "kinematics/rotation.h"
 #include "tests/io/data_set_folder.h"
 
@@ -189,6 +190,17 @@ TEST_F(ColumnNames, SayTheOrientationByAnglesOrAVector) {
                      "1.2091995761561452,1.2091995761561452,"
                      "-1.2091995761561452\n")
                   .isApprox(R, 1e-15));
+}
+
+TEST_F(ColumnNames, NeedNoQuotationMarksAboutAUnitBetweenBraces) {
+  const auto node = parse_yaml("columns: {q1: shoulder pan [deg], q2: b, x: X [mm] }\n", "d.yaml");
+  ASSERT_TRUE(node) << node.error().what;
+  const Node* columns = node->find("columns");
+  EXPECT_EQ(columns->find("q1")->text, "shoulder pan [deg]");
+  EXPECT_EQ(columns->find("x")->text, "X [mm]");
+  EXPECT_EQ(columns->find("q2")->text, "b");
+  EXPECT_THAT(parse_yaml("a: 1\ncolumns: {q1: x [deg], q2: [b}\n", "d.yaml").error().what,
+              HasSubstr("d.yaml:2: "));
 }
 
 TEST_F(ColumnNames, OfAnglesAreThoseOfUrdfWhereTheyAreFixedXyz) {
