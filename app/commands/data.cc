@@ -1,4 +1,5 @@
 // selfcal data check FOLDER: a first look at rows and robot, and what is likely wrong with them.
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -16,10 +17,19 @@ std::string size_of_misfit(const FirstLook& look, double left) {
 }
 
 int print_first_look(const FirstLook& look) {
-  std::printf(
-      "%s are left of half the rows with the robot as its file has it, base and tool placed; "
-      "the maker's tolerances leave about %s\n",
-      size_of_misfit(look, look.left).c_str(), size_of_misfit(look, look.expected).c_str());
+  if (std::isinf(look.left)) {
+    std::printf("no row is one that the robot of its file can take\n");
+  } else {
+    std::printf(
+        "%s are left of half the rows with the robot as its file has it, base and tool placed; "
+        "the maker's tolerances leave about %s\n",
+        size_of_misfit(look, look.left).c_str(), size_of_misfit(look, look.expected).c_str());
+  }
+  if (look.found.empty() && std::isinf(look.left)) {
+    std::printf(
+        "none of the usual slips explains it: limits, places and units are to be looked at\n");
+    return kAnswerIsNo;
+  }
   if (look.found.empty()) {
     std::printf("nothing is likely wrong\n");
     return kDone;

@@ -173,6 +173,20 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
   return list;
 }
 
+/// The look at rows none of which the robot can take: the slip with which it is near all of them.
+FirstLook where_no_row_has_a_place(const Robot& robot, const DataSet& data,
+                                   const std::vector<Slip>& others) {
+  FirstLook look;
+  look.lengths =
+      std::ranges::any_of(data.sets, [](const Set& s) { return s.method->has_lengths(); });
+  look.left = HUGE_VAL;
+  look.expected = expected_misfit(robot, look.lengths);
+  look.tried = tried(robot, data, others);
+  look.explained = !look.tried.empty() && look.tried.front().left < kGross * look.expected;
+  if (look.explained) look.found = look.tried.front().what;
+  return look;
+}
+
 }  // namespace
 
 double gross_misfit(const Robot& robot, bool lengths) {
@@ -193,7 +207,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   FirstLook look;
   const DataSet data = part_of(whole);
   const Misfit given = misfit(*robot, data, {});
-  if (!given.any) return look;
+  if (!given.any) return where_no_row_has_a_place(*robot, data, others);
   look.lengths = given.lengths;
   look.left = given.left;
   look.tool_moved = given.tool_moved;

@@ -20,11 +20,11 @@ struct TriedSlip {
 };
 
 struct FirstLook {
-  bool lengths = true;           ///< residuals are lengths, not angles
-  double left = 0;               ///< median of the rows' residuals, as given
-  double expected = 0;           ///< what the maker's tolerances leave, 1 sigma
-  double tool_held = 0;          ///< what is left with the tool as its file says
-  double tool_moved = 0;         ///< m, how far the rows put the tool from where its file has it
+  bool lengths = true;    ///< residuals are lengths, not angles
+  double left = 0;        ///< median of the rows' residuals, as given; infinite where none has one
+  double expected = 0;    ///< what the maker's tolerances leave, 1 sigma
+  double tool_held = 0;   ///< what is left with the tool as its file says
+  double tool_moved = 0;  ///< m, how far the rows put the tool from where its file has it
   std::vector<TriedSlip> tried;  ///< best first
   bool explained = false;        ///< the best of them is believed
   bool tool = false;             ///< the tool's frame is

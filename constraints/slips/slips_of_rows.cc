@@ -45,6 +45,7 @@ class SlipsOfRows {
     for (Eigen::Index j = 0; j < n; ++j)
       add(joint(j).name + " is read with the other sign (or its gear turns the other way)",
           [j](Observations& o) { o.q.col(j) *= -1; });
+    if (n > 1) add("all joints are read with the other sign", [](Observations& o) { o.q *= -1; });
     for (const double turns : {0.5, 2.0})
       for (Eigen::Index j = 0; j < n; ++j)
         add("the readings of " + joint(j).name + " are " + (turns < 1 ? "twice" : "half") +

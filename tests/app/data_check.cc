@@ -180,6 +180,27 @@ TEST_F(DataCheck, SaysWhatIsWrongOfRowsThatTheJointsLimitsRefuse) {
   }
 }
 
+TEST_F(DataCheck, SaysThatAllLegsAreReadWithTheOtherSignThoughNoRowIsThenPossible) {
+  std::ofstream(folder_ / "s.yaml") << R"(robot: arm.robot.yaml
+seed: 1
+errors: {length: 1.0e-3}
+sets:
+  tracker: {method: position, noise: 2.0e-5, rows: 60}
+)";
+  simulate(text_of(std::filesystem::path(SELFCAL_SOURCE_DIR) / "app/examples/stewart.robot.yaml"));
+  const auto turned = [](std::vector<double>& legs) {
+    for (double& each : legs) each *= -1;
+  };
+  for (const auto& [legs, said] : {std::pair{kReadings, "all joints are read with the other sign"},
+                                   std::pair{Cells{"q2"}, "leg2 is read with the other sign"}}) {
+    change_rows(legs, turned);
+    const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+    EXPECT_EQ(ran.status, 3);
+    EXPECT_THAT(ran.out, HasSubstr(std::string("; likely wrong: ") + said));
+    change_rows(legs, turned);
+  }
+}
+
 TEST_F(DataCheck, SaysWhichReadingsAreTwiceWhatTheJointMoves) {
   change_rows({"q4"}, [](auto& q) { q[0] *= 2; });
   free_of_limits();

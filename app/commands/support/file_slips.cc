@@ -1,5 +1,6 @@
 #include "app/commands/support/file_slips.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -102,7 +103,9 @@ LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
   if (!look || look->found.empty()) return {};
   const std::string unit = look->lengths ? "mm" : "mrad";
   std::string text = std::string(kFilesFirst) + look->found;
-  if (look->explained)
+  if (std::isinf(look->left))
+    text += " (without this the robot of its file can take no row)";
+  else if (look->explained)
     text += " (half the rows are off by more than " + plain_figure(1e3 * look->left) + " " + unit +
             ", without this by " + plain_figure(1e3 * look->tried.front().left) + " " + unit + ")";
   else if (look->tool)
