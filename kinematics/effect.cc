@@ -2,6 +2,7 @@
 #include "kinematics/effect.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "kinematics/robot.h"
@@ -9,7 +10,7 @@
 
 namespace selfcal {
 
-#define X(identifier) std::unique_ptr<Effect> make_##identifier(const EffectPlan& plan);
+#define X(identifier, lasting) std::unique_ptr<Effect> make_##identifier(const EffectPlan& plan);
 #include "kinematics/effects.def"
 #undef X
 
@@ -18,10 +19,11 @@ namespace {
 struct Family {
   std::string_view name;
   std::unique_ptr<Effect> (*make)(const EffectPlan&);
+  EffectLasting lasting;
 };
 
 constexpr Family kFamilies[] = {
-#define X(identifier) {#identifier, make_##identifier},
+#define X(identifier, lasting) {#identifier, make_##identifier, EffectLasting::lasting},
 #include "kinematics/effects.def"
 #undef X
 };
@@ -119,6 +121,11 @@ std::vector<std::string_view> effect_names() {
   std::vector<std::string_view> names;
   for (const Family& family : kFamilies) names.push_back(family.name);
   return names;
+}
+
+EffectLasting lasting_of(std::string_view effect) {
+  const auto* found = std::ranges::find(kFamilies, effect, &Family::name);
+  return found == std::end(kFamilies) ? EffectLasting::apart : found->lasting;
 }
 
 }  // namespace selfcal

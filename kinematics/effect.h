@@ -157,4 +157,14 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
 /// The effects that make_effect knows.
 std::vector<std::string_view> effect_names();
 
+/// Whether an effect is with a robot from one session to the next.
+enum class EffectLasting {
+  kept,           ///< the robot keeps it, and its model can have it
+  apart,          ///< it stays, where the robot's model has no place for it
+  moves,          ///< something comes to be elsewhere: what was is no more
+  moved_at_will,  ///< the same, as far as a person may have put it
+};
+/// Of an effect by its name; `apart` of a name that is none.
+EffectLasting lasting_of(std::string_view effect);
+
 }  // namespace selfcal

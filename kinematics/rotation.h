@@ -18,9 +18,9 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
 
 /// Rot(z, yaw) Rot(y, pitch) Rot(x, roll) of [roll, pitch, yaw], in URDF's order.
 Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy);
-/// The rotation that three angles (rad) say in the order of `axes`: of small letters, turns about the
-/// fixed axes, R = R(axis 3) R(axis 2) R(axis 1); of capitals, turns about the axes that turn along,
-/// R = R(axis 1) R(axis 2) R(axis 3); of no letter the exponential of the vector.
+/// The rotation that three angles (rad) say in the order of `axes`: of small letters, turns about
+/// the fixed axes, R = R(axis 3) R(axis 2) R(axis 1); of capitals, turns about the axes that turn
+/// along, R = R(axis 1) R(axis 2) R(axis 3); of no letter the exponential of the vector.
 Eigen::Matrix3d rotation_of(std::string_view axes, const Eigen::Vector3d& angles);
 /// Angles that give R, |pitch| <= pi / 2; to rounding at a pitch of a quarter turn, too.
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R);

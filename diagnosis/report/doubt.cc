@@ -1,7 +1,6 @@
 #include "diagnosis/report/doubt.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -12,22 +11,24 @@
 #include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/effect.h"
 #include "kinematics/expects.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
 
-constexpr std::array<std::string_view, 2> kMovedAtWill = {"tool_shift", "fixture_shift"};
 /// What a moved instrument may be taken for.
-constexpr std::array<std::string_view, 4> kMoves = {"base_drift", "tool_shift", "zero_shift",
-                                                    "fixture_shift"};
+bool moves(std::string_view effect) {
+  const EffectLasting lasting = lasting_of(effect);
+  return lasting == EffectLasting::moves || lasting == EffectLasting::moved_at_will;
+}
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
 std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
-    if (std::ranges::find(kMovedAtWill, each.effect) != kMovedAtWill.end()) continue;
+    if (lasting_of(each.effect) == EffectLasting::moved_at_will) continue;
     for (const NamedValue& v : each.parameters)
       if (std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.impossible * v.usual_most)
         return "no machine has " + v.name + " of " + in_readable_unit(v.value, v.unit) +
@@ -120,9 +121,8 @@ std::string forces_that_never_were(const LinearisedModel& linearised, const Data
 std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised,
                                                const DataSet& data, const Correction& found) {
   Correction stays;
-  std::ranges::copy_if(found, std::back_inserter(stays), [](const FoundEffect& each) {
-    return std::ranges::find(kMoves, each.what.effect) == kMoves.end();
-  });
+  std::ranges::copy_if(found, std::back_inserter(stays),
+                       [](const FoundEffect& each) { return !moves(each.what.effect); });
   Problems problems;
   const std::shared_ptr<const Robot> robot =
       correct(linearised.shared_geometry(), entries_of(stays), linearised.context(), problems);

@@ -160,6 +160,7 @@ std::optional<std::string> with_units_quoted(std::string_view text) {
         .append(text.substr(begin, close + 1 - begin))
         .append("\"");
     done = close + 1;
+    colon = close;
   }
   if (done == 0) return std::nullopt;
   return quoted.append(text.substr(done));

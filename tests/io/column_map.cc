@@ -199,6 +199,10 @@ TEST_F(ColumnNames, NeedNoQuotationMarksAboutAUnitBetweenBraces) {
   EXPECT_EQ(columns->find("q1")->text, "shoulder pan [deg]");
   EXPECT_EQ(columns->find("x")->text, "X [mm]");
   EXPECT_EQ(columns->find("q2")->text, "b");
+  const auto twice = parse_yaml("columns: {q1: a: b [deg], q2: c [deg]}\n", "d.yaml");
+  ASSERT_TRUE(twice) << twice.error().what;
+  EXPECT_EQ(twice->find("columns")->find("q1")->text, "a: b [deg]");
+  EXPECT_EQ(twice->find("columns")->find("q2")->text, "c [deg]");
   EXPECT_THAT(parse_yaml("a: 1\ncolumns: {q1: x [deg], q2: [b}\n", "d.yaml").error().what,
               HasSubstr("d.yaml:2: "));
 }

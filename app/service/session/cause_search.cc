@@ -10,6 +10,7 @@
 #include "constraints/planning/other_approach.h"
 #include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/effect.h"
 #include "kinematics/expects.h"
 
 namespace selfcal {
@@ -18,11 +19,6 @@ namespace {
 constexpr int kPool = 80;  // touches in other places that are asked for; four times are found
 constexpr int kSessionsBack = 1000;  // among which the full one is looked for
 constexpr int kMostRepeated = 60;    // of the touches before
-/// Effects that a robot keeps, and that its model can have; a zero that has slipped is a parameter.
-constexpr std::array<std::string_view, 11> kInRobot = {
-    "joint_compliance", "link_compliance",    "transmission_error", "backlash",
-    "joint_coupling",   "thermal_expansion",  "tool_compliance",    "probe_pretravel",
-    "trigger_latency",  "leg_thermal_growth", "leg_compliance"};
 
 class TouchPool {
  public:
@@ -159,8 +155,9 @@ class TouchPool {
   std::vector<std::string> what_;
 };
 
+/// A zero that has slipped is none: it is a parameter.
 bool is_kept(const FoundEffect& found) {
-  return std::ranges::count(kInRobot, found.what.effect) > 0;
+  return lasting_of(found.what.effect) == EffectLasting::kept;
 }
 
 }  // namespace
