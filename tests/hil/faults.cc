@@ -66,8 +66,8 @@ class Faults : public InTheMachine {
 
   /// Waits for two more touches.
   void collect() {
-    const std::size_t done = cell->progress.size();
-    ASSERT_TRUE(cell->until([&] { return cell->progress.size() >= done + 2; }, 1800 * kSecond));
+    const std::size_t done = cell->touches();
+    ASSERT_TRUE(cell->until([&] { return cell->touches() >= done + 2; }, 1800 * kSecond));
   }
   /// Starts again after a fault or a session, once the service has found all well.
   void go_on() {
