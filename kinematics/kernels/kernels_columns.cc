@@ -141,12 +141,13 @@ void reflect(const Reflections& V, size_t rows, double* const (&R)[kColumns],
   using Lane = decltype(hn::Zero(d));
   const double* v[kCount];
   double* a[kColumns];
+  const double* read[kColumns];
   for (size_t n = 0; n < kCount; ++n) v[n] = V.a[n];
-  for (size_t k = 0; k < kColumns; ++k) a[k] = A[k];
+  for (size_t k = 0; k < kColumns; ++k) read[k] = a[k] = A[k];
   Lane sums[kCount][kColumns];
   for (size_t n = 0; n < kCount; ++n)
     for (size_t k = 0; k < kColumns; ++k) sums[n][k] = hn::Zero(d);
-  accumulate(v, a, 0, rows, hn::Lanes(d), sums);
+  accumulate(v, read, 0, rows, hn::Lanes(d), sums);
   Lane share[kCount][kColumns];
   for (size_t k = 0; k < kColumns; ++k) {
     double w[kReflections] = {};
