@@ -41,7 +41,7 @@ struct DiagnosisConstants {
     std::array<double, 4> of_joint = {0.7, 1.4, 2.8, 5.6};
     double joints = 1.0;  ///< rad, over which configurations are alike; 0.3 to 2 [trials]
     double turned = 2.0;  ///< rad, over which one joint's errors are smooth; 0.5 to 3 [physics]
-    double place = 0.4;   ///< m; 0.1 to 1 [physics]
+    double place = 0.2;   ///< of the robot's size; 0.1 to 1 [physics]
     double time = 0.1;    ///< of the whole; 0.02 to 0.5 [trials]
     std::array<double, 3> of_visits = {1, 0.5, 0};  ///< shares of a visit's noise [trials]
   };

@@ -19,6 +19,7 @@
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
 #include "diagnosis/validation/folds.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -122,7 +123,8 @@ class Diagnostician {
     evaluator_.reset();  // before there is a second one
     evaluator_ = std::make_unique<EvidenceEvaluator>(
         linearised_.whitened(),
-        structures(data_.rows, rows, linearised_.ends(), linearised_.by_joint(),
+        structures(data_.rows, rows, linearised_.ends(), size_of(linearised_.geometry()),
+                   linearised_.by_joint(),
                    comparable_readings(linearised_.geometry(), data_.rows.q),
                    noise_of_visits(data_.rows, rows, linearised_.left())),
         linearised_.candidates(), linearised_.parameters(), options_.search);

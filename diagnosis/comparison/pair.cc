@@ -8,6 +8,7 @@
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/evidence/rows.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
@@ -77,11 +78,12 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
 }
 
 EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, const SearchRule& rule) const {
-  return EvidenceEvaluator(whitened(rows),
-                           structures(both_.rows, rows, ends(*geometry_, both_.rows),
-                                      rows.W(Eigen::all, reading_columns(*geometry_)),
-                                      comparable_readings(*geometry_, both_.rows.q)),
-                           changes_.candidates, changes_.parameters, rule);
+  return EvidenceEvaluator(
+      whitened(rows),
+      structures(both_.rows, rows, ends(*geometry_, both_.rows), size_of(*geometry_),
+                 rows.W(Eigen::all, reading_columns(*geometry_)),
+                 comparable_readings(*geometry_, both_.rows.q)),
+      changes_.candidates, changes_.parameters, rule);
 }
 
 std::vector<char> Pair::far_rows(const DenseEquations& rows, const Hypothesis& changes) const {

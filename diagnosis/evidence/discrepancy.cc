@@ -25,11 +25,12 @@ namespace {
 class Kernel {
  public:
   Kernel(const Observations& data, const DenseEquations& rows,
-         const std::vector<Eigen::Isometry3d>& ends, Eigen::MatrixXd by_joint,
+         const std::vector<Eigen::Isometry3d>& ends, double size, Eigen::MatrixXd by_joint,
          const Eigen::MatrixXd& alike)
       : data_(data),
         rows_(rows),
         ends_(ends),
+        near_(kDiagnosis.structure.place * size),
         by_joint_(std::move(by_joint)),
         alike_(alike),
         visit_(visits(data)) {
@@ -154,7 +155,7 @@ class Kernel {
                     (kDiagnosis.structure.joints * kDiagnosis.structure.joints));
       case KernelDomain::place:
         return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
-                    (kDiagnosis.structure.place * kDiagnosis.structure.place));
+                    (near_ * near_));
       case KernelDomain::same:
       case KernelDomain::turned:
         return 0;  // these are noise(), and root_of_joint()
@@ -169,6 +170,7 @@ class Kernel {
   const Observations& data_;
   const DenseEquations& rows_;
   const std::vector<Eigen::Isometry3d>& ends_;
+  const double near_;  ///< m, over which places are alike
   const Eigen::MatrixXd by_joint_;
   const Eigen::MatrixXd& alike_;
   const std::vector<int> visit_;
@@ -207,7 +209,7 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
                                                const Eigen::MatrixXd& by_joint, double of_visits) {
-  const Kernel kernel(data, rows, {}, by_joint, data.q);
+  const Kernel kernel(data, rows, {}, 1, by_joint, data.q);
   return {{.kappa = of_visits, .blocks = kernel.noise(of_visits, 0)}};
 }
 
@@ -264,9 +266,9 @@ void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
 
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              const Eigen::MatrixXd& by_joint,
+                                              double size, const Eigen::MatrixXd& by_joint,
                                               const Eigen::MatrixXd& alike, double of_visits) {
-  const Kernel kernel(data, rows, ends, by_joint, alike);
+  const Kernel kernel(data, rows, ends, size, by_joint, alike);
   std::vector<DiscrepancyCovariance> list;
   add_noise(kernel, of_visits, list);
   add_unknowns(kernel, of_visits, by_joint.cols(), list);

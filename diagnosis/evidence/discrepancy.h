@@ -24,13 +24,13 @@ std::string_view to_string(KernelDomain closeness);
 /// Noise alone first (and noise that repeats share a part of), then every closeness at several
 /// sizes over the noise. `of_visits` is the noise from visit to visit over that of immediate
 /// repeats, see noise_of_visits. `rows` are the equations that are weighed, `ends` the
-/// endpoint's pose by row of the data set. `by_joint` (equations x joints) is what an error of each
-/// joint's reading moves an equation. That of half the reading's last digit is shared by rows of
-/// one reading, however often they are repeated. `alike` (rows x joints) are the readings as they
-/// are compared, see comparable_readings.
+/// endpoint's pose by row of the data set, `size` the robot's (m, see size_of). `by_joint`
+/// (equations x joints) is what an error of each joint's reading moves an equation. That of half
+/// the reading's last digit is shared by rows of one reading, however often they are repeated.
+/// `alike` (rows x joints) are the readings as they are compared, see comparable_readings.
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              const Eigen::MatrixXd& by_joint,
+                                              double size, const Eigen::MatrixXd& by_joint,
                                               const Eigen::MatrixXd& alike, double of_visits = 0);
 
 /// Readings `q` (rows x joints) as angles: of a joint that slides, half a turn for all that it

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/evidence/discrepancy.h"
+#include "kinematics/size.h"
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {
@@ -47,7 +48,8 @@ struct Seen {
         linearised(TwoSessions(2).robot, data, options, {}),
         rows(linearised.kept()),
         evaluator(linearised.whitened(),
-                  structures(data.rows, rows, linearised.ends(), linearised.by_joint(),
+                  structures(data.rows, rows, linearised.ends(), size_of(linearised.geometry()),
+                             linearised.by_joint(),
                              comparable_readings(linearised.geometry(), data.rows.q)),
                   linearised.candidates(), linearised.parameters(), options.search) {}
 
@@ -114,8 +116,8 @@ TEST(EvidenceEvaluator, SearchesCoarselyForTheSameFamilies) {
   const LinearisedModel linearised(TwoSessions(2).robot, data, options, {});
   const EvidenceEvaluator evaluator(
       linearised.whitened(),
-      structures(data.rows, linearised.kept(), linearised.ends(), linearised.by_joint(),
-                 comparable_readings(linearised.geometry(), data.rows.q)),
+      structures(data.rows, linearised.kept(), linearised.ends(), size_of(linearised.geometry()),
+                 linearised.by_joint(), comparable_readings(linearised.geometry(), data.rows.q)),
       linearised.candidates(), linearised.parameters(), options.search);
   const Posterior whole = evaluator.search(), coarse = evaluator.search_coarsely(4);
   EXPECT_NEAR(coarse.none, whole.none, 1e-6);

@@ -56,7 +56,8 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
 
 TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const Touches t;
-  const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1), t.data.q);
+  const auto list =
+      structures(t.data, t.rows, t.ends, 4 / 3.0, Eigen::MatrixXd::Zero(3, 1), t.data.q);
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
   for (const DiscrepancyCovariance& each : list) {
@@ -77,7 +78,8 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   t.data.time << 0, 0, 1000;
   t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
   const auto of_time = [&] {
-    const auto list = structures(t.data, t.rows, t.ends, Eigen::MatrixXd::Zero(3, 1), t.data.q);
+    const auto list =
+        structures(t.data, t.rows, t.ends, 4 / 3.0, Eigen::MatrixXd::Zero(3, 1), t.data.q);
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
     return found->matrix();
@@ -99,7 +101,7 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
   const auto list =
-      structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), by_joint, data.q);
+      structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), 1, by_joint, data.q);
   const auto found =
       std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());
