@@ -80,15 +80,22 @@ Result<Inputs> load(const DiagnoseArguments& arguments) {
   return inputs;
 }
 
+/// Of what the maker's figures leave of the rows: where the files are likely wrong and calibration
+/// leaves more, it has not taken in what is wrong with them.
+constexpr double kTakenIn = 0.2;
+
 /// Where the maker's robot is far from the rows, says first what is likely wrong with the files,
-/// and names no cause of a gap that one slip in them explains.
+/// and names no cause of a gap that one slip in them explains or that calibration leaves gross.
 void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosis& diagnosis) {
   const LikelyWrong wrong =
       likely_wrong(path, inputs.measured, inputs.robot,
                    {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values});
   if (wrong.words.empty()) return;
-  if (wrong.explained && !diagnosis.named.empty())
-    withdraw("one slip in the files explains the rows", diagnosis);
+  const bool taken_in = diagnosis.gap.rms_before < kTakenIn * diagnosis.gap.rms_nominal;
+  if (!diagnosis.named.empty() && (wrong.explained || !taken_in))
+    withdraw(wrong.explained ? "one slip in the files explains the rows"
+                             : "calibration does not take in what is wrong with the files",
+             diagnosis);
   diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong.words);
   diagnosis.why = wrong.words + " As the files are: " + diagnosis.why;
   NextStep step;
