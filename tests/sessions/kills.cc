@@ -32,14 +32,14 @@ std::set<TouchKey> stored_touches(const Store& const_store, std::int64_t session
 struct SessionAnswer {
   std::string answer, decision;
   std::map<std::string, std::pair<double, double>> identified;  ///< value and sigma by name
-  std::map<int, Eigen::VectorXd> readings;                      ///< by step of the plan
+  std::map<int, Reading> readings;                              ///< by step of the plan
 };
 
 SessionAnswer answer_of(const ResultMessage& result, Store& store) {
   SessionAnswer answer{result.answer, result.decision, {}, {}};
   const Decoding decoding = must(read_decoding(must(store.session(1)).config));
   for (const TouchRecord& touch : must(store.touches(1)))
-    answer.readings[touch.step] = reading_of(touch, decoding).q;
+    answer.readings[touch.step] = reading_of(touch, decoding);
   const json solution = json::parse(result.json);
   for (const json& each : solution["parameters"])
     if (each["status"] == "identified")
@@ -63,11 +63,16 @@ void expect_same(const SessionAnswer& found, const SessionAnswer& wanted) {
     // The same touches at other places between two samples: they weigh otherwise (service/reading).
     EXPECT_NEAR(found.identified.at(name).first, value.first, value.second) << name;
   }
-  // What is read at the edge differs by the rounding of the samples around it alone, 1 urad each.
+  // What is read at the edge differs by the rounding of the samples around it, 1 urad each, and
+  // where the arm began to stop between the two by what Reading::sigma_time says.
   ASSERT_EQ(found.readings.size(), wanted.readings.size());
-  for (const auto& [step, q] : wanted.readings) {
+  for (const auto& [step, reading] : wanted.readings) {
     ASSERT_TRUE(found.readings.contains(step)) << step;
-    EXPECT_LT((found.readings.at(step) - q).cwiseAbs().maxCoeff(), 2e-6) << "step " << step;
+    const Reading& again = found.readings.at(step);
+    const double time = std::sqrt(3) * std::max(reading.sigma_time, again.sigma_time);
+    const Eigen::ArrayXd speed = reading.dq.cwiseAbs().cwiseMax(again.dq.cwiseAbs());
+    const Eigen::ArrayXd off = (again.q - reading.q).cwiseAbs();
+    EXPECT_LT((off - speed * time).maxCoeff(), 2e-6) << "step " << step;
   }
 }
 
