@@ -79,7 +79,7 @@ struct Figures {
   int rows = 0;
   bool angle_alone = false;  ///< of all rows
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
-  double rms_without_rejected = 0;
+  double rms_without_outliers = 0;
   AngleFigures angle;
 };
 
@@ -91,14 +91,14 @@ struct SetFigures {
 
 /// One row that judges.
 struct CheckRow {
-  double residual = 0;    ///< m, after
-  bool rejected = false;  ///< beyond the noise
+  double residual = 0;   ///< m, after
+  bool outlier = false;  ///< beyond the noise
 };
 
 /// A row before (the maker's robot, placed) and after, for a person to look at.
 struct RowFigure {
   int row = 0, set = 0;                          ///< from 0; of the data set
-  bool check = false, rejected = false;          ///< judges; beyond the noise
+  bool check = false, outlier = false;           ///< judges; beyond the noise
   double before = 0, after = 0;                  ///< m; rad of a row that has angles alone
   double angle_before = 0, angle_after = 0;      ///< rad, of a row that has lengths and angles
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< of the method's body, world (m), after
@@ -238,7 +238,7 @@ struct Solution {
   Eigen::MatrixXd covariance;
   std::vector<Note> gauge, unexcited;
   std::vector<SetResult> sets;  ///< empty when no row identifies
-  std::vector<Outlier> rejected;
+  std::vector<Outlier> outliers;
   Residuals residual;
   EndpointSigma endpoint;         ///< over all that the joints can do
   EndpointSigma workspace;        ///< over where it counts: the verdict's

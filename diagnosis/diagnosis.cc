@@ -86,7 +86,7 @@ class Diagnostician {
   void name() {
     tell("asking noise the same question", 0.75);
     const NullDistribution null(linearised_, *evaluator_, data_.rows, options_.resamples,
-                                options_.seed, options_.most_rejected);
+                                options_.seed, options_.most_outliers);
     ByNoise p{null.p_of(evaluator_->best_found().log_odds), 1};
     CauseResult named =
         named_cause(linearised_, *evaluator_, posterior_, result_.candidates, options_);

@@ -106,7 +106,7 @@ struct Diagnosis {
   std::vector<Untestable> untestable;
   std::vector<NextStep> next;
   std::string next_why;  ///< why there is none of these, or why they promise little
-  std::vector<Outlier> rejected;
+  std::vector<Outlier> outliers;
   std::vector<std::string> warnings;
   Correction found;                    ///< the effects of `model`, in its order
   std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values

@@ -29,7 +29,7 @@ struct DiagnosisOptions {
   double name_below_none = 0.1, name_below_p = 0.025;
   int resamples = 199;          ///< of the null distribution
   int simulated_sessions = 30;  ///< simulated sessions that calibrate probabilities; 0: none
-  double most_rejected = Options{}.most_rejected;  ///< share of the rows that may be put aside
+  double most_outliers = Options{}.most_outliers;  ///< share of the rows that may be put aside
   unsigned long long seed = 1;
   /// Of these the further rows are chosen; null: of what the robot could do on paper.
   std::shared_ptr<const PossibleRows> possible = {};

@@ -37,7 +37,7 @@ struct ResultFigures {
   double check_after = 0;     ///< m, with the candidate; of a check, of its touches
   double endpoint_sigma = 0;  ///< m, rms over the workspace
   std::uint32_t touches = 0;  ///< that count as rows, those put aside too
-  std::uint32_t rejected = 0;    ///< of them put aside when identifying; outliers that judge count
+  std::uint32_t outliers = 0;    ///< of them put aside when identifying; outliers that judge count
   std::uint32_t identified = 0;  ///< parameters
   bool operator==(const ResultFigures&) const = default;
 };

@@ -55,7 +55,7 @@ void print_sessions(const std::vector<Past>& past) {
         std::string(to_string(r->decision)).c_str(), figure(!failed, r->check_before).c_str(),
         figure(!failed, r->check_after).c_str(),
         figure(full && !failed && std::isfinite(r->endpoint_sigma), r->endpoint_sigma).c_str(),
-        r->touches, r->rejected, full ? std::to_string(r->identified).c_str() : "-");
+        r->touches, r->outliers, full ? std::to_string(r->identified).c_str() : "-");
   }
 }
 

@@ -160,7 +160,7 @@ nlohmann::ordered_json to_json(const Diagnosis& diagnosis) {
                          {"probability_after", finite(each.probability_after)}});
   });
   json["next_why"] = diagnosis.next_why;
-  json["rejected"] = array_of(diagnosis.rejected, [](const Outlier& each) {
+  json["rejected"] = array_of(diagnosis.outliers, [](const Outlier& each) {
     return Json::object({{"row", each.row},
                          {"set", each.set},
                          {"part", each.check ? "check" : "fit"},

@@ -77,9 +77,9 @@ std::string summary(const Diagnosis& diagnosis) {
   for (const NextStep& step : diagnosis.next) text += "  " + step.what + next_in_words(step) + "\n";
   if (!diagnosis.next_why.empty())
     text += (diagnosis.next.empty() ? "\nNext: nothing; " : "  ") + diagnosis.next_why + "\n";
-  if (!diagnosis.rejected.empty())
+  if (!diagnosis.outliers.empty())
     text += printed("\n%d rows put aside as false (diagnosis.json names them)\n",
-                    static_cast<int>(diagnosis.rejected.size()));
+                    static_cast<int>(diagnosis.outliers.size()));
   for (const std::string& warning : diagnosis.warnings) text += "note: " + warning + "\n";
   return text;
 }

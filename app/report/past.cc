@@ -81,7 +81,7 @@ nlohmann::ordered_json record_of(const Past& past) {
                     {"check_after", finite(r.check_after)},
                     {"endpoint_sigma", finite(r.endpoint_sigma)},
                     {"touches", r.touches},
-                    {"rejected", r.rejected},
+                    {"rejected", r.outliers},
                     {"identified", r.identified}};
   return json;
 }

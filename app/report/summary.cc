@@ -201,9 +201,9 @@ std::string headline(const Solution& solution) {
                              plain_figure(1e3 * check.rms_after).c_str(), unit,
                              plain_figure(1e3 * check.rms_before).c_str(), unit, check.rows);
   // False rows among those kept aside count; say what is left without them.
-  if (check.rows > 0 && check.rms_without_rejected < 0.9 * check.rms_after)
+  if (check.rows > 0 && check.rms_without_outliers < 0.9 * check.rms_after)
     figures +=
-        with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_rejected);
+        with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_outliers);
   const bool files_first = std::ranges::any_of(
       solution.warnings, [](const std::string& each) { return each.starts_with(kFilesFirst); });
   if (files_first && solution.verdict.answer != Answer::improved)
@@ -246,7 +246,7 @@ std::string summary(const DataSet& data, const Solution& solution) {
        [](const Note& note) { return note.parameter + ": " + note.text; });
   list(text, "Not excited by these rows", solution.unexcited,
        [](const Note& note) { return note.parameter + ": " + note.text; });
-  list(text, "Rows beyond the noise", solution.rejected, [](const Outlier& r) {
+  list(text, "Rows beyond the noise", solution.outliers, [](const Outlier& r) {
     const std::string of_row = printed("row %d (%s): ", r.row, r.set.c_str());
     if (!std::isfinite(r.residual)) return of_row + r.why;
     return of_row + plain_figure(1e3 * r.residual) + (r.angle_alone ? " mrad, " : " mm, ") + r.why;

@@ -19,8 +19,8 @@ Eigen::VectorXd Equations::geodesic_acceleration(const State& state, const Weigh
                                            stepped(state, at, -GeodesicStep::kPart * step)};
   Pass pass{state, weighting, {}};
   pass.bend = &geodesic_acceleration;
-  const NormalEquations bent = sum_products(pass, at.columns);
-  return bent.H.rightCols(1).topRows(bent.H.rows() - 1);
+  const NormalEquations products = sum_products(pass, at.columns);
+  return products.H.rightCols(1).topRows(products.H.rows() - 1);
 }
 
 NormalEquations Equations::normal_equations(const State& state, const Weighting& weighting,

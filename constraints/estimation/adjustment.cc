@@ -108,7 +108,7 @@ class Adjustment {
   Fit run_fit(const State& start, const Prior& prior, std::string_view stage) {
     FitRule rule;
     rule.most_iterations = options_.most_iterations;
-    rule.most_rejected = options_.most_rejected;
+    rule.most_outliers = options_.most_outliers;
     const auto on_iteration = [&](int iteration) {
       if (progress_) progress_(stage, 1 - std::exp(-iteration / 8.0));
     };

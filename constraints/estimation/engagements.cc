@@ -74,16 +74,16 @@ class Splitter {
   void tell() {
     Solution& solution = out_.solution;
     for (RowFigure& each : solution.residual.rows) each.row = row(each.row);
-    for (Outlier& each : solution.rejected) each.row = row(each.row - 1) + 1;
+    for (Outlier& each : solution.outliers) each.row = row(each.row - 1) + 1;
     const Observations& rows = out_.data.rows;
     for (int each = 0; each < rows.rows(); ++each)
       if (left_out_[rows.set[each]])
-        solution.rejected.push_back({.row = each + 1,
+        solution.outliers.push_back({.row = each + 1,
                                      .set = out_.data.sets[rows.set[each]].name,
                                      .residual = HUGE_VAL,
                                      .check = rows.check[each] != 0,
                                      .why = "its lock slipped again and again"});
-    std::ranges::stable_sort(solution.rejected, {}, &Outlier::row);
+    std::ranges::stable_sort(solution.outliers, {}, &Outlier::row);
     for (std::size_t s = 0; s < left_out_.size(); ++s)
       if (left_out_[s] && origin_[s] == static_cast<int>(s))
         solution.locks_left_out.push_back(out_.data.sets[s].name);

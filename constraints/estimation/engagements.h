@@ -16,7 +16,7 @@ struct Engagements {
 
 /// identify(), as often as it takes: where a lock slipped, the rows after it are an engagement of
 /// their own, whose direction is fitted on its own. One that slips more than kMostSlips times is
-/// put aside whole: its rows are among the solution's rejected ones, the lock among its
+/// put aside whole: its rows are among the solution's outliers, the lock among its
 /// locks_left_out. Without a slip it is identify().
 Engagements identify_engagements(const Robot& robot, DataSet data, const Options& options = {},
                                  const Progress& progress = {});

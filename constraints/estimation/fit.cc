@@ -103,7 +103,7 @@ class Iteration {
   NoiseRule noise_rule(NoiseStage stage, double freedom) const {
     NoiseRule rule;
     rule.global_freedom = freedom;
-    rule.most_rejected = rule_.most_rejected;
+    rule.most_outliers = rule_.most_outliers;
     rule.reject = stage != NoiseStage::robust;
     rule.pool = stage != NoiseStage::nuisance;
     return rule;
@@ -195,7 +195,7 @@ class Iteration {
 
   /// `v` with half its geodesic acceleration (Transtrum and Sethna), which bends the step along a
   /// curved valley of the residual; `v` alone where that is no small correction and so says little.
-  Eigen::VectorXd bent(const Eigen::VectorXd& v, double lambda) const {
+  Eigen::VectorXd with_geodesic_acceleration(const Eigen::VectorXd& v, double lambda) const {
     const NormalEquations at =
         by_factor_ ? equations_.normal_equations(fit_.state, weighting(), columns_) : products_;
     const Eigen::VectorXd b = equations_.geodesic_acceleration(fit_.state, weighting(), at, v);
@@ -239,7 +239,8 @@ class Iteration {
     int barred = 0;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       if (barred == kBarred && put_open_rows_aside()) return;
-      const Eigen::VectorXd s = lambda_ > 0 ? bent(step(Rz, lambda_), lambda_) : whole;
+      const Eigen::VectorXd s =
+          lambda_ > 0 ? with_geodesic_acceleration(step(Rz, lambda_), lambda_) : whole;
       if (take(stepped(s))) {
         lambda_ = lambda_ < 1e-3 ? 0 : lambda_ / 10;
         // A tenth of a sigma a parameter left: the geometry has settled for these weights.
@@ -290,7 +291,7 @@ class Iteration {
         outlier[item.row] = 1;
         ++open;
       }
-    if (open == 0 || open > rule_.most_rejected * rows) return false;
+    if (open == 0 || open > rule_.most_outliers * rows) return false;
     fit_.noise.outlier = std::move(outlier);
     lambda_ = 0;
     relinearise();

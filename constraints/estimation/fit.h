@@ -20,7 +20,7 @@ struct Prior {
 
 struct FitRule {
   int most_iterations = 100;
-  double most_rejected = 0;      ///< as NoiseRule's
+  double most_outliers = 0;      ///< as NoiseRule's
   double step_tolerance = 1e-5;  ///< of the whitened step: a hundred-thousandth of a sigma
   bool near = false;             ///< it starts where a fit of a part of the rows ended
 };

@@ -67,7 +67,7 @@ bool gives_positions(const Set& set) {
 std::vector<Row> rows_of_set(const DataSet& data, const std::vector<RowFigure>& figures, int set) {
   std::vector<const RowFigure*> by_row(static_cast<std::size_t>(data.rows.rows()), nullptr);
   for (const RowFigure& each : figures)
-    if (each.set == set && !each.rejected && each.way_after.allFinite() && each.at.allFinite())
+    if (each.set == set && !each.outlier && each.way_after.allFinite() && each.at.allFinite())
       by_row[static_cast<std::size_t>(each.row)] = &each;
   std::vector<Row> rows;
   for (const int row : rows_in_time(data.rows, set))

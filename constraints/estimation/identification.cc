@@ -159,7 +159,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   const Judged before = judge(robot, data, equations, adjusted.before, true);
   const Judged after = judge(robot, data, equations, fitted);
   solution.residual = residual_figures(data, before, after, fitted.noise.outlier);
-  solution.rejected = outlier_rows(data, after, fitted.noise.outlier);
+  solution.outliers = outlier_rows(data, after, fitted.noise.outlier);
   solution.sets = set_results(equations, fitted, C, after);
   solution.slips = lock_slips(data, after);
   solution.frame_steps = frame_steps(robot, solution.values, data, solution.residual.rows);
@@ -205,7 +205,7 @@ Solution without_rows(const Robot& robot, const DataSet& data,
   if (!open.empty()) solution.stop_reason += ": " + open.front().why;
   Judged judged;
   judged.open = open;
-  solution.rejected = outlier_rows(data, judged, {});
+  solution.outliers = outlier_rows(data, judged, {});
   solution.verdict.why = solution.stop_reason;
   solution.values = values(robot);
   const std::vector<char> none(robot.parameters().size(), 0);

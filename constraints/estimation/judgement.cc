@@ -19,7 +19,7 @@ constexpr double kSignificance = 0.05;
 /// Normal quantile of the same, and how much the squares of angles that say little may rise.
 constexpr double kRise = 1.645, kLittle = 0.1;
 /// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
-const double kFar = NoiseRule{}.far_quantile;
+const double kFar = NoiseRule{}.outlier_quantile;
 
 RowNorm norm_of_row(const RowResidual& r) { return {r.length, r.angle}; }
 
@@ -52,7 +52,7 @@ class Tally {
     f.rms_before = std::sqrt(f.rms_before / f.rows);
     f.rms_after = std::sqrt(f.rms_after / f.rows);
     f.mean_after /= f.rows;
-    f.rms_without_rejected = kept_rows_ > 0 ? std::sqrt(kept_ / kept_rows_) : 0;
+    f.rms_without_outliers = kept_rows_ > 0 ? std::sqrt(kept_ / kept_rows_) : 0;
     if (f.angle.rows == 0) return f;
     f.angle.rms_before = std::sqrt(f.angle.rms_before / f.angle.rows);
     f.angle.rms_after = std::sqrt(f.angle.rms_after / f.angle.rows);
@@ -81,19 +81,19 @@ constexpr int kMostFigures = 100000;
 int shown_every(const DataSet& data) { return 1 + (data.rows.rows() - 1) / kMostFigures; }
 
 /// Adds those rows of `after` that are shown; `was` says the norms of its i-th row before,
-/// `rejected` is by row of the data set.
+/// `outlier` is by row of the data set.
 template <class Was>
 void add_figures(const std::vector<RowResidual>& after, const Was& was,
                  const std::vector<RowPlace>& places_before,
                  const std::vector<RowPlace>& places_after, bool check,
-                 const std::vector<char>& rejected, int every, std::vector<RowFigure>& rows) {
+                 const std::vector<char>& outlier, int every, std::vector<RowFigure>& rows) {
   size_t shown = 0;
   for (size_t i = 0; i < after.size(); ++i) {
     const RowResidual& a = after[i];
     if (a.row % every != 0) continue;
     const RowNorm b = was(i);
     const bool both = a.lengths > 0 && a.angles > 0;
-    rows.push_back({a.row, a.set, check, rejected[a.row] != 0, size_before(b, a), a.size(),
+    rows.push_back({a.row, a.set, check, outlier[a.row] != 0, size_before(b, a), a.size(),
                     both ? b.angle : 0, both ? a.angle : 0, places_after[shown].at,
                     places_before[shown].way, places_after[shown].way});
     ++shown;
@@ -139,7 +139,7 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   Prior held;
   held.free.assign(robot.parameters().size(), 0);
   FitRule rule;
-  rule.most_rejected = 0;  // all rows of a placement left out count
+  rule.most_outliers = 0;  // all rows of a placement left out count
   const Fit aligned = fit(align, judged.state, held, rule);
   judged.state = aligned.state;
   judged.align_noise = aligned.noise;

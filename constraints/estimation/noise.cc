@@ -65,17 +65,17 @@ Scale at_least(Scale a, double length, double angle) {
 
 /// Puts the rows aside that lie farther than any noise of their set, the farthest first, within the
 /// bound.
-bool put_far_rows_aside(const SetNoise& set, const Scale& scale, const NoiseRule& rule,
-                        std::vector<char>& outlier) {
+bool find_outliers(const SetNoise& set, const Scale& scale, const NoiseRule& rule,
+                   std::vector<char>& outlier) {
   std::vector<std::pair<double, int>> far;
-  const double most_sigmas = chi_quantile(set.lengths + set.angles, rule.far_quantile);
+  const double most_sigmas = chi_quantile(set.lengths + set.angles, rule.outlier_quantile);
   for (size_t i = 0; i < set.count(); ++i) {
     const double t = std::hypot(set.part(i, false) / scale.length, set.part(i, true) / scale.angle);
     if (t > most_sigmas) far.emplace_back(-t, set.row(i));
   }
   std::sort(far.begin(), far.end());
   // The share and two sigma of its own scatter: a small set may well have three false rows at 2 %.
-  const double share = rule.most_rejected * static_cast<double>(set.count());
+  const double share = rule.most_outliers * static_cast<double>(set.count());
   const size_t most = static_cast<size_t>(share + 2 * std::sqrt(share));
   for (size_t i = 0; i < std::min(most, far.size()); ++i) outlier[far[i].second] = 1;
   return far.size() > most;
@@ -143,7 +143,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
                  equations.group_freedoms(static_cast<int>(s));
     noise.estimated[s] = {robust(set, false), robust(set, true)};
     if (!rule.reject) continue;
-    noise.at_bound[s] = put_far_rows_aside(set, weighed(s), rule, noise.outlier);
+    noise.at_bound[s] = find_outliers(set, weighed(s), rule, noise.outlier);
     noise.estimated[s] = {root_mean_square(set, noise.outlier, false),
                           root_mean_square(set, noise.outlier, true)};
   }

@@ -10,14 +10,14 @@ namespace selfcal {
 /// What the estimate needs beside the residuals.
 struct NoiseRule {
   double global_freedom = 0;  ///< parameters that the rows determine, spread over all equations
-  double most_rejected = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
+  double most_outliers = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
   bool reject = false;        ///< false until the geometry has settled
   /// One noise for all sets of one method and data sheet: until the geometry has settled, a set
   /// that happens to fit well must not take the weight of the others.
   bool pool = false;
   /// A row beyond this chi quantile of its set's robust noise is put aside: one good row in a
   /// million.
-  double far_quantile = 1 - 1e-6;
+  double outlier_quantile = 1 - 1e-6;
 };
 
 struct Noise {

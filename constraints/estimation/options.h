@@ -11,7 +11,7 @@ struct Options {
   std::vector<std::string> free;  ///< names or patterns freed (gear ratios)
   bool gears = false;             ///< every transmission ratio is free, whatever it is called
   bool priors = true;  ///< false: the rows alone (tests); needs every direction determined
-  double most_rejected =
+  double most_outliers =
       0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it, 0 to 0.5
   int most_iterations = 200;  ///< 1 to 1000
   /// 1 sigma of each of the effects' parameters; empty: what the robot says of them.

@@ -140,7 +140,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
     const DenseEquations rows = pair.weighed(outlier);
     result = {};
     const Hypothesis best = weigh(pair, rows, options.search, result);
-    std::vector<char> far = pair.far_rows(rows, best);
+    std::vector<char> far = pair.outliers_among(rows, best);
     if (far == outlier) break;
     outlier = std::move(far);
   }

@@ -14,7 +14,7 @@ namespace selfcal {
 Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
            Between between, const DiagnosisOptions& options, const Progress& progress)
     : geometry_(std::move(geometry)),
-      most_rejected_(options.most_rejected),
+      most_outliers_(options.most_outliers),
       first_rows_(before.rows.rows()),
       both_(merged(before, after)),
       equations_(*geometry_, both_, Use::fit) {
@@ -86,15 +86,16 @@ EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, const SearchRule& 
       changes_.candidates, changes_.parameters, rule);
 }
 
-std::vector<char> Pair::far_rows(const DenseEquations& rows, const Hypothesis& changes) const {
+std::vector<char> Pair::outliers_among(const DenseEquations& rows,
+                                       const Hypothesis& changes) const {
   std::vector<int> with;
   for (const int c : changes.candidates)
     for (const int k : changes_.candidates.list[static_cast<size_t>(c)].main) with.push_back(k);
   const auto free = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(with.size()), HUGE_VAL);
   const Whitened some = whitened(rows);
   const Eigen::VectorXd left = left_of(whitened(every_), some, with, free);
-  return selfcal::far_rows(every_, left, static_cast<double>(some.A.cols() + free.size()),
-                           outlier_.size(), most_rejected_);
+  return selfcal::outliers_among(every_, left, static_cast<double>(some.A.cols() + free.size()),
+                                 outlier_.size(), most_outliers_);
 }
 
 }  // namespace selfcal

@@ -25,14 +25,14 @@ class Pair {
   DenseEquations weighed(const std::vector<char>& outlier) const;
   EvidenceEvaluator evaluator(const DenseEquations& rows, const SearchRule& rule) const;
   /// By row of both: what these changes, fitted to `rows`, leave of it is far beyond noise.
-  std::vector<char> far_rows(const DenseEquations& rows, const Hypothesis& changes) const;
+  std::vector<char> outliers_among(const DenseEquations& rows, const Hypothesis& changes) const;
 
  private:
   void fit_alone(const DataSet& part, const Options& options, const Progress& progress);
   Whitened whitened(const DenseEquations& rows) const;
 
   std::shared_ptr<const Robot> geometry_;
-  const double most_rejected_;
+  const double most_outliers_;
   const int first_rows_;
   const DataSet both_;
   const Equations equations_;

@@ -44,9 +44,7 @@ class Kernel {
     number();
   }
 
-  bool possible(KernelDomain closeness) const {
-    return closeness != KernelDomain::time || span_ > 0;
-  }
+  bool possible(KernelDomain domain) const { return domain != KernelDomain::time || span_ > 0; }
 
   /// Noise of one, of so much of the visits' own, of the readings' rounding, and of variance `same`
   /// that a configuration brings along.
@@ -86,15 +84,15 @@ class Kernel {
     return K;
   }
 
-  Eigen::MatrixXd of(KernelDomain closeness) const {
+  Eigen::MatrixXd of(KernelDomain domain) const {
     const auto n = static_cast<Eigen::Index>(rows_.row.size());
     const auto used = static_cast<Eigen::Index>(used_.size());
     Eigen::MatrixXd near(used, used);
     for (Eigen::Index i = 0; i < used; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
-        near(i, j) = near(j, i) = close(closeness, used_[i], used_[j]);
+        near(i, j) = near(j, i) = close(domain, used_[i], used_[j]);
     Eigen::MatrixXd directions = direction_;
-    if (closeness == KernelDomain::time)
+    if (domain == KernelDomain::time)
       for (Eigen::Index i = 0; i < n; ++i)
         if (rows_.row[i] >= 0) directions.row(i) = seen_by_tool(i).transpose();
     Eigen::MatrixXd K = directions * directions.transpose();
@@ -146,10 +144,10 @@ class Kernel {
     return pairs > 0 ? (sum * sum - squares) / pairs : sum;
   }
 
-  double close(KernelDomain closeness, int a, int b) const {
-    // Repeats that lie minutes apart are as far from each other as that: no closeness knows of
+  double close(KernelDomain domain, int a, int b) const {
+    // Repeats that lie minutes apart are as far from each other as that: no kernel knows of
     // another one, or the covariance would be none.
-    switch (closeness) {
+    switch (domain) {
       case KernelDomain::joints:
         return bell((alike_.row(a) - alike_.row(b)).squaredNorm() /
                     (kDiagnosis.structure.joints * kDiagnosis.structure.joints));
@@ -182,8 +180,8 @@ class Kernel {
 
 }  // namespace
 
-std::string_view to_string(KernelDomain closeness) {
-  switch (closeness) {
+std::string_view to_string(KernelDomain domain) {
+  switch (domain) {
     case KernelDomain::same:
       return "configuration";
     case KernelDomain::joints:
@@ -231,13 +229,13 @@ void add_noise(const Kernel& kernel, double of_visits, std::vector<DiscrepancyCo
   }
 }
 
-void add_kernel(KernelDomain closeness, std::span<const double> sizes,
+void add_kernel(KernelDomain domain, std::span<const double> sizes,
                 const std::shared_ptr<const NoiseBlocks>& noise, KernelBasis basis,
                 std::vector<DiscrepancyCovariance>& list) {
   const auto kernel = std::make_shared<const KernelBasis>(std::move(basis));
   for (const double kappa : sizes)
     list.push_back(
-        {.kind = static_cast<int>(closeness), .kappa = kappa, .blocks = noise, .kernel = kernel});
+        {.kind = static_cast<int>(domain), .kappa = kappa, .blocks = noise, .kernel = kernel});
 }
 
 /// What no known effect explains, beside the noise.
@@ -250,11 +248,10 @@ void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
                     .blocks = kernel.noise(of_visits, kappa * kappa * once)});
   const auto usual =
       kernel.noise(of_visits, kDiagnosis.structure.usual * kDiagnosis.structure.usual * once);
-  for (const KernelDomain closeness :
-       {KernelDomain::joints, KernelDomain::place, KernelDomain::time})
-    if (kernel.possible(closeness))
-      add_kernel(closeness, kDiagnosis.structure.smooth, usual,
-                 basis_of_kernel(*usual, once * kernel.of(closeness)), list);
+  for (const KernelDomain domain : {KernelDomain::joints, KernelDomain::place, KernelDomain::time})
+    if (kernel.possible(domain))
+      add_kernel(domain, kDiagnosis.structure.smooth, usual,
+                 basis_of_kernel(*usual, once * kernel.of(domain)), list);
   const Eigen::MatrixXd likeness = kernel.likeness();
   const Eigen::MatrixXd alike = *low_rank_root(likeness, likeness.rows());
   for (Eigen::Index joint = 0; joint < joints; ++joint)

@@ -19,9 +19,9 @@ enum class KernelDomain {
   time = 4,    ///< soon after each other, as the tool sees it: of the base it would be a drift
   turned = 5,  ///< one joint is off by a smooth function of one or two readings
 };
-std::string_view to_string(KernelDomain closeness);
+std::string_view to_string(KernelDomain domain);
 
-/// Noise alone first (and noise that repeats share a part of), then every closeness at several
+/// Noise alone first (and noise that repeats share a part of), then every domain at several
 /// sizes over the noise. `of_visits` is the noise from visit to visit over that of immediate
 /// repeats, see noise_of_visits. `rows` are the equations that are weighed, `ends` the
 /// endpoint's pose by row of the data set, `size` the robot's (m, see size_of). `by_joint`

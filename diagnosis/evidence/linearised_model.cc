@@ -17,7 +17,7 @@
 namespace selfcal {
 Options geometry_options(const DiagnosisOptions& options) {
   Options geometry;
-  geometry.most_rejected = options.most_rejected;
+  geometry.most_outliers = options.most_outliers;
   geometry.seed = options.seed;
   geometry.gears = true;  // a ratio that is off is geometry: it must not be taken for a cause
   return geometry;
@@ -38,7 +38,7 @@ State extended(const State& state, Eigen::Index parameters) {
 LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataSet& data,
                                  const DiagnosisOptions& options, const Progress& progress)
     : data_(data),
-      most_rejected_(options.most_rejected),
+      most_outliers_(options.most_outliers),
       geometry_(with_mass_of_its_size(geometry_of(std::move(robot)))),
       context_(context_of(*geometry_, data)),
       candidates_(selfcal::candidates(*geometry_, data, context_)),
@@ -180,8 +180,8 @@ Eigen::VectorXd LinearisedModel::geometry_leaves(const Whitened& rows) const {
 
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
   std::vector<char> outlier =
-      far_rows(all_, residuals, static_cast<double>(nuisance_.columns.size()), outlier_.size(),
-               most_rejected_);
+      outliers_among(all_, residuals, static_cast<double>(nuisance_.columns.size()),
+                     outlier_.size(), most_outliers_);
   if (outlier == outlier_ && std::abs(variance - 1) < 0.1) return false;
   outlier_ = std::move(outlier);
   left_ = residuals;

@@ -89,7 +89,7 @@ class LinearisedModel {
   void bound_noise();
 
   const DataSet& data_;
-  double most_rejected_;
+  double most_outliers_;
   std::shared_ptr<const Robot> geometry_, everything_;
   MeasurementContext context_;
   Candidates candidates_;

@@ -87,8 +87,8 @@ DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
   return some;
 }
 
-std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
-                           double unknowns, std::size_t rows, double most) {
+std::vector<char> outliers_among(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                                 double unknowns, std::size_t rows, double most) {
   const double variance = robust_variance(all, residuals, unknowns);
   std::vector<double> squares(rows, 0);
   std::vector<int> count(rows, 0);

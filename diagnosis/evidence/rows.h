@@ -27,8 +27,8 @@ DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 /// By row of the data set (which has `rows`), 1 where what an explanation of so many `unknowns`
 /// leaves of it (`residuals`, by equation) lies beyond one in a hundred thousand: the farthest, up
 /// to a share of about `most`.
-std::vector<char> far_rows(const DenseEquations& all, const Eigen::VectorXd& residuals,
-                           double unknowns, std::size_t rows, double most);
+std::vector<char> outliers_among(const DenseEquations& all, const Eigen::VectorXd& residuals,
+                                 double unknowns, std::size_t rows, double most);
 
 /// The endpoint's pose with the robot file's own values, by row.
 std::vector<Eigen::Isometry3d> ends(const Robot& robot, const Observations& rows);

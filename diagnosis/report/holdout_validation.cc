@@ -70,7 +70,7 @@ void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValid
     const bool false_reading = near > kDiagnosis.validation.beyond * limit *
                                           std::max(noise, whole.check_scale[all.set].length);
     if (false_reading)
-      validation.rejected.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
+      validation.outliers.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
                                      "neither the geometry nor any effect found comes near it"});
     validation.rows.push_back({square(left.nominal.check[i]), square(before), square(after),
                                square(all), floor_of(all), block[all.row], false_reading});

@@ -18,7 +18,7 @@ struct HoldoutValidation {
   Adjusted all;                        ///< its fit
   bool converged = true;               ///< every fit that was judged
   std::string stop_reason;             ///< of the first one that did not converge
-  std::vector<Outlier> rejected;       ///< validation rows that no model explains
+  std::vector<Outlier> outliers;       ///< validation rows that no model explains
 };
 
 /// `before` is the geometry's own adjustment; the parameters of `correction` are identified, those

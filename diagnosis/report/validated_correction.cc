@@ -31,10 +31,10 @@ class CorrectionValidation {
     result_.validation_rows = std::move(validation.rows);
     result_.gap = gap_of(result_.validation_rows, options_.seed, freedom_);
     result_.floor_freedom = freedom_;
-    result_.rejected = std::move(validation.rejected);
+    result_.outliers = std::move(validation.outliers);
     for (int row = 0; row < data_.rows.rows(); ++row)
       if (linearised_.outlier()[row])
-        result_.rejected.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
+        result_.outliers.push_back({row + 1, data_.sets[data_.rows.set[row]].name, 0, false,
                                     "no explanation comes near it: a false reading"});
     result_.model = validation.model;
     result_.values = validation.all.fitted.state.xi;

@@ -42,8 +42,8 @@ double gain_of_outliers(const EvidenceEvaluator& evaluator, const Hypothesis& be
   const auto terms = evaluator.terms(best);
   const auto [columns, sigma] = MarginalLikelihood::unfold(terms);
   const std::vector<char> far =
-      far_rows(kept, evaluator.rows().left_of(y, columns, sigma),
-               static_cast<double>(evaluator.rows().rows().A.cols()), count, most);
+      outliers_among(kept, evaluator.rows().left_of(y, columns, sigma),
+                     static_cast<double>(evaluator.rows().rows().A.cols()), count, most);
   std::vector<int> out;
   for (size_t e = 0; e < kept.row.size(); ++e)
     if (kept.row[e] >= 0 && far[kept.row[e]]) out.push_back(static_cast<int>(e));
@@ -127,7 +127,7 @@ double share_as_good(const std::vector<double>& found, double seen) {
 
 NullDistribution::NullDistribution(const LinearisedModel& linearised, EvidenceEvaluator& evaluator,
                                    const Observations& data, int resamples, unsigned long long seed,
-                                   double most_rejected) {
+                                   double most_outliers) {
   const DenseEquations kept = linearised.kept();
   const Eigen::VectorXd residual = linearised.geometry_residuals(evaluator.rows().rows());
   SignRandom random(seed);
@@ -138,7 +138,7 @@ NullDistribution::NullDistribution(const LinearisedModel& linearised, EvidenceEv
   for (int i = 0; i < resamples; ++i) {
     const EvidenceEvaluator::Found& best = found[static_cast<std::size_t>(i)];
     const double gain = gain_of_outliers(evaluator, best.hypothesis, Y.col(i), kept,
-                                         static_cast<std::size_t>(data.rows()), most_rejected);
+                                         static_cast<std::size_t>(data.rows()), most_outliers);
     found_.push_back(best.log_odds + std::max(0.0, gain));
   }
 }

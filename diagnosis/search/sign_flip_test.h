@@ -18,10 +18,10 @@ double share_as_good(const std::vector<double>& found, double seen);
 class NullDistribution {
  public:
   /// `resamples` times in rows with resampled signs, whole configurations at a time. `evaluator`
-  /// sees the true rows again afterwards. `most_rejected`: share of the rows that may be put aside.
+  /// sees the true rows again afterwards. `most_outliers`: share of the rows that may be put aside.
   NullDistribution(const LinearisedModel& linearised, EvidenceEvaluator& evaluator,
                    const Observations& data, int resamples, unsigned long long seed,
-                   double most_rejected);
+                   double most_outliers);
   explicit NullDistribution(std::vector<double> found) : found_(std::move(found)) {}
 
   double p_of(double found) const { return share_as_good(found_, found); }

@@ -108,7 +108,7 @@ dds::Result borrow(const ResultMessage& result) {
           .check_after_ = result.check_after,
           .endpoint_sigma_ = result.endpoint_sigma,
           .touches_ = result.touches,
-          .rejected_ = result.rejected,
+          .rejected_ = result.outliers,
           .identified_ = result.identified,
           .json_ = text(result.json),
           .cause_ = text(result.cause),
@@ -122,7 +122,7 @@ ResultMessage to_plain(const dds::Result& result) {
                               .check_after = result.check_after_,
                               .endpoint_sigma = result.endpoint_sigma_,
                               .touches = result.touches_,
-                              .rejected = result.rejected_,
+                              .outliers = result.rejected_,
                               .identified = result.identified_};
   return {figures,
           milliseconds(result.stamp_),

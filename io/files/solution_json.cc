@@ -57,12 +57,12 @@ Json of_set(const SetResult& set) {
   return json;
 }
 
-Json of_rejected(const Outlier& rejected) {
-  return Json::object({{"row", rejected.row},
-                       {"set", rejected.set},
-                       {"part", rejected.check ? "check" : "fit"},
-                       {"residual", finite(rejected.residual)},
-                       {"why", rejected.why}});
+Json of_outlier(const Outlier& outlier) {
+  return Json::object({{"row", outlier.row},
+                       {"set", outlier.set},
+                       {"part", outlier.check ? "check" : "fit"},
+                       {"residual", finite(outlier.residual)},
+                       {"why", outlier.why}});
 }
 
 /// Appends figures (Figures or AngleFigures) to `json`; without rows there are none.
@@ -88,7 +88,7 @@ Json of_residuals(const Residuals& residuals) {
   add_figures(residuals.fit, fit);
   add_figures(residuals.check, check);
   check["rms_without_rejected"] =
-      residuals.check.rows > 0 ? finite(residuals.check.rms_without_rejected) : Json(nullptr);
+      residuals.check.rows > 0 ? finite(residuals.check.rms_without_outliers) : Json(nullptr);
   check["by_set"] = array_of(residuals.check_by_set, [](const SetFigures& set) {
     Json json = Json::object({{"name", set.name}, {"aligned", set.aligned}});
     add_figures(set.figures, json);
@@ -215,7 +215,7 @@ nlohmann::ordered_json to_json(const Solution& solution, const std::string& robo
   json["gauge"] = array_of(solution.gauge, note_as("why"));
   json["unexcited"] = array_of(solution.unexcited, note_as("what"));
   json["sets"] = array_of(solution.sets, of_set);
-  json["rejected"] = array_of(solution.rejected, of_rejected);
+  json["rejected"] = array_of(solution.outliers, of_outlier);
   json["residual"] = of_residuals(solution.residual);
   json["endpoint_sigma"] = of_endpoint(solution.endpoint, solution.orientation_seen);
   json["endpoint_sigma"]["workspace"] = of_endpoint(solution.workspace, solution.orientation_seen);

@@ -22,7 +22,7 @@ Result<void> add_result(sqlite3* database, const ResultRecord& result) {
       {result.session, result.unix_ms, std::string(to_string(result.answer)),
        std::string(to_string(result.decision)), result.why, result.p_value, result.check_before,
        result.check_after, result.endpoint_sigma, std::int64_t{result.touches},
-       std::int64_t{result.rejected}, std::int64_t{result.identified}, *robot});
+       std::int64_t{result.outliers}, std::int64_t{result.identified}, *robot});
   if (!added) return tl::unexpected(added.error());
   if (auto put = put_checksum(database, kResults, result.session); !put) return put;
   if (!result.json.empty()) {
@@ -76,7 +76,7 @@ ResultRecord Store::figures_of(const sqlite::Statement& row) {
   result.check_after = row.real(7);
   result.endpoint_sigma = row.real(8);
   result.touches = static_cast<std::uint32_t>(row.integer(9));
-  result.rejected = static_cast<std::uint32_t>(row.integer(10));
+  result.outliers = static_cast<std::uint32_t>(row.integer(10));
   result.identified = static_cast<std::uint32_t>(row.integer(11));
   return result;
 }

@@ -62,7 +62,7 @@ ResultMessage improved() {
   result.check_after = 0.0228e-3;
   result.endpoint_sigma = 0.0959e-3;
   result.touches = 240;
-  result.rejected = 3;
+  result.outliers = 3;
   result.identified = 21;
   result.json = R"({"converged": true})";
   return result;

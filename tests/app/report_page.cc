@@ -156,7 +156,7 @@ TEST_F(ReportPage, TellsInOneSentenceWhatFalseRowsHide) {
   solution.residual.check.rows = 12;
   solution.residual.check.rms_before = 2e-3;
   solution.residual.check.rms_after = 1e-3;
-  solution.residual.check.rms_without_rejected = 2.5e-5;
+  solution.residual.check.rms_without_outliers = 2.5e-5;
 
   EXPECT_EQ(
       headline(solution),

@@ -76,7 +76,7 @@ TEST(Verdict, IsNotImprovedWhereTheSquaresGrow) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 90 * kMicrometre);
   rows.add(0, 5, 100 * kMicrometre, 3000 * kMicrometre);
-  ASSERT_TRUE(rows.figures().check_rows.back().rejected);  // far, by the noise of the new model
+  ASSERT_TRUE(rows.figures().check_rows.back().outlier);  // far, by the noise of the new model
   EXPECT_EQ(rows.answer(), Answer::not_improved);
 }
 

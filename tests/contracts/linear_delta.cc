@@ -107,7 +107,7 @@ TEST(LinearDeltaTouches, BringThePrinterBackToItsNoise) {
   // 30 check rows: their root mean square is within 4 sigma / sqrt(60) of the noise, and what 15
   // parameters of 60 rows leave unknown adds a quarter of the variance.
   EXPECT_LT(solution.residual.check.rms_after, kNoise * (1.12 + 0.52));
-  EXPECT_TRUE(solution.rejected.empty());
+  EXPECT_TRUE(solution.outliers.empty());
 }
 
 TEST(LinearDeltaTouches, LeaveOutTheRowsThatNoPositionHasAndSayWhy) {
@@ -117,13 +117,13 @@ TEST(LinearDeltaTouches, LeaveOutTheRowsThatNoPositionHasAndSayWhy) {
   const Solution solution = identify(*session.robot, session.data);
   EXPECT_TRUE(solution.converged) << solution.stop_reason;
   EXPECT_TRUE(solution.values.allFinite());
-  ASSERT_EQ(solution.rejected.size(), 2);
-  EXPECT_EQ(solution.rejected[0].row, 4);
-  EXPECT_TRUE(solution.rejected[0].check);
-  EXPECT_THAT(solution.rejected[0].why, HasSubstr("rods 1 and 2 cannot meet"));
-  EXPECT_EQ(solution.rejected[1].row, 5);
-  EXPECT_FALSE(solution.rejected[1].check);
-  EXPECT_THAT(solution.rejected[1].why, HasSubstr("no position of the effector"));
+  ASSERT_EQ(solution.outliers.size(), 2);
+  EXPECT_EQ(solution.outliers[0].row, 4);
+  EXPECT_TRUE(solution.outliers[0].check);
+  EXPECT_THAT(solution.outliers[0].why, HasSubstr("rods 1 and 2 cannot meet"));
+  EXPECT_EQ(solution.outliers[1].row, 5);
+  EXPECT_FALSE(solution.outliers[1].check);
+  EXPECT_THAT(solution.outliers[1].why, HasSubstr("no position of the effector"));
   EXPECT_LT(solution.residual.check.rms_after, 2e-5 * (1.12 + 0.52));
 }
 
@@ -135,7 +135,7 @@ TEST(LinearDeltaTouches, AreNoTouchesWhereNoneHasAPosition) {
   EXPECT_FALSE(solution.converged);
   EXPECT_EQ(solution.verdict.answer, Answer::not_determined);
   EXPECT_THAT(solution.verdict.why, HasSubstr("rods 1 and 2 cannot meet"));
-  EXPECT_EQ(solution.rejected.size(), 60);
+  EXPECT_EQ(solution.outliers.size(), 60);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST_F(DdsService, TellsItsResultHoweverLong) {
                               .check_after = 2e-5,
                               .endpoint_sigma = 1e-5,
                               .touches = 240,
-                              .rejected = 3,
+                              .outliers = 3,
                               .identified = 25};
   const ResultMessage sent{figures,       6,          "r",       "h", 4,
                            "full",        "improved", "applied", "w", std::string(300'000, 'x'),

@@ -42,9 +42,9 @@ TEST(NullDistribution, CountsWhatIsAsGoodAndTheRowsThemselves) {
 
 /// A session's rows as the search sees them.
 struct Seen {
-  explicit Seen(const DataSet& session, double most_rejected = 0.02)
+  explicit Seen(const DataSet& session, double most_outliers = 0.02)
       : data(session),
-        options(with(most_rejected)),
+        options(with(most_outliers)),
         linearised(TwoSessions(2).robot, data, options, {}),
         rows(linearised.kept()),
         evaluator(linearised.whitened(),
@@ -53,9 +53,9 @@ struct Seen {
                              comparable_readings(linearised.geometry(), data.rows.q)),
                   linearised.candidates(), linearised.parameters(), options.search) {}
 
-  static DiagnosisOptions with(double most_rejected) {
+  static DiagnosisOptions with(double most_outliers) {
     DiagnosisOptions options = quick();
-    options.most_rejected = most_rejected;
+    options.most_outliers = most_outliers;
     return options;
   }
 

@@ -189,7 +189,7 @@ TEST_F(BusSession, OfAnOrdinaryUserEqualsThatOnTheSimulatedPorts) {
       "%s: %u touches, %u put aside; planned in %.0f s, touched in %.0f s, solved in %.0f s (guest "
       "time); %.3f mm to %.4f mm; from the simulated ports by at most %.3f sigma (%s); readings "
       "within %.2f us of the robot's truth; edges driven at most %.1f us late\n",
-      wires.interface.c_str(), result.touches, result.rejected, seconds(planned - began),
+      wires.interface.c_str(), result.touches, result.outliers, seconds(planned - began),
       seconds(collected - planned), seconds(monotonic_now() - collected), 1e3 * before, 1e3 * after,
       sigmas, name.c_str(), pairing_us, worst_lateness(cell));
   const std::vector<double> stops = stop_times(cell, stop_watch);

@@ -45,7 +45,7 @@ Solution example() {
   set.rows = 92;
   set.nuisance = {{"table.nx", 0.01, 1e-6}};
   solution.sets = {set};
-  solution.rejected = {{17, "table", 4.1e-4, false, "outlier"},
+  solution.outliers = {{17, "table", 4.1e-4, false, "outlier"},
                        {18, "table", 3.9e-4, true, "outlier among the check rows"}};
   solution.residual.fit = {180, false, 1.2e-3, 2.1e-5, 1.7e-5, 6e-5, 0, {}};
   solution.observability.condition = std::numeric_limits<double>::infinity();

@@ -143,7 +143,7 @@ TEST(Store, GivesBackAResultBitByBitAndEndsTheSession) {
   EXPECT_TRUE(same_bits(back.check_after, result.check_after));
   EXPECT_TRUE(same_bits(back.endpoint_sigma, result.endpoint_sigma));
   EXPECT_EQ(back.touches, result.touches);
-  EXPECT_EQ(back.rejected, result.rejected);
+  EXPECT_EQ(back.outliers, result.outliers);
   EXPECT_EQ(back.identified, result.identified);
   EXPECT_EQ(back.json, result.json);
   EXPECT_EQ(back.robot_text, result.robot_text);

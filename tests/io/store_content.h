@@ -88,7 +88,7 @@ inline void put(std::ostream& out, const ResultRecord& r) {
   for (const double each : {r.p_value, r.check_before, r.check_after, r.endpoint_sigma}) {
     out << '|' << std::bit_cast<std::uint64_t>(each);
   }
-  out << '|' << r.touches << '|' << r.rejected << '|' << r.identified << '|' << r.json << '|'
+  out << '|' << r.touches << '|' << r.outliers << '|' << r.identified << '|' << r.json << '|'
       << r.robot_text << '\n';
 }
 

@@ -88,7 +88,7 @@ inline ResultRecord some_result(std::int64_t session) {
   result.check_after = -0.0;
   result.endpoint_sigma = std::numeric_limits<double>::denorm_min();
   result.touches = 240;
-  result.rejected = 3;
+  result.outliers = 3;
   result.identified = 27;
   result.json = "{\"answer\": \"better\"}";
   result.robot_text = "robot: of session " + std::to_string(session) + "\n";

@@ -63,7 +63,7 @@ DataSet seen_from(const DataSet& data, const Eigen::Isometry3d& place) {
 
 void expect_same(const Solution& other, const Solution& one, const std::string& what) {
   EXPECT_EQ(other.verdict.answer, one.verdict.answer) << what << ": " << other.verdict.why;
-  EXPECT_EQ(other.rejected.size(), one.rejected.size()) << what;
+  EXPECT_EQ(other.outliers.size(), one.outliers.size()) << what;
   for (size_t i = 0; i < one.parameters.size(); ++i) {
     const ParameterResult& a = one.parameters[i];
     const ParameterResult& b = other.parameters[i];

@@ -173,7 +173,7 @@ TEST(Recovery, KeepsAnEffectThatTheModelLacksOutOfTheRejectedRowsAndInsideTheSta
       q -= 2e-4 * std::sin(3 * q);
     }
     const Solution solution = identify(*robot, session.data);
-    EXPECT_LT(solution.rejected.size(), 4u) << seed;
+    EXPECT_LT(solution.outliers.size(), 4u) << seed;
     const Eigen::MatrixXd q = random_poses(*robot, nullptr, 200, 3);
     double square = 0, effect = 0;
     for (Eigen::Index i = 0; i < q.rows(); ++i) {

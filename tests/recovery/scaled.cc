@@ -58,7 +58,7 @@ TEST_P(Scaled, RobotsOfTenCentimetresAndTenMetresGetTheAnswerOfOneOfOneMetre) {
     data.target *= scale;
     const Solution other = identify(*robot, data);
     EXPECT_EQ(other.verdict.answer, one.verdict.answer) << other.verdict.why;
-    EXPECT_EQ(other.rejected.size(), one.rejected.size());
+    EXPECT_EQ(other.outliers.size(), one.outliers.size());
     EXPECT_EQ(other.gauge.size(), one.gauge.size());
     EXPECT_NEAR(other.endpoint.median / scale, one.endpoint.median, 1e-6 * one.endpoint.median);
     EXPECT_NEAR(other.residual.check.rms_after / scale, one.residual.check.rms_after,

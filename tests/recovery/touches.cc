@@ -120,7 +120,7 @@ TEST(Touches, PutFalseRowsAsideByNameAndOnlyThem) {
   }
   const Solution solution = identify(*robot, session.data);
   std::set<int> named;
-  for (const Outlier& r : solution.rejected) named.insert(r.row);
+  for (const Outlier& r : solution.outliers) named.insert(r.row);
   int missed = 0, innocent = 0;
   for (const int row : wrong) missed += named.count(row) == 0;
   for (const int row : named) innocent += wrong.count(row) == 0;

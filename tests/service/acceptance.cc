@@ -151,10 +151,10 @@ TEST(AcceptanceDecision, TakesALimitOfZeroAsNoChangeAtAll) {
 
 TEST(AcceptanceDecision, CountsAsPutAsideOnlyRowsThatWereNotToIdentify) {
   Case one;
-  one.candidate.rejected = {{3, "table", 4e-4, false, "outlier"},
+  one.candidate.outliers = {{3, "table", 4e-4, false, "outlier"},
                             {7, "table", 3e-4, true, "outlier among the check rows"},
                             {9, "wall", 2e-4, false, "outlier"}};
-  EXPECT_EQ(rows_put_aside(one.candidate), 2);
+  EXPECT_EQ(count_outliers(one.candidate), 2);
 }
 
 TEST(AcceptanceDecision, CountsTheParametersThatAreIdentified) {
@@ -169,7 +169,7 @@ TEST(AcceptanceDecision, CountsTheParametersThatAreIdentified) {
 Solution check_of(int rows, double rms) {
   Solution solution;
   solution.residual.check.rows = rows;
-  solution.residual.check.rms_after = solution.residual.check.rms_without_rejected = rms;
+  solution.residual.check.rms_after = solution.residual.check.rms_without_outliers = rms;
   return solution;
 }
 

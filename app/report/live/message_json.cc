@@ -77,7 +77,7 @@ Json to_json(const ResultMessage& result) {
                        {"check_after", finite(result.check_after)},
                        {"endpoint_sigma", finite(result.endpoint_sigma)},
                        {"touches", result.touches},
-                       {"rejected", result.rejected},
+                       {"rejected", result.outliers},
                        {"identified", result.identified},
                        {"cause", result.cause},
                        {"cause_probability", finite(result.cause_probability)},

@@ -211,7 +211,7 @@ std::string figures(const ResultMessage& result) {
 
 std::string counts(const ResultMessage& result) {
   std::string text = printed("%u touches", result.touches);
-  if (result.rejected > 0) text += printed(", %u put aside", result.rejected);
+  if (result.outliers > 0) text += printed(", %u put aside", result.outliers);
   if (result.identified > 0) text += printed(", %u parameters", result.identified);
   return text;
 }

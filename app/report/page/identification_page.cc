@@ -59,7 +59,7 @@ Json rows_json(const DataSet& data, const std::vector<RowFigure>& all) {
   each("row", [](const RowFigure& r) { return r.row + 1; });
   each("set", [](const RowFigure& r) { return r.set; });
   each("check", [](const RowFigure& r) { return r.check ? 1 : 0; });
-  each("rejected", [](const RowFigure& r) { return r.rejected ? 1 : 0; });
+  each("rejected", [](const RowFigure& r) { return r.outlier ? 1 : 0; });
   each("angle_alone",
        [&](const RowFigure& r) { return data.sets[r.set].method->has_lengths() ? 0 : 1; });
   each("before", [](const RowFigure& r) { return short_number(r.before); });

@@ -145,7 +145,7 @@ ResultRecord Analyst::result_of_cause(const CauseFindings& found) const {
   figures.check_before = diagnosis.gap.rms_before;
   figures.check_after = diagnosis.gap.rms_after;
   figures.endpoint_sigma = std::nan("");
-  figures.rejected = static_cast<std::uint32_t>(diagnosis.rejected.size());
+  figures.outliers = static_cast<std::uint32_t>(diagnosis.outliers.size());
   ResultRecord result = new_result(figures);
   result.answer = answer_to_cause(diagnosis);
   result.decision = ResultDecision::none;

@@ -59,7 +59,7 @@ std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& befo
                                                const std::vector<CheckRow>& after) {
   double squares_before = 0, squares_after = 0, rows = 0;
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
-    if (before[i].rejected || after[i].rejected) continue;
+    if (before[i].outlier || after[i].outlier) continue;
     squares_before += before[i].residual * before[i].residual;
     squares_after += after[i].residual * after[i].residual;
     ++rows;
@@ -76,7 +76,7 @@ AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& activ
   decided.answer = candidate.verdict.answer;
   decided.p_value = candidate.verdict.p_value;
   decided.endpoint_sigma = candidate.workspace.rms;
-  decided.rejected = rows_put_aside(candidate);
+  decided.outliers = count_outliers(candidate);
   decided.identified = parameters_identified(candidate);
   std::tie(decided.check_before, decided.check_after) =
       rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
@@ -154,8 +154,8 @@ std::uint32_t parameters_identified(const Solution& solution) {
       std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status));
 }
 
-std::uint32_t rows_put_aside(const Solution& solution) {
-  return static_cast<std::uint32_t>(std::ranges::count(solution.rejected, false, &Outlier::check));
+std::uint32_t count_outliers(const Solution& solution) {
+  return static_cast<std::uint32_t>(std::ranges::count(solution.outliers, false, &Outlier::check));
 }
 
 CheckDecision decide_on_check(const Solution& then, const Solution& now, double least_p) {
@@ -163,7 +163,7 @@ CheckDecision decide_on_check(const Solution& then, const Solution& now, double 
   const Figures& before = then.residual.check;
   const Figures& after = now.residual.check;
   decided.check_after = after.rms_after;
-  decided.check_before = before.rms_without_rejected;
+  decided.check_before = before.rms_without_outliers;
   if (before.rows == 0 || after.rows == 0 || !(decided.check_before > 0) ||
       !std::isfinite(decided.check_after)) {
     decided.why = "nothing to compare with";

@@ -41,7 +41,7 @@ FitDecision decide_on_fit(const Solution& solution, const std::vector<Set>& sets
 std::uint32_t parameters_identified(const Solution& solution);
 /// Rows put aside, from which nothing was identified. Outliers among the check rows are named in
 /// the result, but count all the same.
-std::uint32_t rows_put_aside(const Solution& solution);
+std::uint32_t count_outliers(const Solution& solution);
 
 /// Whether the active model explains the touches of a quick check: check_after is their rms,
 /// check_before that of the rows that judged the session behind the active parameters (m).
