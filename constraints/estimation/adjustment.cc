@@ -105,8 +105,9 @@ class Adjustment {
     return xi;
   }
 
-  Fit run_fit(const State& start, const Prior& prior, std::string_view stage) {
+  Fit run_fit(const State& start, const Prior& prior, std::string_view stage, bool unmask = true) {
     FitRule rule;
+    rule.unmask = unmask;
     rule.most_iterations = options_.most_iterations;
     rule.most_outliers = options_.most_outliers;
     const auto on_iteration = [&](int iteration) {
@@ -126,7 +127,8 @@ class Adjustment {
     Prior prior = adjusted_.prior;
     for (size_t i = 0; i < parameters().size(); ++i)
       prior.free[i] = adjusted_.prior.free[i] && is_placed(parameters()[i]);
-    return run_fit(start, prior, "placing the nominal robot");
+    // What the nominal robot's errors leave is no noise to tell a false row by.
+    return run_fit(start, prior, "placing the nominal robot", false);
   }
 
   Fit fit_all() { return run_fit(start_, adjusted_.prior, "identifying"); }

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
+#include "constraints/estimation/masked_outlier.h"
 #include "kinematics/description.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/size.h"
@@ -321,12 +323,27 @@ class Iteration {
     const bool keep = before == NoiseStage::nuisance;
     const bool same_rows = noise.outlier == fit_.noise.outlier;
     const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
-    if (arrived && same_rows && same_noise) return stop(true, *arrived);
+    if (arrived && same_rows && same_noise) {
+      if (put_masked_outlier_aside()) return;
+      return stop(true, *arrived);
+    }
     if (keep && (same_rows || ++regroupings_ > kRegroupings)) return;
     if (!keep) fit_.noise.used = noise.used;
     fit_.noise.outlier = noise.outlier;
     fit_.noise.at_bound = noise.at_bound;
     relinearise();
+  }
+
+  /// The noise is found anew without it; it comes back where that finds it among the others.
+  bool put_masked_outlier_aside() {
+    if (!rule_.unmask) return false;
+    const std::optional<int> row = masked_outlier(equations_, fit_.state, fit_.noise, prior_);
+    if (!row || unmasked_.contains(*row)) return false;
+    unmasked_.insert(*row);
+    fit_.noise.outlier[static_cast<std::size_t>(*row)] = 1;
+    stage_ = NoiseStage::pooled;
+    relinearise();
+    return true;
   }
 
   /// The residuals are as large as the noise that they are weighed with.
@@ -383,7 +400,8 @@ class Iteration {
   std::vector<RowNorm> tried_;  ///< of the last step that was not taken
   NoiseStage stage_ = NoiseStage::robust;
   bool done_ = false;
-  int regroupings_ = 0;  ///< changes of the rows put aside since the noise is kept
+  std::set<int> unmasked_;  ///< rows that were put aside as masked outliers
+  int regroupings_ = 0;     ///< changes of the rows put aside since the noise is kept
 };
 
 }  // namespace

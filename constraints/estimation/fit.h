@@ -23,6 +23,7 @@ struct FitRule {
   double most_outliers = 0;      ///< as NoiseRule's
   double step_tolerance = 1e-5;  ///< of the whitened step: a hundred-thousandth of a sigma
   bool near = false;             ///< it starts where a fit of a part of the rows ended
+  bool unmask = false;           ///< looks for outliers that bend the fit to themselves
 };
 
 struct Fit {

@@ -4,6 +4,7 @@
 // and tool; 240 touches of 20 um on four unknown planes and a gauge of two faces 200 mm apart.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -25,12 +26,13 @@ struct Outcome {
   int within = 0, identified = 0;  ///< parameters within 1.96 sigma of the truth
 };
 
-/// One session from `start` to its result over DDS.
+/// One session from `start` to its result over DDS; a cause that was looked for after it is not it.
 ResultMessage calibrate(Cell& cell) {
   cell.start_service();
   if (!cell.start_session()) return {};
   cell.until([&] { return !cell.results.empty() && cell.in_state("idle"); });
-  return cell.results.empty() ? ResultMessage{} : cell.results.back();
+  const auto full = std::ranges::find(cell.results, "full", &ResultMessage::kind);
+  return full == cell.results.end() ? ResultMessage{} : *full;
 }
 
 Outcome outcome_of(const Cell& cell, const ResultMessage& result) {

@@ -1,0 +1,95 @@
+// A false touch of high leverage bends the model to itself and makes good ones look false.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "constraints/estimation/identification.h"
+#include "constraints/estimation/masked_outlier.h"
+#include "tests/sim/simulated_robot.h"
+
+namespace selfcal {
+namespace {
+
+/// So few touches of four planes that most have a high leverage: 20 um of noise.
+Simulated few_touches(int seed) {
+  const auto plane = [](const std::string& name, const std::string& surface) {
+    return "  " + name + ": {method: plane, rows: 20, noise: 2.0e-5, surface: {" + surface + "}}\n";
+  };
+  return made("robot: rx90.robot.yaml\nseed: " + std::to_string(seed) +
+              "\nerrors: {length: 1.0e-3, angle: 1.0e-3}\nsets:\n" +
+              plane("table", "point: [0.6, 0, 0.2], normal: [0, 0, 1]") +
+              plane("wall", "point: [0.7, 0, 0.6], normal: [-1, 0, 0]") +
+              plane("side", "point: [0.4, 0.6, 0.5], normal: [0, -1, 0]") +
+              plane("ramp", "point: [0.5, -0.3, 0.3], normal: [0, 0.6, 0.8]"));
+}
+
+/// Rows that identify.
+std::vector<int> fit_rows(const DataSet& data) {
+  std::vector<int> rows;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (!data.rows.check[row]) rows.push_back(row);
+  return rows;
+}
+
+/// Distance of a row's touch from its surface (m).
+double off(const Simulated& simulated, int row) {
+  for (const RowResidual& each : residuals_at_truth(simulated))
+    if (each.row == row) return each.length;
+  return 0;
+}
+
+TEST(MaskedOutlier, IsFoundWhereverItIsAndNoGoodRowForIt) {
+  int missed = 0, innocent = 0, tried = 0;
+  for (int seed = 1; seed <= 3; ++seed) {
+    const Simulated simulated = few_touches(seed);
+    for (const int row : fit_rows(simulated.data)) {
+      Simulated wrong = simulated;
+      wrong.data.rows.q(row, 1) += 3e-3;
+      if (off(wrong, row) < 1e-3) continue;
+      const Solution solution = identify(rx90(), wrong.data, {}, {});
+      bool found = false;
+      for (const Outlier& each : solution.outliers) {
+        if (each.row == row + 1)
+          found = true;
+        else if (!each.check)
+          ++innocent;
+      }
+      ++tried;
+      missed += found ? 0 : 1;
+    }
+  }
+  std::printf("%d false rows, one at a time: %d missed, %d good ones put aside\n", tried, missed,
+              innocent);
+  EXPECT_GT(tried, 80);
+  EXPECT_LE(missed, 0.15 * tried) << "half of them where each row's own residual is looked at";
+  EXPECT_LE(innocent, 0.02 * tried);
+}
+
+TEST(MaskedOutlier, IsNoneOfGoodRows) {
+  for (int seed = 11; seed <= 30; ++seed) {
+    const Solution solution = identify(rx90(), few_touches(seed).data, {}, {});
+    EXPECT_TRUE(std::ranges::all_of(solution.outliers, &Outlier::check)) << "seed " << seed;
+  }
+}
+
+// The largest externally studentised residual of a regression, by refitting without each row.
+TEST(MaskedOutlier, IsTheRowWhoseAbsenceLeavesLeastOfItsSet) {
+  const Simulated simulated = few_touches(5);
+  DataSet data = simulated.data;
+  const int row = fit_rows(data)[7];
+  data.rows.q(row, 1) += 3e-3;
+  const Equations equations(rx90(), data, Use::fit);
+  Prior prior;
+  prior.centre = simulated.truth.xi;
+  prior.sigma = Eigen::VectorXd::Constant(prior.centre.size(), 1e-9);
+  prior.free.assign(static_cast<std::size_t>(prior.centre.size()), 0);
+  Noise noise;
+  noise.used.assign(data.sets.size(), Scale{2e-5, 1});
+  noise.outlier.assign(static_cast<std::size_t>(data.rows.rows()), 0);
+  EXPECT_EQ(masked_outlier(equations, simulated.truth, noise, prior), row);
+  noise.outlier[static_cast<std::size_t>(row)] = 1;
+  EXPECT_EQ(masked_outlier(equations, simulated.truth, noise, prior), std::nullopt);
+}
+
+}  // namespace
+}  // namespace selfcal
