@@ -12,8 +12,9 @@ namespace selfcal {
 namespace {
 
 constexpr double kChance = 1e-6;
-constexpr Eigen::Index kMostEquations = 3000;  ///< with more, none bends the fit alone
-constexpr std::size_t kMostTried = 20;         ///< those whose absence makes most difference
+constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the fit alone
+constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
+constexpr std::size_t kMostTried = 20;            ///< those whose absence makes most difference
 
 /// What a row's absence does to the least squares.
 struct Deletion {
@@ -23,6 +24,18 @@ struct Deletion {
   double drop = 0;       ///< of the sum of squares
 };
 
+/// Whether the least squares can be held whole.
+bool are_few(const Equations& equations, const State& state) {
+  Eigen::Index count = 0, columns = equations.columns();
+  for (std::size_t s = 0; s < equations.data().sets.size(); ++s) {
+    const Method& method = *equations.data().sets[s].method;
+    count += static_cast<Eigen::Index>(equations.plan(static_cast<int>(s)).items.size() *
+                                       method.equations().size());
+    columns += state.groups[s].cols() * method.group_freedom();
+  }
+  return count <= kMostEquations && count * columns <= kMostEntries;
+}
+
 /// Least squares of all equations and priors, from which every row can be taken away.
 class LeastSquares {
  public:
@@ -31,7 +44,6 @@ class LeastSquares {
       : equations_(equations), noise_(noise) {
     const DenseEquations dense = equations.dense(state, noise.used, noise.outlier);
     const Eigen::Index rows = dense.y.size();
-    if (rows > kMostEquations) return;
     std::vector<int> columns = free_columns(equations, prior);
     const auto own = static_cast<Eigen::Index>(columns.size());
     for (Eigen::Index c = equations.columns(); c < dense.W.cols(); ++c)
@@ -143,6 +155,7 @@ class LeastSquares {
 
 std::optional<int> masked_outlier(const Equations& equations, const State& state,
                                   const Noise& noise, const Prior& prior) {
+  if (free_columns(equations, prior).empty() || !are_few(equations, state)) return std::nullopt;
   const LeastSquares all(equations, state, noise, prior);
   std::vector<Deletion> deletions = all.deletions();
   std::ranges::sort(deletions, std::greater(), &Deletion::drop);

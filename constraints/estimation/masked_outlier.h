@@ -5,14 +5,16 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/estimation/fit.h"
+#include "constraints/estimation/noise.h"
+#include "constraints/estimation/prior.h"
 
 namespace selfcal {
 
 /// The row (of the data set) whose absence lets its set be met better than any good row's would,
 /// once in a million: its externally studentised residual (Cook and Weisberg 1982, 2.2) against the
-/// F distribution, of all rows in `fit.noise` that are not put aside. The one that stands out most;
-/// nothing where there is none, or so many equations that no row can bend the fit alone.
+/// F distribution, of all rows in `noise` that are not put aside. The one that stands out most;
+/// nothing where there is none, where nothing is free that it could bend, or of so many equations
+/// that no row can bend the fit alone.
 std::optional<int> masked_outlier(const Equations& equations, const State& state,
                                   const Noise& noise, const Prior& prior);
 

@@ -72,6 +72,17 @@ TEST(MaskedOutlier, IsNoneOfGoodRows) {
   }
 }
 
+TEST(MaskedOutlier, IsNoneWhereNothingIsFreeThatItCouldBend) {
+  Simulated simulated =
+      made("robot: rx90.robot.yaml\nsets: {tracker: {method: position, rows: 90}}\n");
+  simulated.data.rows.q(fit_rows(simulated.data).front(), 1) += 3e-3;
+  const Equations equations(rx90(), simulated.data, Use::fit);
+  Prior prior;
+  prior.free.assign(static_cast<std::size_t>(equations.robot_columns()), 0);
+  const Noise noise{{}, {Scale{2e-5, 1}}, std::vector<char>(90, 0), {}};
+  EXPECT_EQ(masked_outlier(equations, simulated.truth, noise, prior), std::nullopt);
+}
+
 // The largest externally studentised residual of a regression, by refitting without each row.
 TEST(MaskedOutlier, IsTheRowWhoseAbsenceLeavesLeastOfItsSet) {
   const Simulated simulated = few_touches(5);
