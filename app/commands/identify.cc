@@ -57,11 +57,11 @@ Result<void> write_solution(const IdentifyArguments& arguments, const Robot& rob
 }
 
 /// Whether the effect of a robot file's `entry` is one of those asked for (EFFECT or EFFECT@PLACE).
-bool is_asked(const Node& entry, const std::vector<std::string>& asked) {
+bool is_requested(const Node& entry, const std::vector<std::string>& requested) {
   const std::string effect = entry.find("effect")->text;
   const Node* at = entry.find("at");
-  return std::ranges::count(asked, effect) > 0 ||
-         (at && std::ranges::count(asked, effect + "@" + at->text) > 0);
+  return std::ranges::count(requested, effect) > 0 ||
+         (at && std::ranges::count(requested, effect + "@" + at->text) > 0);
 }
 
 /// The robot of a data set with the effects that are asked for beside its own, or why not.
@@ -75,7 +75,7 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   Problems problems;
   const auto geometry = with_mass_of_its_size(geometry_of(robot));
   std::vector<Node> entries = effect_entries(*robot);
-  std::erase_if(entries, [&](const Node& each) { return is_asked(each, arguments.effects); });
+  std::erase_if(entries, [&](const Node& each) { return is_requested(each, arguments.effects); });
   entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
   std::shared_ptr<const Robot> corrected =
       correct(geometry, entries, context_of(*geometry, data), problems);

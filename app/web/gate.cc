@@ -25,23 +25,23 @@ bool is_own_origin(const std::string& origin, const std::string& host) {
   return own == "http://" + lower_case(host) || own == "https://" + lower_case(host);
 }
 
-std::optional<Refusal> wrong_target(const Asked& asked) {
-  if (asked.target_bytes > kMostTarget) return Refusal{414, "the address is too long"};
-  const bool get = asked.method == "GET" || asked.method == "HEAD";
-  if (asked.path == kPagePath || asked.path == kStatePath)
+std::optional<Refusal> wrong_target(const RequestHead& head) {
+  if (head.target_bytes > kMostTarget) return Refusal{414, "the address is too long"};
+  const bool get = head.method == "GET" || head.method == "HEAD";
+  if (head.path == kPagePath || head.path == kStatePath)
     return get ? std::nullopt : std::optional(Refusal{405, "only GET"});
-  if (asked.path == kCommandPath)
-    return asked.method == "POST" ? std::nullopt : std::optional(Refusal{405, "only POST"});
+  if (head.path == kCommandPath)
+    return head.method == "POST" ? std::nullopt : std::optional(Refusal{405, "only POST"});
   return Refusal{404, "there is nothing of this name"};
 }
 
-std::optional<Refusal> wrong_sender(const Asked& asked, const GateRules& rules) {
-  if (!names_us(host_of(asked.host), rules))
+std::optional<Refusal> wrong_sender(const RequestHead& head, const GateRules& rules) {
+  if (!names_us(host_of(head.host), rules))
     return Refusal{421, "this is not the computer that Host names"};
-  if (!asked.origin.empty() && !is_own_origin(asked.origin, asked.host))
+  if (!head.origin.empty() && !is_own_origin(head.origin, head.host))
     return Refusal{403, "a page of another site may not ask"};
-  const bool own_site = asked.site.empty() || asked.site == "same-origin" || asked.site == "none";
-  if (!own_site && asked.path != kPagePath)  // a link to the page may stand anywhere
+  const bool own_site = head.site.empty() || head.site == "same-origin" || head.site == "none";
+  if (!own_site && head.path != kPagePath)  // a link to the page may stand anywhere
     return Refusal{403, "a page of another site may not ask"};
   return std::nullopt;
 }
@@ -62,15 +62,15 @@ std::string host_of(const std::string& header) {
   return lower_case(header.substr(0, header.find(':')));
 }
 
-std::optional<Refusal> refused(const Asked& asked, const GateRules& rules) {
-  if (auto wrong = wrong_target(asked)) return wrong;
-  if (auto wrong = wrong_sender(asked, rules)) return wrong;
-  if (asked.path == kPagePath) return std::nullopt;  // holds nothing of any robot
-  if (!rules.token.empty() && !has_token(asked.authorization, rules.token))
+std::optional<Refusal> refused(const RequestHead& head, const GateRules& rules) {
+  if (auto wrong = wrong_target(head)) return wrong;
+  if (auto wrong = wrong_sender(head, rules)) return wrong;
+  if (head.path == kPagePath) return std::nullopt;  // holds nothing of any robot
+  if (!rules.token.empty() && !has_token(head.authorization, rules.token))
     return Refusal{401, "the token is missing or wrong"};
-  if (asked.path != kCommandPath) return std::nullopt;
+  if (head.path != kCommandPath) return std::nullopt;
   if (!rules.commands) return Refusal{403, "commands are off: started without --allow-commands"};
-  if (asked.command.empty())
+  if (head.command.empty())
     return Refusal{403, std::string("a command needs the header ") + kCommandHeader};
   return std::nullopt;
 }

@@ -27,7 +27,7 @@ struct GateRules {
 };
 
 /// What of a request decides; empty where it has no such header.
-struct Asked {
+struct RequestHead {
   std::string method = {}, path = {};
   std::size_t target_bytes = 0;
   std::string host = {}, origin = {}, site = {};  ///< Host, Origin, Sec-Fetch-Site
@@ -41,7 +41,7 @@ struct Refusal {
 };
 
 /// Nothing for a request that may pass.
-std::optional<Refusal> refused(const Asked& asked, const GateRules& rules);
+std::optional<Refusal> refused(const RequestHead& head, const GateRules& rules);
 
 /// The host of a Host header, without port and brackets, in lower case.
 std::string host_of(const std::string& header);

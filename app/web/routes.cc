@@ -41,19 +41,17 @@ bool as_seen(const RouteJson& status, const RouteJson& seen) {
 }
 
 WebResponse command_from(const Board& board, const Commanding& command, const WebRequest& request) {
-  const RouteJson asked = RouteJson::parse(request.body, nullptr, false);
-  const auto is_text = [&](const char* key) {
-    return asked.contains(key) && asked[key].is_string();
-  };
-  if (!asked.is_object() || !is_text("robot") || !is_text("verb") || !asked.contains("seen") ||
-      !asked["seen"].is_object())
+  const RouteJson body = RouteJson::parse(request.body, nullptr, false);
+  const auto is_text = [&](const char* key) { return body.contains(key) && body[key].is_string(); };
+  if (!body.is_object() || !is_text("robot") || !is_text("verb") || !body.contains("seen") ||
+      !body["seen"].is_object())
     return reply_with(400, false, R"(expected {"robot", "verb", "seen"})");
-  const std::string robot = asked["robot"], verb = asked["verb"];
+  const std::string robot = body["robot"], verb = body["verb"];
   if (std::ranges::find(kVerbs, verb) == kVerbs.end())
     return reply_with(400, false, "there is no such command");
   const auto status = board.part(robot, "status");
   if (!status) return reply_with(404, false, "no service of this robot is heard");
-  if (!as_seen(*status, asked["seen"]))
+  if (!as_seen(*status, body["seen"]))
     return reply_with(409, false, "the service has gone on since; look again, and decide anew");
   const auto reply = command(robot, verb, request.peer);
   if (!reply) return reply_with(504, false, reply.error().what);

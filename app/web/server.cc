@@ -164,7 +164,7 @@ class Crew final : public httplib::TaskQueue {
   std::vector<std::thread> threads_;
 };
 
-Asked asked_of(const httplib::Request& request) {
+RequestHead head_of(const httplib::Request& request) {
   const auto header = [&](const char* name) { return request.get_header_value(name); };
   return {.method = request.method,
           .path = request.path,
@@ -206,15 +206,15 @@ class HttpServer final : public WebServer, private httplib::Server {
                          {"Cross-Origin-Opener-Policy", "same-origin"}});
     // Before the body is read and before any pattern is matched.
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      const auto refusal = refused(asked_of(request), rules_);
+      const auto refusal = refused(head_of(request), rules_);
       if (!refusal) return HandlerResponse::Unhandled;
       answer_with(response, {refusal->status, "text/plain", refusal->why + "\n"});
       return HandlerResponse::Handled;
     });
     const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
-      WebRequest asked{request.path, {}, request.body, request.remote_addr};
-      for (const auto& [name, value] : request.params) asked.query[name] = value;
-      answer_with(response, handler_(asked));
+      WebRequest got{request.path, {}, request.body, request.remote_addr};
+      for (const auto& [name, value] : request.params) got.query[name] = value;
+      answer_with(response, handler_(got));
     };
     Get("/(?:state)?", answer);
     Post(kCommandPath, answer);

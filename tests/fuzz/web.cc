@@ -19,7 +19,7 @@ void try_gate(Bytes& bytes) {
   const GateRules rules{.commands = bytes.byte() % 2 == 1,
                         .token = bytes.byte() % 2 == 1 ? kToken : "",
                         .names = {"cell-7"}};
-  Asked asked;
+  RequestHead asked;
   asked.method = kMethods[static_cast<std::size_t>(bytes.below(5))];
   asked.path = kPaths[static_cast<std::size_t>(bytes.below(4))];
   asked.target_bytes = bytes.take<std::uint16_t>();

@@ -92,7 +92,7 @@ struct Script {
   }
   Script& ask(Verb verb) {
     Event event;
-    event.what = Event::What::asked;
+    event.what = Event::What::commanded;
     event.verb = verb;
     return on(event);
   }

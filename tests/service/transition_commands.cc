@@ -142,7 +142,7 @@ TEST(Transition, HoldsItsPromisesWhateverHappensInWhateverOrder) {
       const Transition t = step(s, event, limits);
       const std::string at = "seed " + std::to_string(seed) + ", event " + std::to_string(i) +
                              " in " + std::string(to_string(s.state));
-      if (event.what == What::asked &&
+      if (event.what == What::commanded &&
           (event.verb == Verb::start || event.verb == Verb::check || event.verb == Verb::diagnose))
         needs_start = false;
       for (const Action& action : t.actions)
@@ -165,7 +165,7 @@ TEST(Transition, HoldsItsPromisesWhateverHappensInWhateverOrder) {
         ASSERT_EQ(step(t.next, later, limits).next.state, ServiceState::fault) << at;
         ASSERT_LT(t.next.step, t.next.steps) << at;
       }
-      if (event.what == What::asked) {
+      if (event.what == What::commanded) {
         int answers = 0;
         for (const Action& action : t.actions)
           answers +=

@@ -14,11 +14,11 @@ namespace {
 const GateRules kOpen{.commands = true, .token = "", .names = {"robot7"}};
 const GateRules kGuarded{.commands = true, .token = "0123456789abcdef", .names = {}};
 
-Asked state_asked() {
+RequestHead state_asked() {
   return {.method = "GET", .path = "/state", .target_bytes = 6, .host = "127.0.0.1:8080"};
 }
 
-Asked command_asked() {
+RequestHead command_asked() {
   return {.method = "POST",
           .path = "/command",
           .target_bytes = 8,
@@ -28,7 +28,7 @@ Asked command_asked() {
           .command = "1"};
 }
 
-int status_for(const Asked& asked, const GateRules& rules) {
+int status_for(const RequestHead& asked, const GateRules& rules) {
   const auto refusal = refused(asked, rules);
   return refusal ? refusal->status : 200;
 }
@@ -41,13 +41,13 @@ TEST(Gate, LetsOurOwnPageAskAndCommand) {
 TEST(Gate, KnowsThisComputerByNumberLocalhostOrName) {
   for (const char* host : {"127.0.0.1", "localhost:8080", "LOCALHOST", "[::1]:8080", "192.168.1.7",
                            "robot7:8080", "Robot7"}) {
-    Asked asked = state_asked();
+    RequestHead asked = state_asked();
     asked.host = host;
     EXPECT_EQ(status_for(asked, kOpen), 200) << host;
   }
   for (const char* host : {"", "evil.example", "evil.example:8080", "127.0.0.1.evil.example",
                            "localhost.evil.example", "robot7.evil.example", "[::1", "1.2.3"}) {
-    Asked asked = state_asked();
+    RequestHead asked = state_asked();
     asked.host = host;
     EXPECT_EQ(status_for(asked, kOpen), 421) << host;
   }
@@ -56,12 +56,12 @@ TEST(Gate, KnowsThisComputerByNumberLocalhostOrName) {
 TEST(Gate, RefusesPagesOfOtherSites) {
   for (const char* origin : {"http://evil.example", "null", "http://127.0.0.1:8081",
                              "http://127.0.0.1:8080.evil.example", "ftp://127.0.0.1:8080"}) {
-    Asked asked = command_asked();
+    RequestHead asked = command_asked();
     asked.origin = origin;
     EXPECT_EQ(status_for(asked, kOpen), 403) << origin;
   }
   for (const char* site : {"cross-site", "same-site"}) {
-    Asked asked = state_asked();
+    RequestHead asked = state_asked();
     asked.site = site;
     EXPECT_EQ(status_for(asked, kOpen), 403) << site;
     asked.path = "/";  // a link to the page
@@ -73,7 +73,7 @@ TEST(Gate, TakesNoCommandUnlessToldAndWithItsHeader) {
   GateRules shows = kOpen;
   shows.commands = false;
   EXPECT_EQ(status_for(command_asked(), shows), 403);
-  Asked plain = command_asked();  // as a form of another site could send it
+  RequestHead plain = command_asked();  // as a form of another site could send it
   plain.command = "";
   EXPECT_EQ(status_for(plain, kOpen), 403);
 }
@@ -81,12 +81,12 @@ TEST(Gate, TakesNoCommandUnlessToldAndWithItsHeader) {
 TEST(Gate, AsksForTheTokenOfAllButThePage) {
   for (const char* wrong : {"", "Bearer ", "Bearer 0123456789abcdeg", "Bearer 0123456789abcdef0",
                             "Basic 0123456789abcdef", "0123456789abcdef"}) {
-    for (Asked asked : {state_asked(), command_asked()}) {
+    for (RequestHead asked : {state_asked(), command_asked()}) {
       asked.authorization = wrong;
       EXPECT_EQ(status_for(asked, kGuarded), 401) << asked.path << " " << wrong;
     }
   }
-  Asked asked = state_asked();
+  RequestHead asked = state_asked();
   asked.authorization = "Bearer 0123456789abcdef";
   EXPECT_EQ(status_for(asked, kGuarded), 200);
   asked.authorization = "";
@@ -95,7 +95,7 @@ TEST(Gate, AsksForTheTokenOfAllButThePage) {
 }
 
 TEST(Gate, HasThreePathsEachWithItsMethod) {
-  Asked asked = state_asked();
+  RequestHead asked = state_asked();
   asked.path = "/etc/passwd";
   EXPECT_EQ(status_for(asked, kOpen), 404);
   asked = state_asked();

@@ -40,7 +40,7 @@ class Collector {
   /// A move of an earlier life may be under way.
   void expect_motion() { outstanding_ = true; }
   /// The last move has ended as asked.
-  void arrived() { reached_ = asked_; }
+  void arrived() { reached_ = target_; }
 
   // collector.cc: from the plan to the last touch
   /// Begins with what is planned or stored; an event says where, or why not.
@@ -86,10 +86,10 @@ class Collector {
   Reflex reflex_;
   SensorFrontEnd front_end_;
   std::uint64_t motion_id_ = 0;
-  bool outstanding_ = false;             ///< a move of ours may be under way
-  Nanoseconds stopped_ = 0;              ///< when it was last told to stop; 0 once it stands
-  std::vector<double> asked_, reached_;  ///< readings: target of the last move, of the last that
-                                         ///< ended
+  bool outstanding_ = false;              ///< a move of ours may be under way
+  Nanoseconds stopped_ = 0;               ///< when it was last told to stop; 0 once it stands
+  std::vector<double> target_, reached_;  ///< readings: target of the last move, of the last that
+                                          ///< ended
   Session session_;
   Decoding decoding_;
   Nanoseconds collecting_since_ = 0;

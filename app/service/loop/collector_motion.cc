@@ -79,7 +79,7 @@ void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) 
                       : label();
   request.q = q;
   request.speed = speed;
-  asked_ = q;
+  target_ = q;
   outstanding_ = true;
   stopped_ = 0;
   front_end_.expect(request.id);

@@ -35,7 +35,7 @@ void Service::handle_command(const CommandMessage& command) {
   handle_events();
   command_ = command;
   Event event;
-  event.what = Event::What::asked;
+  event.what = Event::What::commanded;
   event.verb = *verb;
   c_.put(std::move(event));
   handle_events();

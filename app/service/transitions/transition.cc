@@ -22,8 +22,8 @@ void TransitionStep::handle() {
       return tick();
     case What::self_tested:
       return self_tested();
-    case What::asked:
-      return asked();
+    case What::commanded:
+      return commanded();
     case What::due:
       return due();
     case What::planned:

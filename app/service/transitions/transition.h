@@ -77,7 +77,7 @@ struct Event {
   enum class What : std::uint8_t {
     tick,         ///< time has passed
     self_tested,  ///< ok or not, `why`; `resume` when a session shall go on by itself
-    asked,        ///< `verb`
+    commanded,    ///< `verb`
     due,          ///< `kind`, `why`
     planned,      ///< `session`, `steps`, `step` to begin with, or further steps of it
     moved,        ///< the last motion has ended as asked

@@ -9,28 +9,28 @@ constexpr const char* kNoResultWaits = "no result waits for acceptance";
 
 }  // namespace
 
-void TransitionStep::asked() {
+void TransitionStep::commanded() {
   switch (event_.verb) {
     case Verb::start:
-      return asked_to_start(SessionKind::full);
+      return commanded_to_start(SessionKind::full);
     case Verb::check:
-      return asked_to_start(SessionKind::check);
+      return commanded_to_start(SessionKind::check);
     case Verb::diagnose:
-      return asked_to_start(SessionKind::cause);
+      return commanded_to_start(SessionKind::cause);
     case Verb::done:
       return told_done();
     case Verb::abort:
-      return asked_to_abort();
+      return commanded_to_abort();
     case Verb::accept:
-      return asked_to_accept();
+      return commanded_to_accept();
     case Verb::reject:
-      return asked_to_reject();
+      return commanded_to_reject();
     case Verb::rollback:
-      return asked_to_roll_back();
+      return commanded_to_roll_back();
   }
 }
 
-void TransitionStep::asked_to_start(SessionKind kind) {
+void TransitionStep::commanded_to_start(SessionKind kind) {
   if (s_.state == ServiceState::fault) {
     s_.held = false;
     act(Do::grant, "testing first; what is unfinished goes on with another start");
@@ -56,7 +56,7 @@ void TransitionStep::told_done() {
   go_on_loaded();
 }
 
-void TransitionStep::asked_to_abort() {
+void TransitionStep::commanded_to_abort() {
   const bool running = in_session();
   if (!running && !s_.unfinished) return refuse("no session is running");
   if (s_.state == ServiceState::applying || s_.state == ServiceState::publishing)
@@ -79,7 +79,7 @@ void TransitionStep::refuse_without_result() {
   refuse(kNoResultWaits);
 }
 
-void TransitionStep::asked_to_accept() {
+void TransitionStep::commanded_to_accept() {
   if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
   grant();
   s_.candidate = false;
@@ -87,7 +87,7 @@ void TransitionStep::asked_to_accept() {
   act(Do::apply, "accepted by command");
 }
 
-void TransitionStep::asked_to_reject() {
+void TransitionStep::commanded_to_reject() {
   if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
   grant();
   s_.candidate = false;
@@ -96,7 +96,7 @@ void TransitionStep::asked_to_reject() {
   publish();
 }
 
-void TransitionStep::asked_to_roll_back() {
+void TransitionStep::commanded_to_roll_back() {
   if (s_.candidate) return refuse(kResultWaits);
   if (s_.state != ServiceState::idle && s_.state != ServiceState::fault)
     return refuse_in_this_state();

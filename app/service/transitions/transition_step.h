@@ -46,13 +46,13 @@ class TransitionStep {
   bool in_session() const;  ///< planning up to judging: what an abort can end
 
   // transition_commands.cc
-  void asked();
-  void asked_to_start(SessionKind kind);
-  void asked_to_abort();
+  void commanded();
+  void commanded_to_start(SessionKind kind);
+  void commanded_to_abort();
   void told_done();
-  void asked_to_accept();
-  void asked_to_reject();
-  void asked_to_roll_back();
+  void commanded_to_accept();
+  void commanded_to_reject();
+  void commanded_to_roll_back();
   void grant() { act(Do::grant, std::string(to_string(event_.verb))); }
   void refuse(const std::string& why) { act(Do::refuse, why); }
   void refuse_without_result();
