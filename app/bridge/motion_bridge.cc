@@ -56,10 +56,7 @@ std::string MotionBridge::why_not(const MotionRequest& request, Nanoseconds now)
 
 Result<void> MotionBridge::begin(const MotionRequest& request, Nanoseconds now) {
   if (const std::string why = why_not(request, now); !why.empty()) return refuse(request, why);
-  move_.emplace();
-  move_->request = request;
-  move_->goal = new_goal();
-  move_->since = now;
+  move_ = Move{.request = request, .goal = new_goal(), .since = now};
   return {};
 }
 

@@ -43,7 +43,7 @@ class MotionBridge {
     MotionRequest request;
     GoalId goal{};
     bool sent = false, accepted = false, stopping = false;
-    std::string why;  ///< of the stop
+    std::string why{};  ///< of the stop
     Nanoseconds since = 0, until = 0, cancelled = 0;
   };
   Result<void> hear(const RobotRequest& request, Nanoseconds now);

@@ -48,7 +48,7 @@ class Maker {
         .profile = rules.profile,
         .assumed = rules.assumed,
         .moments = [this](int set) { return moments(set); },
-        .shows = [this, &rules](int set) { return rows_of(set) >= rules.fewest_rows; }};
+        .shows = [this](int set) { return rows_of(set) >= kDiagnosis.shapes.fewest_rows; }};
     const Suppositions supposed = suppose(asked, place);
     all_.untestable.insert(all_.untestable.end(), supposed.untestable().begin(),
                            supposed.untestable().end());

@@ -115,7 +115,7 @@ void try_told(Bytes& bytes) {
                                bytes.byte() % 2 == 1,
                                texts[9].data()};
   note(watched, to_plain(progress));
-  std::string answer = bytes.text(), decision = bytes.text();
+  std::string answer = bytes.text(), decision = bytes.text(), cause = bytes.text();
   for (int i = bytes.below(4); i-- > 0;)
     watched.health.push_back({bytes.text(),
                               static_cast<Health>(bytes.below(4)),
@@ -123,7 +123,8 @@ void try_told(Bytes& bytes) {
                               {{bytes.text(), bytes.text()}}});
   const dds::Time time = time_from(bytes);
   const auto session = bytes.take<std::int64_t>();
-  const double figures[] = {bytes.number(), bytes.number(), bytes.number(), bytes.number()};
+  const double figures[] = {bytes.number(), bytes.number(), bytes.number(),
+                            bytes.number(), bytes.number(), bytes.number()};
   const std::uint32_t counts[] = {bytes.take<std::uint32_t>(), bytes.take<std::uint32_t>(),
                                   bytes.take<std::uint32_t>()};
   std::string json = bytes.rest();
@@ -132,7 +133,7 @@ void try_told(Bytes& bytes) {
       time,          texts[0].data(), texts[1].data(), session,    texts[7].data(),
       answer.data(), decision.data(), texts[9].data(), figures[0], figures[1],
       figures[2],    figures[3],      counts[0],       counts[1],  counts[2],
-      json.data()};
+      json.data(),   cause.data(),    figures[4],      figures[5]};
   note(watched, to_plain(result));
   (void)changes_of_result(json);
   (void)sets_of_result(to_json(*watched.result)["result"]);
