@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "kinematics/blas_kernels.h"
 #include "kinematics/expects.h"
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
@@ -25,6 +26,8 @@ namespace {
 
 constexpr Eigen::Index kLarge = 64;  ///< rows from which a call of OpenBLAS is worth its start
 constexpr double kWorthACall = 1e5;  ///< multiplications from which it is
+
+[[maybe_unused]] const bool kSuited = suit_blas_to_processor();
 
 int width(Eigen::Index n) { return static_cast<int>(n); }
 

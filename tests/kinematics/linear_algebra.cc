@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
+
+#include "kinematics/blas_kernels.h"
+
+extern "C" char* openblas_get_corename();
 
 namespace selfcal {
 namespace {
@@ -156,6 +161,17 @@ TEST(Triangles, AreSolvedAlikeOnBothSidesOfTheSizeFromWhichALibraryDoes) {
       EXPECT_LT((transposed_product(A, B) - A.transpose() * B).norm(), rounding * B.norm()) << n;
     }
 }
+
+#ifdef __x86_64__
+TEST(LinearAlgebra, MultipliesByWhatTheProcessorHas) {
+  if (std::getenv("OPENBLAS_CORETYPE")) GTEST_SKIP() << "OPENBLAS_CORETYPE is set";
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+    GTEST_SKIP() << "the processor has no AVX2";
+  EXPECT_STRNE(openblas_get_corename(), "Prescott");
+  EXPECT_FALSE(suit_blas_to_processor()) << "it has been done";
+  EXPECT_EQ(std::getenv("OPENBLAS_CORETYPE"), nullptr);
+}
+#endif
 
 TEST(LinearAlgebra, SolvesForNoColumnsAtAll) {
   for (const int n : {3, 300}) {
