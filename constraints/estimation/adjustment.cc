@@ -41,8 +41,13 @@ DataSet few_of(const DataSet& data) {
 
 class Adjustment {
  public:
-  Adjustment(const Equations& equations, const Options& options, const Progress& progress)
-      : robot_(equations.robot()), equations_(equations), options_(options), progress_(progress) {
+  Adjustment(const Equations& equations, const Options& options, const Progress& progress,
+             const State* near)
+      : robot_(equations.robot()),
+        equations_(equations),
+        options_(options),
+        progress_(progress),
+        near_(near) {
     adjusted_.prior.use = options.priors;
     adjusted_.prior.centre = nominal_values(robot_);
     adjusted_.prior.sigma.resize(adjusted_.prior.centre.size());
@@ -60,7 +65,13 @@ class Adjustment {
 
   Adjusted run() {
     State start{starting_values(), {}, {}};
-    equations_.start(start);
+    if (near_) {
+      start.xi.head(near_->xi.size()) = near_->xi;
+      start.nuisance = near_->nuisance;
+      start.groups = near_->groups;
+    } else {
+      equations_.start(start);
+    }
     adjusted_.before = fit_placed(start);
     start_ = start;
     hold_scale(quietest() * adjusted_.before.at.R, adjusted_.before.state.xi);
@@ -105,10 +116,14 @@ class Adjustment {
     return xi;
   }
 
-  Fit run_fit(const State& start, const Prior& prior, std::string_view stage, bool unmask = true) {
+  Fit run_fit(const State& start, const Prior& prior, std::string_view stage) {
     FitRule rule;
-    rule.unmask = unmask;
+    rule.unmask = true;
     rule.most_iterations = options_.most_iterations;
+    return run_fit(start, prior, rule, stage);
+  }
+
+  Fit run_fit(const State& start, const Prior& prior, FitRule rule, std::string_view stage) {
     rule.most_outliers = options_.most_outliers;
     const auto on_iteration = [&](int iteration) {
       if (progress_) progress_(stage, 1 - std::exp(-iteration / 8.0));
@@ -127,18 +142,19 @@ class Adjustment {
     Prior prior = adjusted_.prior;
     for (size_t i = 0; i < parameters().size(); ++i)
       prior.free[i] = adjusted_.prior.free[i] && is_placed(parameters()[i]);
-    // What the nominal robot's errors leave is no noise to tell a false row by.
-    return run_fit(start, prior, "placing the nominal robot", false);
+    FitRule rule;  // what the nominal robot's errors leave is no noise to tell a false row by
+    rule.most_iterations = near_ ? 0 : options_.most_iterations;
+    return run_fit(start, prior, rule, "placing the nominal robot");
   }
 
   Fit fit_all() { return run_fit(start_, adjusted_.prior, "identifying"); }
 
   /// A fit that strains the maker's tolerances, or does not converge, may sit in a wrong minimum:
   /// it is tried from the placed robot and from robots drawn from the tolerances, and the most
-  /// probable one is kept.
+  /// probable one is kept. `near` has been found so.
   void multi_start() {
     const bool strained = widening(moved()) > 1;
-    if (!options_.priors || (adjusted_.fitted.converged && !strained)) return;
+    if (near_ || !options_.priors || (adjusted_.fitted.converged && !strained)) return;
     std::mt19937_64 random(options_.seed);
     std::normal_distribution<double> normal;
     State best_start = start_;
@@ -240,6 +256,7 @@ class Adjustment {
   const Equations& equations_;
   const Options& options_;
   const Progress& progress_;
+  const State* near_;
   Adjusted adjusted_;
   State start_;
   DataSet few_;  ///< of many rows
@@ -267,8 +284,13 @@ double widening(const Chi2& chi2) {
   return std::sqrt(chi2.value / chi2.freedom);
 }
 
-Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress) {
-  return Adjustment(equations, options, progress).run();
+Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress,
+                const State* near) {
+  if (near) {
+    Adjusted adjusted = Adjustment(equations, options, progress, near).run();
+    if (adjusted.fitted.converged) return adjusted;
+  }
+  return Adjustment(equations, options, progress, nullptr).run();
 }
 
 }  // namespace selfcal

@@ -19,7 +19,8 @@ struct Chi2 {
 };
 
 struct Adjusted {
-  Fit before;  ///< base, tool and nuisance parameters alone, the robot as its maker says
+  Fit before;  ///< base, tool and nuisance parameters alone, the robot as its maker says; from
+               ///< `near` no fit, what is there
   Fit fitted;
   Prior prior;                  ///< as used in `fitted`
   std::vector<char> candidate;  ///< by parameter: not fixed by the user or by default
@@ -41,6 +42,10 @@ Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& x
 /// where it is not.
 double widening(const Chi2& chi2);
 
-Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress);
+/// `near`: where the fit of the same rows by a model with fewer parameters ended, whose are the
+/// first of this one. The fits set out from there and, if they get nowhere, from the maker's
+/// figures.
+Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress,
+                const State* near = nullptr);
 
 }  // namespace selfcal

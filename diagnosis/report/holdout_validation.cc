@@ -29,7 +29,7 @@ struct Fitted {
 
 Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
               const Correction& correction, const MeasurementContext& context,
-              const DiagnosisOptions& options) {
+              const DiagnosisOptions& options, const State& near) {
   Fitted fit;
   Problems problems;
   Options free = geometry_options(options);
@@ -40,7 +40,7 @@ Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
   fit.equations = std::make_unique<Equations>(*fit.model, data, Use::fit);
   for (const Parameter& p : fit.model->parameters())
     if (p.part == Part::effect) free.free.push_back(p.name);
-  fit.adjusted = adjust(*fit.equations, free, {});
+  fit.adjusted = adjust(*fit.equations, free, {}, &near);
   return fit;
 }
 
@@ -90,7 +90,7 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
     validation.converged = validation.converged && fit.converged;
   };
   const Equations plain(*geometry, data, Use::fit);
-  Fitted all = fitted(geometry, data, correction, context, options);
+  Fitted all = fitted(geometry, data, correction, context, options, before.fitted.state);
   Left left{judge(*geometry, data, plain, before.before),
             judge(*geometry, data, plain, before.fitted),
             {},
@@ -103,7 +103,7 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
   } else if (names.size() == correction.size() || left.whole.check.empty()) {
     left.named = left.whole;
   } else {
-    const Fitted alone = fitted(geometry, data, names, context, options);
+    const Fitted alone = fitted(geometry, data, names, context, options, before.fitted.state);
     left.named = alone.judged(data);
     note(alone.adjusted.fitted);
   }
