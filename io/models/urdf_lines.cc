@@ -6,6 +6,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "io/files/utf8.h"
+
 namespace selfcal {
 namespace {
 
@@ -32,6 +34,18 @@ const TiXmlElement* first_xacro(const TiXmlElement& element, bool foreign = fals
   if (is_xacro(element, foreign)) return &element;
   for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
     if (const TiXmlElement* found = first_xacro(*child, foreign)) return found;
+  return nullptr;
+}
+
+/// The first joint or link, or the robot itself, whose name is no text; null without one.
+const TiXmlElement* first_named_by_other_bytes(const TiXmlElement& root) {
+  const auto is_named = [](const TiXmlElement& element) {
+    const char* name = element.Attribute("name");
+    return !name || is_text(name);
+  };
+  if (!is_named(root)) return &root;
+  for (auto* child = root.FirstChildElement(); child; child = child->NextSiblingElement())
+    if (!is_named(*child)) return child;
   return nullptr;
 }
 
@@ -97,6 +111,8 @@ Result<UrdfLines> UrdfLines::of(const std::string& text, const std::string& file
   if (const TiXmlElement* xacro = first_xacro(*root))
     return bad_input(at_line(file, xacro->Row()) +
                      ": is xacro, which becomes a URDF by `xacro FILE > robot.urdf`");
+  if (const TiXmlElement* element = first_named_by_other_bytes(*root))
+    return bad_input(at_line(file, element->Row()) + ": expected a name in UTF-8, got other bytes");
   return UrdfLines(file, std::move(document));
 }
 

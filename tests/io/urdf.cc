@@ -254,6 +254,8 @@ TEST(Urdf, IsRefusedWithTheLine) {
   EXPECT_THAT(why("<robot name='r'>\n<xacro:arm/>\n</robot>"), HasSubstr("f.urdf:2: is xacro"));
   EXPECT_THAT(why("<robot name='r'>\n\n<link name='${p}a'/>\n</robot>"),
               HasSubstr("f.urdf:3: is xacro"));
+  EXPECT_THAT(why("<robot name='r'>\n<!-- J\xF6rg -->\n<link name='B\xFChne'/>\n</robot>"),
+              HasSubstr("f.urdf:3: expected a name in UTF-8"));
   EXPECT_THAT(why(joint(step("planar", ""))), HasSubstr("f.urdf:4: joint 'j1' is neither"));
   EXPECT_THAT(why(joint(step("revolute", "", "0 0 0"))),
               HasSubstr("f.urdf:4: joint 'j1' has an axis"));
