@@ -6,6 +6,7 @@
 
 #include "app/commands/subcommand.h"
 #include "app/commands/support/suggestion.h"
+#include "kinematics/blas_kernels.h"
 
 namespace selfcal {
 namespace {
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   // in place of going back to the kernel each time.
   mallopt(M_TRIM_THRESHOLD, selfcal::kKept);
   mallopt(M_MMAP_THRESHOLD, selfcal::kKept);
+  selfcal::suit_blas_to_processor();
   try {
     const int status = selfcal::run(argc, argv);
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;

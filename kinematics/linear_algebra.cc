@@ -1,4 +1,4 @@
-// Decompositions by Eigen; large triangles by OpenBLAS, which knows the processor that it runs on.
+// Decompositions by Eigen; large triangles by OpenBLAS (blas_kernels.h).
 #include "kinematics/linear_algebra.h"
 
 #include <cblas.h>
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "kinematics/blas_kernels.h"
 #include "kinematics/expects.h"
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
@@ -26,8 +25,6 @@ namespace {
 
 constexpr Eigen::Index kLarge = 64;  ///< rows from which a call of OpenBLAS is worth its start
 constexpr double kWorthACall = 1e5;  ///< multiplications from which it is
-
-[[maybe_unused]] const bool kSuited = suit_blas_to_processor();
 
 int width(Eigen::Index n) { return static_cast<int>(n); }
 

