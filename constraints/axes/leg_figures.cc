@@ -9,12 +9,13 @@
 #include <cmath>
 
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kSteps = 100, kHalvings = 30;
-constexpr double kStill = 1e-14;  // m: a step that is none
+constexpr double kStill = 1e-14;  // of the robot's size: what a step that is none moves
 
 struct ChainFit {
   const platform::Platform& robot;
@@ -55,6 +56,7 @@ struct ChainFit {
     for (int i = 0; i < kSteps; ++i) {
       const Eigen::VectorXd r = residuals(xi, &W);
       Eigen::VectorXd step = -least_squares(W, r);
+      const double moves = (W * step).cwiseAbs().maxCoeff();
       bool better = false;
       for (int k = 0; k < kHalvings && !better; ++k, step /= 2) {
         Eigen::VectorXd next = xi;
@@ -65,7 +67,7 @@ struct ChainFit {
         cost = then;
         xi = next;
       }
-      if (!better || step.norm() < kStill) break;
+      if (!better || moves < kStill * size_of(robot)) break;
     }
     return cost;
   }

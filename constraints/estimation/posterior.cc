@@ -11,12 +11,13 @@
 #include "constraints/identifiability/given_doubt.h"
 #include "constraints/methods/plane.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kMotionColumns = 6;
-constexpr double kExact = 1e-12;  ///< m or rad: of what is exact
+constexpr double kExact = 1e-12;  ///< of the robot's size, or rad: of what is exact
 
 /// A set whose place is given: the system of its rows, and 1 over the sigma of each motion of it.
 struct GivenPlace {
@@ -104,7 +105,7 @@ class Information {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (int row = 0; row < rows.rows(); ++row)
       if (rows.set[static_cast<size_t>(row)] == set) sum += rows.normal.row(row).transpose();
-    return sum / std::max(sum.norm(), kExact);
+    return sum.normalized();
   }
 
   /// W^T w of all unknowns, w the column of a parameter that is held.
@@ -145,8 +146,8 @@ class Information {
     GivenPlace given{Eigen::VectorXd(kMotionColumns),
                      equations_.linearise(adjusted_.fitted.state, alone, true).R};
     for (int i = 0; i < kMotionColumns; ++i) {
-      const double sigma = i < 3 ? place : turn;
-      given.weight[i] = 1 / std::max(sigma, kExact);
+      given.weight[i] = i < 3 ? 1 / std::max(place, kExact * size_of(equations_.robot()))
+                              : 1 / std::max(turn, kExact);
     }
     places_.push_back(std::move(given));
   }

@@ -7,6 +7,7 @@
 #include "constraints/methods/shared/unit_normal.h"
 #include "constraints/planning/free_way.h"
 #include "constraints/sampling/contact.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -16,7 +17,7 @@ constexpr int kPostures = 4;        // of the robot at one point of a surface
 constexpr int kPointTries = 2;      // blocks of starts before a point of a surface is given up
 constexpr double kEdge = 0.02;      // of a patch, kept free at its edge
 constexpr int kStepsBack = 4;       // of Newton, back to a plane
-constexpr double kOnPlane = 1e-7;   // m
+constexpr double kOnPlane = 1e-7;   // of the robot's size
 constexpr int kSpacedTries = 50;    // of a point that is far enough from the others
 constexpr double kHeld = 0.8;       // of the way at which a touch begins, kept on the way to it
 constexpr int kRounds = 24;         // of sampling, until enough candidates are usable
@@ -46,11 +47,12 @@ std::vector<std::optional<Eigen::VectorXd>> TouchCandidates::moved(
     }
   }
   closure.add(robot_.locate(block, xi_, Body::endpoint, X, nullptr));
+  const double on_plane = kOnPlane * size_of(robot_);
   std::vector<std::optional<Eigen::VectorXd>> list(static_cast<std::size_t>(count));
   for (int lane = 0; lane < count; ++lane) {
     const Eigen::VectorXd q = block.q.row(lane).matrix().transpose();
     const Patch inner{target.within.centre, (1 - kEdge) * target.within.radius};
-    if (closure.closes(lane) && std::abs(miss(lane)) < kOnPlane && inner.contains(X.p(lane)) &&
+    if (closure.closes(lane) && std::abs(miss(lane)) < on_plane && inner.contains(X.p(lane)) &&
         within_limits(robot_, q, options_.limit_margin))
       list[static_cast<std::size_t>(lane)] = q;
   }

@@ -7,7 +7,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kContactSteps = 30;
-constexpr double kMet = 1e-12;  // what is left of the wanted residual (m, rad)
+constexpr double kMet = 1e-12;  // size of what is left of the wanted residual
 constexpr double kFarthest =
     0.3;  // units of readings: farther away it is another place, not a little off
 
@@ -29,7 +29,7 @@ bool move_to_residual(const Robot& robot, const DataSet& data, const State& trut
     const Eigen::VectorXd miss = newton.miss(0, wanted);
     const Eigen::VectorXd there = block.q.row(0).matrix().transpose();
     if (!(((there - q).array() / units).matrix().norm() < kFarthest)) return false;
-    if (miss.norm() < kMet) {
+    if (newton.size_of_miss(0, miss) < kMet) {
       q = there;
       return true;
     }

@@ -1,5 +1,6 @@
 #include "constraints/sampling/newton.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr int kNewtonSteps = 40;
 constexpr int kPatience = 8;          // steps in which no start comes half as near as it was
 constexpr double kLongestStep = 0.5;  // units of readings
-constexpr double kExact = 1e-13;      // residual that counts as met (m, rad)
+constexpr double kExact = 1e-13;      // size of a miss that is none
 
 // Least diagonal of the factor of products of rows of length one: less is left to the slower way.
 constexpr double kIndependent = 1e-3;
@@ -45,6 +46,8 @@ NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& tru
       before_(before),
       held_(held),
       set_(data.rows.set[row]),
+      quantities_(data.sets[set_].method->equations()),
+      size_(size_of(robot)),
       rows_(kLanes, row) {}
 
 void NewtonStep::evaluate(const ConfigurationBlock& block) {
@@ -52,7 +55,7 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
   const int reference = data_.sets[set_].reference;
   closure_ = robot_.locate(block, truth_.xi, method.body(), X_, &psi_);
   robot_.joint_jacobian(block, truth_.xi, method.body(), psi_, J_);
-  out_.resize(static_cast<int>(method.equations().size()), method.tangent_dimension(),
+  out_.resize(static_cast<int>(quantities_.size()), method.tangent_dimension(),
               reference < 0 ? 0 : data_.sets[reference].method->tangent_dimension(),
               method.group_freedom());
   MethodInput in;
@@ -66,12 +69,11 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
   in.groups = &truth_.groups[set_];
   method.evaluate(in, out_);
   for (const int j : held_) J_.col(j).setZero();
-  const std::vector<Quantity> quantities = method.equations();
   const bool lengths_alone = method.constrains() && !method.measures().empty();
   const Eigen::Index lanes = J_.rows() / 6;
-  GJ_.setZero(static_cast<Eigen::Index>(quantities.size()) * lanes, J_.cols());
-  for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(quantities.size()); ++a) {
-    if (lengths_alone && quantities[static_cast<std::size_t>(a)] != Quantity::length) {
+  GJ_.setZero(static_cast<Eigen::Index>(quantities_.size()) * lanes, J_.cols());
+  for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(quantities_.size()); ++a) {
+    if (lengths_alone && quantities_[static_cast<std::size_t>(a)] != Quantity::length) {
       out_.r.col(a).setZero();
       continue;
     }
@@ -84,6 +86,16 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
 
 Eigen::VectorXd NewtonStep::miss(int lane, const Eigen::VectorXd& wanted) const {
   return wanted - out_.r.row(lane).matrix().transpose();
+}
+
+double NewtonStep::size_of_miss(int lane, const Eigen::VectorXd& miss) const {
+  const double length = std::max(size_, X_.p(lane).norm());
+  double squares = 0;
+  for (Eigen::Index a = 0; a < miss.size(); ++a) {
+    const bool angle = quantities_[static_cast<std::size_t>(a)] == Quantity::angle;
+    squares += std::pow(angle ? miss[a] : miss[a] / length, 2);
+  }
+  return std::sqrt(squares);
 }
 
 Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
@@ -112,7 +124,7 @@ std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
       }
       going = lane;
       const Eigen::VectorXd off = miss(lane, wanted);
-      left[lane] = off.norm();
+      left[lane] = size_of_miss(lane, off);
       if (left[lane] < least[lane] / 2) {
         least[lane] = left[lane];
         gained = at;

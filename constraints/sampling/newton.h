@@ -26,6 +26,9 @@ class NewtonStep {
   bool closes(int lane) const { return closure_.closes(lane); }
   /// wanted - r of a lane (one entry for each equation; m, rad).
   Eigen::VectorXd miss(int lane, const Eigen::VectorXd& wanted) const;
+  /// How large a miss of a lane is: lengths as parts of the robot's size, or of how far from the
+  /// world's origin the body is where that is more; rad.
+  double size_of_miss(int lane, const Eigen::VectorXd& miss) const;
   /// dq of a lane (rad or m).
   Eigen::VectorXd step(int lane, const Eigen::VectorXd& miss) const;
 
@@ -40,6 +43,8 @@ class NewtonStep {
   const Locations& before_;
   std::vector<int> held_;  ///< joints that do not move
   int set_;
+  std::vector<Quantity> quantities_;  ///< of the equations
+  double size_;                       ///< of the robot (m)
   std::vector<int> rows_;
   Locations X_;
   Closure closure_;

@@ -10,12 +10,13 @@
 
 #include "constraints/sampling/random_poses.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kReachSteps = 20;
-constexpr double kThere = 1e-6;  ///< m, from the place drawn
+constexpr double kThere = 1e-6;  ///< of the robot's size, from the place drawn
 /// Draws for each pose wanted before what was found must do.
 constexpr int kMostDraws = 100;
 
@@ -25,7 +26,7 @@ using Uniform = std::uniform_real_distribution<double>;
 class InBox {
  public:
   InBox(const Robot& robot, const Eigen::VectorXd& xi, const Workspace& workspace)
-      : robot_(robot), xi_(xi), workspace_(workspace) {}
+      : robot_(robot), xi_(xi), workspace_(workspace), there_(kThere * size_of(robot)) {}
 
   /// Appends what kLanes random starts `q` reach.
   void reach(const Eigen::MatrixXd& q, std::mt19937_64& random,
@@ -57,14 +58,14 @@ class InBox {
 
   void move(int lane, const Eigen::Vector3d& place, ConfigurationBlock& block) const {
     const Eigen::Vector3d miss = place - X_.p(lane);
-    if (!closure_.closes(lane) || miss.norm() < kThere) return;
+    if (!closure_.closes(lane) || miss.norm() < there_) return;
     Eigen::MatrixXd J(3, J_.cols());
     for (int i = 0; i < 3; ++i) J.row(i) = J_.row(i * kLanes + lane);
     block.q.row(lane) += least_squares(J, miss).transpose().array();
   }
 
   bool counts(int lane, const Eigen::Vector3d& place) const {
-    if (!closure_.closes(lane) || !((X_.p(lane) - place).norm() < kThere)) return false;
+    if (!closure_.closes(lane) || !((X_.p(lane) - place).norm() < there_)) return false;
     if (!workspace_.cone) return true;
     const double cosine = workspace_.approach.dot(X_.R(lane) * robot_.tool_axis());
     return cosine >= std::cos(*workspace_.cone);
@@ -73,6 +74,7 @@ class InBox {
   const Robot& robot_;
   const Eigen::VectorXd& xi_;
   const Workspace& workspace_;
+  double there_;
   Closure closure_;
   Locations X_;
   PsiBlock psi_;

@@ -9,7 +9,7 @@ namespace selfcal {
 namespace {
 
 constexpr int kMostFits = 50;
-constexpr double kFitted = 1e-12;  // m, rad: the last step's
+constexpr double kFitted = 1e-12;  // of how far the poses reach: what the last step moves
 
 struct ValidationPoses {
   std::vector<int> fit, check;
@@ -70,14 +70,18 @@ ToolResiduals residuals_of(const DataSet& data, const Method& method, const std:
 Eigen::VectorXd fitted(const DataSet& data, const Method& method, const std::vector<int>& rows,
                        const ToolPoses& tool) {
   std::vector<Location> X;
-  for (const int row : rows) X.push_back(*tool[static_cast<std::size_t>(row)]);
+  double reach = 0;  // m, from the world's origin
+  for (const int row : rows) {
+    X.push_back(*tool[static_cast<std::size_t>(row)]);
+    reach = std::max(reach, X.back().p.norm());
+  }
   Eigen::VectorXd own = method.start(X, rows, data.rows, nullptr, {});
   if (method.tangent_dimension() == 0) return own;
   for (int i = 0; i < kMostFits; ++i) {
     const ToolResiduals at = residuals_of(data, method, rows, tool, own);
     const Eigen::VectorXd step = -at.D.completeOrthogonalDecomposition().solve(at.r);
     method.retract(own, step);
-    if (step.cwiseAbs().maxCoeff() < kFitted) break;
+    if ((at.D * step).cwiseAbs().maxCoeff() < kFitted * reach) break;
   }
   return own;
 }

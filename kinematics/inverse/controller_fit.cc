@@ -11,11 +11,11 @@
 namespace selfcal {
 namespace {
 
-constexpr double kQuarter = 1e-6;   // rad from a multiple of a quarter turn that count as one
-constexpr double kTurnArm = 0.1;    // of the robot's size: what a turn weighs beside a shift
-constexpr double kNear = 1e-6;      // of the same, that a move by its tolerance is worth
-constexpr double kAllOfIt = 1e-9;   // of the same: robots that are one
-constexpr double kFitStep = 1e-12;  // rad, m: the last step's
+constexpr double kQuarter = 1e-6;  // rad from a multiple of a quarter turn that count as one
+constexpr double kTurnArm = 0.1;   // of the robot's size: what a turn weighs beside a shift
+constexpr double kNear = 1e-6;     // of the same, that a move by its tolerance is worth
+constexpr double kAllOfIt = 1e-9;  // of the same: robots that are one
+constexpr double kFitStep = 1e-6;  // of kNear, by which the last step moves the poses
 constexpr int kMostFits = 20;
 
 bool multiple_of_a_quarter(double angle) {
@@ -169,7 +169,7 @@ Eigen::VectorXd fit_controller(const Robot& geometry, const ControllerNumbers& n
     const Linearised at_s = linearised(geometry, numbers, beside, q.rows(), s);
     const Eigen::VectorXd step = least_squares(at_s.A, at_s.b);
     s += step;
-    if (step.cwiseAbs().maxCoeff() < kFitStep) break;
+    if ((at_s.A * step).cwiseAbs().maxCoeff() < kFitStep) break;
   }
   return numbers.start + numbers.basis * s;
 }

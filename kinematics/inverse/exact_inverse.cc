@@ -9,24 +9,25 @@
 #include "kinematics/robots/linear_delta.h"
 #include "kinematics/robots/platform.h"
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kMeets = 1e-8;    // m, of axes that meet; rad, of those that are parallel
-constexpr double kNowhere = 1e-9;  // m, of a point on the axis that is to turn it
-constexpr double kMostOff = 1e-6;  // m, rad, of a solution that is one
+constexpr double kMeets = 1e-8;    // of the robot's size, of axes that meet; rad, of parallel ones
+constexpr double kNowhere = 1e-9;  // of the same, of a point on the axis that is to turn it
+constexpr double kMostOff = 1e-6;  // of the same; rad, of a solution that is one
 
 using Variables = Eigen::Matrix<double, 6, 1>;
 
 Location turned(const Screw& screw, double t) { return moved_by(screw, t); }
 
 /// The turn about the unit `axis` that brings `from` to `to` as far as one can; nothing where they
-/// lie along it.
+/// lie nearer to it than `nowhere`.
 std::optional<double> turn_between(const Eigen::Vector3d& axis, const Eigen::Vector3d& from,
-                                   const Eigen::Vector3d& to) {
+                                   const Eigen::Vector3d& to, double nowhere = kNowhere) {
   const Eigen::Vector3d a = from - axis.dot(from) * axis, b = to - axis.dot(to) * axis;
-  if (a.norm() < kNowhere || b.norm() < kNowhere) return std::nullopt;
+  if (a.norm() < nowhere || b.norm() < nowhere) return std::nullopt;
   return std::atan2(axis.dot(a.cross(b)), a.dot(b));
 }
 
@@ -49,17 +50,17 @@ double distance_from(const Screw& screw, const Eigen::Vector3d& p) {
 
 bool are_parallel(const Screw& a, const Screw& b) { return a.axis.cross(b.axis).norm() < kMeets; }
 
-/// Six revolute joints. `near` are variables as those of the chain.
+/// Six revolute joints of a robot of a size (m). `near` are variables as those of the chain.
 class SixTurns {
  public:
-  SixTurns(ScrewChain chain, std::vector<Joint> joints)
-      : chain_(std::move(chain)), joints_(std::move(joints)) {
+  SixTurns(ScrewChain chain, std::vector<Joint> joints, double size)
+      : chain_(std::move(chain)), joints_(std::move(joints)), size_(size) {
     const auto& s = chain_.screw;
     if (!are_parallel(s[3], s[4]) && !are_parallel(s[4], s[5])) {
       centre_ = nearest_to(&s[3], &s[3] + 3);
       wrist_meets_ = true;
       for (int j = 3; j < 6; ++j)
-        wrist_meets_ = wrist_meets_ && distance_from(s[j], centre_) < kMeets;
+        wrist_meets_ = wrist_meets_ && distance_from(s[j], centre_) < kMeets * size_;
     }
     middle_parallel_ = are_parallel(s[1], s[2]) && are_parallel(s[2], s[3]) &&
                        !are_parallel(s[3], s[4]) && !are_parallel(s[4], s[5]);
@@ -74,7 +75,8 @@ class SixTurns {
     const Location moved = wanted * inverse_of(chain_.zero);
     for (const Variables& t : wrist_meets_ ? by_wrist(moved, t_near) : by_plane(moved, t_near)) {
       const Location is = chain_.at(t.data());
-      if ((is.p - wanted.p).norm() > kMostOff || (is.R - wanted.R).norm() > kMostOff) continue;
+      if ((is.p - wanted.p).norm() > kMostOff * size_ || (is.R - wanted.R).norm() > kMostOff)
+        continue;
       Eigen::VectorXd q(6);
       for (int j = 0; j < 6; ++j) q[j] = nearest_turn(j, t[j] / gear(j), near[j]);
       list.push_back(q);
@@ -113,7 +115,7 @@ class SixTurns {
       Variables t = near;
       t[2] = pair[0];
       t[1] = pair[1];
-      t[0] = turn_between(up, arm(t[2], t[1]), goal).value_or(near[0]);
+      t[0] = turn_between(up, arm(t[2], t[1]), goal, kNowhere * size_).value_or(near[0]);
       const Eigen::Matrix3d before =
           turned(screw(0), t[0]).R * turned(screw(1), t[1]).R * turned(screw(2), t[2]).R;
       add_wrists(before.transpose() * moved.R, near, t, list);
@@ -181,7 +183,8 @@ class SixTurns {
     const double turn = turn_between(h, side, planar.R * side).value_or(0);
     for (const double third : roots_of(c)) {
       t[2] = third;
-      t[1] = turn_between(h, knee + turned(screw(2), third).R * shin, goal).value_or(0);
+      const Eigen::Vector3d leg = knee + turned(screw(2), third).R * shin;
+      t[1] = turn_between(h, leg, goal, kNowhere * size_).value_or(0);
       t[3] = h.dot(screw(3).axis) * (turn - t[1] - h.dot(n3) * third);
       list.push_back(t);
     }
@@ -189,6 +192,7 @@ class SixTurns {
 
   ScrewChain chain_;
   std::vector<Joint> joints_;
+  double size_;
   bool wrist_meets_ = false, middle_parallel_ = false;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
 };
@@ -215,7 +219,7 @@ ExactInverse exact_inverse(std::shared_ptr<const Robot> robot, const Eigen::Vect
   if (!six_turns) return {};
   const std::optional<ScrewChain> chain = screw_chain(*robot, xi);
   if (!chain) return {};
-  const SixTurns arm(*chain, robot->joints());
+  const SixTurns arm(*chain, robot->joints(), size_of(*robot));
   if (!arm.solvable()) return {};
   return [arm](const Location& wanted, const Eigen::VectorXd& near) {
     return arm.solve(wanted, near);

@@ -3,11 +3,12 @@
 #include <cmath>
 
 #include "kinematics/rotation.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kSameChain = 1e-9;  // m, rad, between the screws and the robot itself
+constexpr double kSameChain = 1e-9;  // of its size; rad, between the screws and the robot itself
 constexpr int kChainTrials = 3;      // readings at which they are compared
 
 /// Readings all over the range, the same each time.
@@ -20,12 +21,13 @@ Eigen::VectorXd trial_readings(const Robot& robot, int trial) {
 }
 
 bool same_machine(const Robot& robot, const Eigen::VectorXd& xi, const ScrewChain& chain) {
+  const double length = kSameChain * size_of(robot);
   for (int trial = 0; trial < kChainTrials; ++trial) {
     const Eigen::VectorXd q = trial_readings(robot, trial);
     std::array<double, ScrewChain::kMostJoints> t{};
     for (int j = 0; j < chain.joints; ++j) t[j] = chain.screw[j].gear * q[j];
     const Location is = locate(robot, xi, q), has = chain.at(t.data());
-    if ((is.p - has.p).norm() > kSameChain || (is.R - has.R).norm() > kSameChain) return false;
+    if ((is.p - has.p).norm() > length || (is.R - has.R).norm() > kSameChain) return false;
   }
   return true;
 }
