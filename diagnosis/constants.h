@@ -3,7 +3,7 @@
 // Sources: [exact] follows from a formula; [physics] from what machines are like; [habit] a usual
 // threshold; [cost] what a small computer can bear; [trials] a judgement, with which the rates hold
 // that tests/gap asks of the open trials. What a user may ask for otherwise is in DiagnosisOptions
-// and SearchRule.
+// and SearchRule; what only keeps rounding out stands beside the algorithm.
 #pragma once
 
 #include <array>
@@ -50,6 +50,8 @@ struct DiagnosisConstants {
     /// Share beyond the nuisance parameters below which a candidate says nothing; 1e-6 to 0.02
     /// [habit]
     double least_seen = 1e-3;
+    /// Of a cause, over the noise, each as probable as the others; 0.1 to 100 [trials]
+    std::array<double, 7> sizes = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
     int agreements = 3;             ///< rounds of noise and structure; 1 to 10 [cost]
     double worthwhile = 5;          ///< log evidence that a cause must bring; 2 to 10 [habit]
     std::size_t most_families = 5;  ///< that a set of causes grows to; 3 to 10 [trials]
@@ -67,6 +69,10 @@ struct DiagnosisConstants {
     /// Doubt of masses that are usual ones, over their torques; 0.25 to 1 [physics]
     double assumed = 0.6;
     int fewest_rows = 8;  ///< of a surface that is to show its form or shift; 4 to 30 [habit]
+    /// kg/m^2, of an arm's mass over the square of its reach, where no mass is known; 20 to 150
+    /// [physics]
+    double mass_per_reach = 60;
+    double payload = 0.1;  ///< over that mass; 0.02 to 0.3 [physics]
   };
   struct Naming {
     double least_told = 0.005;  ///< probability; 0 to 0.05 [habit]
@@ -89,6 +95,7 @@ struct DiagnosisConstants {
   /// Sessions that are simulated over the rows.
   struct Simulation {
     double with_none = 0.25, with_unknown = 0.15;  ///< shares of them; 0 to 0.5 [trials]
+    int at_once = 10;  ///< sessions whose statistics are held; 1 to 100 [cost]
     /// Such a session has one cause: few pairs are as probable; 0 to 14 [cost]
     int extended_singles = 4;
     std::array<double, 3> visible = {0.5, 1.0, 2.0};  ///< over the noise; 0.25 to 4 [trials]
@@ -107,9 +114,35 @@ struct DiagnosisConstants {
     double far = 1 - 1e-6;
     /// A validation row's prediction has an error of its own; 1 to 2 [physics]
     double beyond = 1.25;
+    int folds = 3;         ///< in which rows take turns at judging; 2 to 10 [cost]
     int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
     /// Before over floor below which nothing can be said; 1 to 1.2 [habit]
     double within_floor = 1.05;
+  };
+  /// Rows that would tell causes apart.
+  struct FurtherRows {
+    int most_new = 12;  ///< that a step asks for; 4 to 40 [cost]
+    int fewest = 3;     ///< that are worth a step; 1 to 6 [habit]
+    int postures = 6;   ///< found for one place, the farthest is taken; 2 to 20 [cost]
+    /// Units of readings that a joint moves at least in another posture; 0.2 to 1 [habit]
+    double another = 0.5;
+    double faster = 3;      ///< over the speed of the row; 1.5 to 5 [physics]
+    double of_mass = 0.05;  ///< payload to add, over the robot's mass; 0.02 to 0.1 [physics]
+    double on_paper = 5;    ///< kg, of that where no mass is known; 0.5 to 10 [physics]
+    /// Of the confusion at first, below which no row is worth it; 1e-4 to 0.02 [habit]
+    double least_confusion = 0.002;
+    double least_gain = 0.01;  ///< of the confusion now, that a row must take; 0 to 0.1 [habit]
+  };
+  /// Of two sessions, and of a machine with its simulator.
+  struct Comparison {
+    int passes = 2;  ///< false rows are seen once the changes are known; 1 to 5 [cost]
+    std::size_t most_together = 3;      ///< changes that the search puts together; 2 to 5 [cost]
+    std::size_t most_differences = 60;  ///< 20 to 100 [cost]
+    double listed = 0.02;     ///< least probability of a change that is listed; 0 to 0.1 [habit]
+    double shown = 0.5;       ///< the same, of an effect that a simulator lacks; 0.5 to 0.9 [habit]
+    double unsure = 0.5;      ///< of structure that no difference explains; 0.3 to 0.9 [habit]
+    double apart = 3;         ///< sigmas of a figure that differs; 2 to 5 [habit]
+    double alike = 1 - 1e-6;  ///< cosine of columns that no row tells apart [exact]
   };
   /// What a person is told.
   struct Report {
@@ -149,6 +182,8 @@ struct DiagnosisConstants {
   Naming naming;
   Simulation simulation;
   Validation validation;
+  FurtherRows further_rows;
+  Comparison comparison;
   Report report;
 };
 

@@ -183,8 +183,8 @@ class Diagnostician {
 void cross_validate(const std::shared_ptr<const Robot>& robot, const DataSet& data,
                     DiagnosisOptions options, const Progress& progress, Diagnosis& diagnosis) {
   options.simulated_sessions = 0;
-  for (int fold = 0; fold < kFolds; ++fold) {
-    if (progress) progress("judging by folds", 0.9 + 0.1 * fold / kFolds);
+  for (int fold = 0; fold < kDiagnosis.validation.folds; ++fold) {
+    if (progress) progress("judging by folds", 0.9 + 0.1 * fold / kDiagnosis.validation.folds);
     const DataSet part = with_fold(data, fold);
     const std::vector<ValidationRow> of_fold =
         Diagnostician(robot, part, options, {}).validation_rows();

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
-
-constexpr double kAlike = 1 - 1e-6;  ///< cosine of columns that no row tells apart
 
 /// What is usual of a length (m), an angle (rad) or a ratio.
 EffectParameter usual_parameter(const std::string& name, std::string unit) {
@@ -86,8 +86,8 @@ class Builder {
   }
 
   bool alike(int a, int b) const {
-    return a == b ||
-           std::abs(W_.col(a).dot(W_.col(b))) >= kAlike * W_.col(a).norm() * W_.col(b).norm();
+    return a == b || std::abs(W_.col(a).dot(W_.col(b))) >=
+                         kDiagnosis.comparison.alike * W_.col(a).norm() * W_.col(b).norm();
   }
 
   const Robot& robot_;

@@ -5,15 +5,11 @@
 #include <functional>
 
 #include "diagnosis/comparison/pair.h"
+#include "diagnosis/constants.h"
 #include "kinematics/corrected_robot.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kListedChange = 0.02;
-constexpr int kComparePasses = 2;  ///< false rows are seen once the changes are known
-constexpr size_t kSearched = 3;    ///< candidates that the search puts together
-constexpr size_t kMostDifferences = 60;
 
 /// The candidate's values, as the hypothesis that holds it has them.
 std::vector<NamedValue> values_held(const EvidenceEvaluator& evaluator,
@@ -45,7 +41,7 @@ void list_searched(const EvidenceEvaluator& evaluator, const Changeable& changea
   const std::vector<Candidate>& list = changeable.candidates.list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
     const auto found = posterior.cause.find({list[c].effect, list[c].at});
-    if (found == posterior.cause.end() || found->second < kListedChange) continue;
+    if (found == posterior.cause.end() || found->second < kDiagnosis.comparison.listed) continue;
     const auto h = std::ranges::find_if(posterior.hypotheses, [&](const Hypothesis& each) {
       return std::ranges::count(each.candidates, c) > 0;
     });
@@ -78,7 +74,7 @@ void list_grown(const EvidenceEvaluator& evaluator, const Changeable& changeable
     less.sizes.erase(less.sizes.begin() + static_cast<std::ptrdiff_t>(i));
     const Candidate& each = changeable.candidates.list[static_cast<size_t>(all.candidates[i])];
     const double probability = 1 / (1 + std::exp(weight(less, all.structure) - best));
-    if (probability >= kListedChange)
+    if (probability >= kDiagnosis.comparison.listed)
       result.changes.push_back({each.effect, each.at, probability,
                                 values_held(evaluator, changeable, all, all.candidates[i])});
   }
@@ -92,14 +88,15 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
     const EvidenceEvaluator evaluator = pair.evaluator(rows, rule);
     const Posterior posterior = evaluator.search();
     best = posterior.hypotheses.front();
-    if (best.candidates.size() < kSearched) {
+    if (best.candidates.size() < kDiagnosis.comparison.most_together) {
       list_searched(evaluator, pair.changes(), posterior, result);
       return best;
     }
   }
   rule.noise_is_known = true;
   const EvidenceEvaluator evaluator = pair.evaluator(rows, rule);
-  best = evaluator.grow({best.candidates, 0, 0, best.sizes}, kMostDifferences);
+  best =
+      evaluator.grow({best.candidates, 0, 0, best.sizes}, kDiagnosis.comparison.most_differences);
   list_grown(evaluator, pair.changes(), best, result);
   return best;
 }
@@ -136,7 +133,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
   if (progress) progress("weighing what changed", 0.5);
   Comparison result;
   std::vector<char> outlier = pair.outlier();
-  for (int pass = 0; pass < kComparePasses; ++pass) {
+  for (int pass = 0; pass < kDiagnosis.comparison.passes; ++pass) {
     const DenseEquations rows = pair.weighed(outlier);
     result = {};
     const Hypothesis best = weigh(pair, rows, options.search, result);

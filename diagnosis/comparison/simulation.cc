@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kShown = 0.5;   ///< probability
-constexpr double kApart = 3;     ///< sigmas
-constexpr double kUnsure = 0.5;  ///< probability of structure that no difference explains
 
 /// The parameters of one of the cause's places; all of a cause without. What was found twice of one
 /// parameter adds up.
@@ -74,7 +71,7 @@ std::string list_of(const char* opening, const std::vector<ShownCause>& causes) 
 std::string apart_in_words(const SharedCause& cause) {
   std::string text;
   for (const SideBySide& each : cause.parameters) {
-    if (each.sigmas < kApart) continue;
+    if (each.sigmas < kDiagnosis.comparison.apart) continue;
     text += (text.empty() ? "" : ", ") + each.robot.name + " is " +
             in_readable_unit(each.robot.value, each.robot.unit) + " in the robot and " +
             in_readable_unit(each.simulation.value, each.robot.unit) + " in the simulation";
@@ -85,7 +82,7 @@ std::string apart_in_words(const SharedCause& cause) {
 std::string geometry_in_words(const Comparison& geometry) {
   std::string text;
   for (const Change& each : geometry.changes) {
-    if (each.probability <= kShown) continue;
+    if (each.probability <= kDiagnosis.comparison.shown) continue;
     const bool plain = each.effect == "geometry_differs";
     text += (text.empty() ? "the geometry differs: " : ", ") +
             (plain ? each.where : cause_in_words(each.effect, each.where));
@@ -111,7 +108,7 @@ std::vector<std::string> sentences(const Differences& of) {
   add(geometry.empty() || !one_sided
           ? geometry
           : geometry + " (what such an effect does to a zero or a length is among this)");
-  if (geometry.empty() && !one_sided && of.geometry.none <= kUnsure)
+  if (geometry.empty() && !one_sided && of.geometry.none <= kDiagnosis.comparison.unsure)
     add("the geometry differs, but not in one known thing alone");
   if (list.empty())
     list.push_back("these rows show no difference between the robot and its simulation");
@@ -127,7 +124,8 @@ std::vector<ShownCause> shown_causes(const Diagnosis& diagnosis, const Diagnosis
   if (verdict.effect == kUnknown) list.push_back({kUnknown, "", verdict.probability, {}, {}});
   if (diagnosis.p_value > options.name_below_p) return list;
   for (const CauseResult& each : diagnosis.candidates) {
-    if (!names_effect(each.effect) || (each.probability <= kShown && each.effect != verdict.effect))
+    if (!names_effect(each.effect) ||
+        (each.probability <= kDiagnosis.comparison.shown && each.effect != verdict.effect))
       continue;
     std::vector<std::string> places = each.where;
     if (places.empty()) places.emplace_back();

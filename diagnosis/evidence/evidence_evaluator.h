@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/candidates.h"
 #include "diagnosis/evidence/hypothesis.h"
 #include "diagnosis/evidence/marginal_likelihood.h"
@@ -81,11 +82,9 @@ class EvidenceEvaluator {
   /// at most five families.
   Hypothesis grow(Hypothesis h, size_t most) const;
 
-  /// Of a cause, over the noise; each as probable as the others.
-  static constexpr std::array kSizes{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
-
  private:
   friend class Search;
+  static constexpr std::array kSizes = kDiagnosis.evidence.sizes;
   struct Single {
     double log_sum = 0, log_best = 0, size = 1;
   };

@@ -6,15 +6,13 @@
 
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "kinematics/expects.h"
 #include "kinematics/make_robot.h"
 #include "kinematics/robot_text.h"
 
 namespace selfcal {
 namespace {
-
-constexpr double kPerReach = 60;  ///< kg/m^2
-constexpr double kPayload = 0.1;  ///< over the mass
 
 /// Of the moving links, stretched out (m).
 double reach_of(const Robot& robot) {
@@ -38,11 +36,12 @@ std::shared_ptr<const Robot> with_mass_of_its_size(std::shared_ptr<const Robot> 
   const Statics* statics = robot->statics();
   if (!statics || statics->mechanics().masses_known() || statics->mechanics().gravity.norm() == 0)
     return robot;
-  const double mass = std::round(10 * kPerReach * std::pow(reach_of(*robot), 2)) / 10;
+  const double mass =
+      std::round(10 * kDiagnosis.shapes.mass_per_reach * std::pow(reach_of(*robot), 2)) / 10;
   if (!(mass > 0)) return robot;
   Node node = robot->text().describe(values(*robot));
   node.set("mass", Node::of(mass));
-  node.set("payload", Node::of(kPayload * mass));
+  node.set("payload", Node::of(kDiagnosis.shapes.payload * mass));
   Problems problems;
   std::shared_ptr<const Robot> heavy = make_robot(node, problems);
   expects(heavy != nullptr, problems.any() ? problems.list.front() : "a file with a mass is read");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "constraints/sampling/configurations.h"
+#include "diagnosis/constants.h"
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/size.h"
@@ -15,20 +16,12 @@
 namespace selfcal {
 namespace {
 
-constexpr int kNewRows = 12;
-constexpr double kPayloadOnPaper = 5;  ///< kg, where the robot's masses are not known
-constexpr double kOfMass = 0.05;       ///< payload over the robot's mass
-constexpr double kFaster = 3;
-constexpr int kPostures = 6;       ///< found for one place, of which the farthest is taken
-constexpr double kAnother = 0.5;   ///< of its unit, that a joint moves at least in another posture
-constexpr int kFewestReached = 3;  ///< rows that are worth a step
-
 /// Rows of `data` that spread over the fit rows, evenly.
 std::vector<int> spread_rows(const DataSet& data) {
   std::vector<int> fit, some;
   for (int row = 0; row < data.rows.rows(); ++row)
     if (!data.rows.check[row]) fit.push_back(row);
-  const int count = std::min<int>(kNewRows, static_cast<int>(fit.size()));
+  const int count = std::min<int>(kDiagnosis.further_rows.most_new, static_cast<int>(fit.size()));
   for (int i = 0; i < count; ++i) some.push_back(fit[i * fit.size() / count]);
   return some;
 }
@@ -67,7 +60,7 @@ class CandidateSet {
     if (data_.rows.velocity.rows() > 0) {
       DataSet back = copies_, fast = copies_;
       back.rows.velocity.bottomRows(count()) *= -1;
-      fast.rows.velocity.bottomRows(count()) *= kFaster;
+      fast.rows.velocity.bottomRows(count()) *= kDiagnosis.further_rows.faster;
       add("approached from the other side", std::move(back), "play or an after-effect");
       if (data_.speeds) add("at three times the speed", std::move(fast));
     }
@@ -113,8 +106,9 @@ class CandidateSet {
     const Mechanics& mechanics = robot_.statics()->mechanics();
     double mass = 0;
     for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
-    const double payload =
-        mechanics.masses_known() ? std::max(1.0, std::round(kOfMass * mass)) : kPayloadOnPaper;
+    const double payload = mechanics.masses_known()
+                               ? std::max(1.0, std::round(kDiagnosis.further_rows.of_mass * mass))
+                               : kDiagnosis.further_rows.on_paper;
     DataSet loaded = copies_;
     Observations& rows = loaded.rows;
     if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
@@ -191,14 +185,14 @@ class CandidateSet {
     found.sets.push_back(make_set("place", node, problems));
     expects(!problems.any(), "a location constraint needs nothing else");
     SampleRequest request;
-    request.rows = request.rows_per_group = kPostures;
+    request.rows = request.rows_per_group = kDiagnosis.further_rows.postures;
     request.places = {place};
     // Of closed loops a place determines the readings: the first starts find them, or none do.
     if (robot_.has_loops()) request.tries = 1;
     Random random(1);
     sample_rows(robot_, xi_, {request}, random, found);
     std::optional<Eigen::VectorXd> best;
-    double farthest = kAnother;
+    double farthest = kDiagnosis.further_rows.another;
     for (Eigen::Index row = 0; row < found.rows.q.rows(); ++row) {
       const Eigen::VectorXd other = found.rows.q.row(row).transpose();
       const double far = ((other - q).array().abs() / units_of_readings(robot_)).maxCoeff();
@@ -245,7 +239,7 @@ class CandidateSet {
       for (Eigen::Index part = 0; part < rows.wrench.cols(); part += 3)
         rows.wrench.row(row).segment<3>(part) *= reached->turned;
     }
-    if (static_cast<Eigen::Index>(take.size()) < first_ + kFewestReached) return;
+    if (static_cast<Eigen::Index>(take.size()) < first_ + kDiagnosis.further_rows.fewest) return;
     rows = taken(rows, take);
     add(how, std::move(others));
   }

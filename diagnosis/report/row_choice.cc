@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/report/separation.h"
 
 namespace selfcal {
-namespace {
-
-constexpr double kLeastConfusion =
-    0.002;                           ///< of the confusion at first, below which no row is worth it
-constexpr double kLeastGain = 0.01;  ///< of the confusion now that a row must take
-
-}  // namespace
-
 RowChoice choose_rows(const LinearisedModel& linearised, const DataSet& data, int first,
                       const std::vector<CausePair>& pairs, int most) {
   std::vector<Separation> causes;
@@ -34,9 +27,9 @@ RowChoice choose_rows(const LinearisedModel& linearised, const DataSet& data, in
   const double at_first = left(-1);
   while (static_cast<int>(choice.rows.size()) < most) {
     const double now = left(-1);
-    if (now <= kLeastConfusion * at_first) break;
+    if (now <= kDiagnosis.further_rows.least_confusion * at_first) break;
     int best = -1;
-    double least = (1 - kLeastGain) * now;
+    double least = (1 - kDiagnosis.further_rows.least_gain) * now;
     for (int row = first; row < data.rows.rows(); ++row) {
       if (is_taken[static_cast<size_t>(row)] != 0) continue;
       if (const double then = left(row); then < least) {

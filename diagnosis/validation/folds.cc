@@ -5,10 +5,12 @@
 #include <map>
 #include <numeric>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
 
-constexpr int kStretches = 2 * kFolds;
+constexpr int kStretches = 2 * kDiagnosis.validation.folds;
 
 /// Of each of the rows `of`: how many configurations of its set came before among them; `count` by
 /// set.
@@ -39,7 +41,8 @@ DataSet with_fold(const DataSet& data, int fold) {
   const std::vector<int> place = places(data.rows, all, count);
   for (int row = 0; row < data.rows.rows(); ++row) {
     const int stretch = place[row] * kStretches / count[data.rows.set[row]];
-    if (data.rows.check[row] != kCopy) part.rows.check[row] = stretch % kFolds == fold;
+    if (data.rows.check[row] != kCopy)
+      part.rows.check[row] = stretch % kDiagnosis.validation.folds == fold;
   }
   return part;
 }

@@ -8,8 +8,6 @@
 
 namespace selfcal {
 
-inline constexpr int kFolds = 3;
-
 /// `data`, all of whose rows are `fit` rows, with those of one fold made `check` rows. A fold is
 /// two of six stretches of each set's configurations in their order, so that it leaves out moments
 /// and places; repeats stay together.

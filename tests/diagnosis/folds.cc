@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "diagnosis/constants.h"
+
 namespace selfcal {
 namespace {
 
@@ -26,7 +28,7 @@ DataSet forty_rows() {
 TEST(Folds, LetEachRowJudgeOnce) {
   const DataSet data = forty_rows();
   std::vector<int> judged(40, 0);
-  for (int fold = 0; fold < kFolds; ++fold) {
+  for (int fold = 0; fold < kDiagnosis.validation.folds; ++fold) {
     const DataSet part = with_fold(data, fold);
     for (int row = 0; row < 40; ++row) judged[row] += part.rows.check[row];
   }
@@ -35,7 +37,7 @@ TEST(Folds, LetEachRowJudgeOnce) {
 
 TEST(Folds, KeepRepeatsTogetherAndLeaveOutStretches) {
   const DataSet data = forty_rows();
-  for (int fold = 0; fold < kFolds; ++fold) {
+  for (int fold = 0; fold < kDiagnosis.validation.folds; ++fold) {
     const DataSet part = with_fold(data, fold);
     for (int row = 11; row < 16; ++row)
       EXPECT_EQ(part.rows.check[row], part.rows.check[10]) << fold << " " << row;
