@@ -151,14 +151,13 @@ OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A) {
   return result;
 }
 
-Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A) {
+Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A) {
   if (A.rows() < kLarge) return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
-  Eigen::MatrixXd L = A;
   const int n = width(A.rows());
   int info = 0;
-  dpotrf_("L", &n, L.data(), &n, &info);
-  L.triangularView<Eigen::StrictlyUpper>().setZero();
-  return L;
+  dpotrf_("L", &n, A.data(), &n, &info);
+  A.triangularView<Eigen::StrictlyUpper>().setZero();
+  return A;
 }
 
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {

@@ -39,7 +39,7 @@ struct OrthogonalColumns {
 OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A);
 
 /// Lower Cholesky factor of the positive definite `A`.
-Eigen::MatrixXd cholesky_root(const Eigen::MatrixXd& A);
+Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A);
 /// L^-1 B of the lower triangular `L`.
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
 /// L^-T B.

@@ -5,31 +5,43 @@
 namespace selfcal {
 namespace {
 
-/// Appends equations to growing storage.
+/// Equations one after the other; the storage is of as many as there can be from the first on,
+/// since two of it would be the most that a diagnosis ever needs.
 class Collector {
  public:
-  explicit Collector(Eigen::Index columns) : columns_(columns) {}
-  /// A row of zeros [W | Delta Y | shift].
+  Collector(Eigen::Index most, Eigen::Index columns)
+      : columns_(columns), row_(columns + 4), out_{{}, Eigen::VectorXd(most), {}, {}} {
+    out_.W.resize(most, columns);
+    out_.shift.resize(most, 3);
+  }
+  /// A row of zeros [W | Delta Y | shift], which is taken at the next call.
   Eigen::RowVectorXd& add(int row) {
+    take();
     out_.row.push_back(row);
-    return rows_.emplace_back(Eigen::RowVectorXd::Zero(columns_ + 4));
+    return row_.setZero();
   }
   DenseEquations finish() {
-    const auto n = static_cast<Eigen::Index>(rows_.size());
-    out_.W.resize(n, columns_);
-    out_.y.resize(n);
-    out_.shift.resize(n, 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      out_.W.row(i) = rows_[static_cast<size_t>(i)].head(columns_);
-      out_.y[i] = rows_[static_cast<size_t>(i)][columns_];
-      out_.shift.row(i) = rows_[static_cast<size_t>(i)].tail<3>();
+    take();
+    const auto n = static_cast<Eigen::Index>(out_.row.size());
+    if (n < out_.y.size()) {
+      out_.W.conservativeResize(n, columns_);
+      out_.y.conservativeResize(n);
+      out_.shift.conservativeResize(n, 3);
     }
     return std::move(out_);
   }
 
  private:
+  void take() {
+    if (out_.row.empty()) return;
+    const auto i = static_cast<Eigen::Index>(out_.row.size()) - 1;
+    out_.W.row(i) = row_.head(columns_);
+    out_.y[i] = row_[columns_];
+    out_.shift.row(i) = row_.tail<3>();
+  }
+
   Eigen::Index columns_;
-  std::vector<Eigen::RowVectorXd> rows_;
+  Eigen::RowVectorXd row_;
   DenseEquations out_;
 };
 
@@ -43,7 +55,19 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
     groups_at.push_back(all);
     all += state.groups[s].cols() * data_.sets[s].method->group_freedom();
   }
-  Collector collector(all);
+  Passed unused;
+  const Weighting weighting{scale, outlier};
+  const Pass pass{state, weighting, {}};
+  std::vector<Eigen::MatrixXd> between;
+  Eigen::Index most = 0;
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    between.push_back(own_equations(s, pass, whole_layout(s, false), unused));
+    most += static_cast<Eigen::Index>(plans_[s].items.size() * quantities_[s].size()) +
+            between.back().rows();
+    for (const SetPlan::Cluster& cluster : plans_[s].clusters)
+      most += static_cast<Eigen::Index>(cluster.links.size());
+  }
+  Collector collector(most, all);
   Block block;
   Eigen::MatrixXd W;
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
@@ -78,17 +102,12 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
                              groups_at[s] + freedom * link.b, row);
       }
   }
-  Passed unused;
-  const Weighting weighting{scale, outlier};
-  const Pass pass{state, weighting, {}};
-  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
-    const Eigen::MatrixXd between = own_equations(s, pass, whole_layout(s, false), unused);
-    for (const auto& each : between.rowwise()) {
+  for (const Eigen::MatrixXd& of_set : between)
+    for (const auto& each : of_set.rowwise()) {
       Eigen::RowVectorXd& row = collector.add(-1);
       row.head(columns()) = each.head(columns());
       row[all] = each[columns()];
     }
-  }
   return collector.finish();
 }
 

@@ -13,7 +13,7 @@ namespace selfcal {
 Hypothesis EvidenceEvaluator::pruned(Hypothesis h) const {
   const MarginalLikelihood& marginal_likelihood = marginal_likelihoods_[h.structure];
   const std::vector<int> all = MarginalLikelihood::unfold(terms(h)).first;
-  const Eigen::MatrixXd G = marginal_likelihood.gram(all, all);
+  const Eigen::MatrixXd G = marginal_likelihood.gram(all);
   const auto weigh_again = [&](Hypothesis& of) {
     const std::vector<MarginalLikelihood::Term> list = terms(of);
     std::vector<int> at;  // of its columns, among all

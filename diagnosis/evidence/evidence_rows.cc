@@ -147,6 +147,15 @@ Eigen::MatrixXd StructuredRows::inverse_times(Eigen::MatrixXd X) const {
   return X;
 }
 
+void StructuredRows::whiten(Eigen::MatrixXd& X) const {
+  noise->blocks->whiten(X);
+  if (!kernel) return;
+  // (I - W h W')^(1/2) = I - W (1 - (1 - h)^(1/2)) W', W orthonormal.
+  const Eigen::MatrixXd& W = kernel->kernel->W;
+  const Eigen::VectorXd part = 1 - (1 - hidden.array()).sqrt();
+  X.noalias() -= W * (part.asDiagonal() * transposed_product(W, X));
+}
+
 Eigen::MatrixXd StructuredRows::AC() const {
   if (!kernel) return noise->AC;
   return noise->AC - transposed_product(hidden.asDiagonal() * kernel->UA, kernel->UC);

@@ -106,6 +106,8 @@ struct StructuredRows {
   void take(const DiscrepancyCovariance& structure);
   /// S^-1 X.
   Eigen::MatrixXd inverse_times(Eigen::MatrixXd X) const;
+  /// X becomes a root of S^-1 times X: its square is X'S^-1 X.
+  void whiten(Eigen::MatrixXd& X) const;
   /// A'S^-1 C.
   Eigen::MatrixXd AC() const;
   std::vector<double> products() const;

@@ -162,10 +162,17 @@ double LinearisedModel::noise() const {
 
 Eigen::VectorXd LinearisedModel::residuals(const std::vector<int>& effects,
                                            const Eigen::VectorXd& prior) const {
-  std::vector<int> every(all_.row.size()), own(effects.size());
-  std::iota(every.begin(), every.end(), 0);
+  std::vector<int> own(effects.size());
   std::iota(own.begin(), own.end(), 0);
-  return left_of(of(every, effects), of(equations_of(all_, taking_part()), effects), own, prior);
+  const Eigen::VectorXd x = best_fit(of(equations_of(all_, taking_part()), effects), own, prior);
+  std::vector<int> columns = nuisance_.columns;
+  for (const int each : effects)
+    columns.push_back(each + static_cast<int>(geometry_->parameters().size()));
+  // Column by column, without a copy of so many.
+  Eigen::VectorXd left = all_.y;
+  for (size_t c = 0; c < columns.size(); ++c)
+    left -= x[static_cast<Eigen::Index>(c)] * all_.W.col(columns[c]);
+  return left / scale_;
 }
 
 Eigen::VectorXd LinearisedModel::geometry_residuals(const Whitened& rows) const {

@@ -117,13 +117,26 @@ Eigen::MatrixXd MarginalLikelihood::products(const std::vector<int>& a) const {
   return transposed_product(beyond_geometry(rows().rows().C(Eigen::all, a)), rows().rows().C);
 }
 
-Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& a,
-                                         const std::vector<int>& b) const {
-  if (a.empty() || b.empty())
-    return Eigen::MatrixXd(static_cast<Eigen::Index>(a.size()),
-                           static_cast<Eigen::Index>(b.size()));
-  return transposed_product(beyond_geometry(rows().rows().C(Eigen::all, a)),
-                            rows().rows().C(Eigen::all, b));
+Eigen::MatrixXd MarginalLikelihood::root_of_gram(const std::vector<int>& columns) const {
+  // X' S^-1 (X - A t) = |X - A t|^2 in S^-1 + |B t|^2, t what the geometry takes of X.
+  const double scale = 1 / fixed_->structure.noise;
+  const Eigen::MatrixXd& root = fixed_->root;
+  Eigen::MatrixXd X = rows().rows().C(Eigen::all, columns);
+  const Eigen::MatrixXd AX = scale * transposed_product(fixed_->seen.inverse_times(rows().A()), X);
+  const Eigen::MatrixXd taken = solve_lower_transposed(root, solve_lower(root, AX));
+  X.noalias() -= rows().A() * taken;
+  fixed_->seen.whiten(X);
+  X *= std::sqrt(scale);
+  const Eigen::Index n = X.rows();
+  X.conservativeResize(n + rows().B().rows(), Eigen::NoChange);
+  X.bottomRows(rows().B().rows()).noalias() = rows().B() * taken;
+  return X;
+}
+
+Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& columns) const {
+  if (columns.empty()) return Eigen::MatrixXd(0, 0);
+  const Eigen::MatrixXd Z = root_of_gram(columns);
+  return transposed_product(Z, Z);
 }
 
 std::pair<std::vector<int>, Eigen::VectorXd> MarginalLikelihood::unfold(
@@ -159,7 +172,7 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
   const Block& only = *terms.front().block;
   if (terms.size() > 1 || only.group < 0 || only.columns.size() > kMostLooped) {
     const std::vector<int> columns = unfold(terms).first;
-    return log_evidence(terms, gram(columns, columns));
+    return log_evidence(terms, gram(columns));
   }
   Small s;
   s.n = static_cast<int>(only.columns.size());
@@ -346,9 +359,8 @@ MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms,
 MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> terms) const {
   if (terms.empty()) return {{}, {}, variance(yy_)};
   const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd H =
-      Eigen::MatrixXd::Identity(D.size(), D.size()) +
-      Eigen::MatrixXd(D.asDiagonal() * gram(columns, columns) * D.asDiagonal());
+  const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
+                            Eigen::MatrixXd(D.asDiagonal() * gram(columns) * D.asDiagonal());
   const Eigen::MatrixXd inverse = inverse_of_positive(H);
   Estimate estimate;
   const Eigen::VectorXd g = D.cwiseProduct(g_(columns));
@@ -359,14 +371,16 @@ MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> 
 }
 
 Eigen::VectorXd MarginalLikelihood::mean(std::span<const Term> terms) const {
+  // (I + Z Z')^-1 h = h - Z (I + Z'Z)^-1 Z'h: there may be more columns than equations.
   const auto [columns, D] = unfold(terms);
-  Eigen::MatrixXd H = gram(columns, columns);
-  H.array().colwise() *= D.array();
-  H.array().rowwise() *= D.transpose().array();
+  if (columns.empty()) return D;
+  const Eigen::VectorXd h = D.cwiseProduct(g_(columns));
+  const Eigen::MatrixXd Z = D.asDiagonal() * root_of_gram(columns).transpose();
+  Eigen::MatrixXd H = transposed_product(Z, Z);
   H.diagonal().array() += 1;
-  const Eigen::MatrixXd L = cholesky_root(H);
-  const Eigen::VectorXd half = solve_lower(L, D.cwiseProduct(g_(columns)));
-  return D.cwiseProduct(Eigen::VectorXd(solve_lower_transposed(L, half)));
+  const Eigen::MatrixXd L = cholesky_root(std::move(H));
+  const Eigen::VectorXd Zh = Z.transpose() * h;
+  return D.cwiseProduct(h - Z * solve_lower_transposed(L, solve_lower(L, Zh)));
 }
 
 }  // namespace selfcal

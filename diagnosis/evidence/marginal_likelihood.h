@@ -111,8 +111,8 @@ class MarginalLikelihood {
     const auto at = static_cast<std::size_t>(i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i);
     return kept_[rows().products().at(group) + at];
   }
-  /// Of G, rows a by columns b.
-  Eigen::MatrixXd gram(const std::vector<int>& a, const std::vector<int>& b) const;
+  /// Of G, rows and columns `columns`.
+  Eigen::MatrixXd gram(const std::vector<int>& columns) const;
   /// a by all columns of G.
   Eigen::MatrixXd products(const std::vector<int>& a) const;
   /// Columns of the terms, one after the other, and the prior sigma of each.
@@ -132,6 +132,8 @@ class MarginalLikelihood {
   MarginalLikelihood() = default;
   /// M X: what of S^-1 X is beyond the geometry.
   Eigen::MatrixXd beyond_geometry(const Eigen::MatrixXd& X) const;
+  /// Z with Z'Z of G, rows and columns `columns`: equations and geometry x columns.
+  Eigen::MatrixXd root_of_gram(const std::vector<int>& columns) const;
   Statistics statistics_of(ObservedRows& observed, const Eigen::VectorXd& pull,
                            bool with_causes) const;
   /// s^2 at least.

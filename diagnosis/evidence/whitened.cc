@@ -28,25 +28,38 @@ Eigen::MatrixXd over_priors(const Eigen::MatrixXd& A, const Eigen::VectorXd& wei
   return M;
 }
 
+Eigen::VectorXd best_fit(const Whitened& rows, const std::vector<int>& causes,
+                         const Eigen::VectorXd& sigma) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index i = 0; i < sigma.size(); ++i)
+    if (sigma[i] > 0) moving.push_back(i);
+  const Eigen::Index m = rows.A.rows(), n = rows.A.cols();
+  const Eigen::Index k = static_cast<Eigen::Index>(moving.size());
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m + n + k, n + k);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m + n + k);
+  M.topLeftCorner(m, n) = rows.A;
+  M.diagonal(-m).head(n) = rows.weight;
+  z.head(m) = rows.y;
+  z.segment(m, n) = rows.pull;
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const Eigen::Index at = moving[static_cast<size_t>(i)];
+    M.col(n + i).head(m) = rows.C.col(causes[static_cast<size_t>(at)]);
+    M(m + n + i, n + i) = 1 / sigma[at];
+  }
+  const Eigen::VectorXd found = least_squares(M, z);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n + sigma.size());
+  x.head(n) = found.head(n);
+  for (Eigen::Index i = 0; i < k; ++i) x[n + moving[static_cast<size_t>(i)]] = found[n + i];
+  return x;
+}
+
 Eigen::VectorXd left_of(const Whitened& every, const Whitened& some, const std::vector<int>& causes,
                         const Eigen::VectorXd& sigma) {
-  std::vector<int> moving;
-  std::vector<double> prior;
+  const Eigen::VectorXd x = best_fit(some, causes, sigma);
+  Eigen::VectorXd left = every.y - every.A * x.head(every.A.cols());
   for (size_t i = 0; i < causes.size(); ++i)
-    if (const double each = sigma[static_cast<Eigen::Index>(i)]; each > 0) {
-      moving.push_back(causes[i]);
-      prior.push_back(1 / each);
-    }
-  const Eigen::Index n = some.A.cols(), k = static_cast<Eigen::Index>(moving.size());
-  Eigen::MatrixXd all(some.A.rows(), n + k);
-  all << some.A, some.C(Eigen::all, moving);
-  Eigen::VectorXd weight(n + k);
-  weight << some.weight, Eigen::Map<const Eigen::VectorXd>(prior.data(), k);
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(all.rows() + n + k);
-  z.head(all.rows()) = some.y;
-  z.segment(all.rows(), n) = some.pull;
-  const Eigen::VectorXd x = least_squares(over_priors(all, weight), z);
-  return every.y - every.A * x.head(n) - every.C(Eigen::all, moving) * x.tail(k);
+    left -= x[every.A.cols() + static_cast<Eigen::Index>(i)] * every.C.col(causes[i]);
+  return left;
 }
 
 }  // namespace selfcal

@@ -31,8 +31,13 @@ Nuisance nuisance(const Adjusted& adjusted, Eigen::Index robot, Eigen::Index all
 /// `A` over the priors' diagonal.
 Eigen::MatrixXd over_priors(const Eigen::MatrixXd& A, const Eigen::VectorXd& weight);
 
+/// The unknowns of A, then those of the columns `causes` of C, that meet `rows` and the priors
+/// best. `sigma`: prior of each cause, infinite without one, 0 where it is held at zero.
+Eigen::VectorXd best_fit(const Whitened& rows, const std::vector<int>& causes,
+                         const Eigen::VectorXd& sigma);
+
 /// What the geometry and the columns `causes` of C leave of `every`, fitted to `some` (the same
-/// columns). `sigma`: prior of each cause, infinite without one, 0 where it is held at zero.
+/// columns); `sigma` as for best_fit.
 Eigen::VectorXd left_of(const Whitened& every, const Whitened& some, const std::vector<int>& causes,
                         const Eigen::VectorXd& sigma);
 

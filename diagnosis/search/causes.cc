@@ -97,7 +97,7 @@ class Teller {
       const auto size = static_cast<Eigen::Index>(block.columns.size());
       if (candidate(c).effect == cause.effect) {
         const Eigen::VectorXd v = estimate.mean.segment(first, size);
-        squares += v.dot(evaluator_.marginal_likelihood(0).gram(block.columns, block.columns) * v);
+        squares += v.dot(evaluator_.marginal_likelihood(0).gram(block.columns) * v);
         cause.beyond_nuisance = std::max(cause.beyond_nuisance, evaluator_.beyond_nuisance(c));
         add_parameters(c, estimate, first, cause);
         evaluator_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);

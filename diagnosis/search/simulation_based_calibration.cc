@@ -38,25 +38,18 @@ class Simulator {
     SimulationBasedCalibration simulation;
     std::vector<Stated> stated;
     int causes = 0, none = 0;
-    std::vector<std::string> truths(static_cast<std::size_t>(options_.simulated_sessions));
-    Eigen::MatrixXd Y(rows_.y.size(), options_.simulated_sessions);
-    Eigen::Index drawn = 0;
-    for (std::string& truth : truths) Y.col(drawn++) = session(truth);
-    const EvidenceEvaluator::Statistics statistics = evaluator_.statistics_of(Y);
-    for (std::size_t i = 0; i < truths.size(); ++i) {
-      const std::string& truth = truths[i];
-      evaluator_.condition_on(statistics, static_cast<Eigen::Index>(i));
-      const CauseResult answer =
-          answered(evaluator_.search_coarsely(kDiagnosis.simulation.extended_singles));
-      stated.push_back({answer.probability, answer.effect == truth});
-      if (truth == kNone) {
-        ++none;
-        simulation.false_alarms += answer.effect != kNone;
-      } else {
-        ++causes;
-        simulation.right += answer.effect == truth;
+    for (int first = 0; first < options_.simulated_sessions; first += kDiagnosis.simulation.at_once)
+      for (const auto& [truth, answer] :
+           answers(std::min(kDiagnosis.simulation.at_once, options_.simulated_sessions - first))) {
+        stated.push_back({answer.probability, answer.effect == truth});
+        if (truth == kNone) {
+          ++none;
+          simulation.false_alarms += answer.effect != kNone;
+        } else {
+          ++causes;
+          simulation.right += answer.effect == truth;
+        }
       }
-    }
     simulation.sessions = options_.simulated_sessions;
     simulation.right /= std::max(causes, 1);
     simulation.false_alarms /= std::max(none, 1);
@@ -66,6 +59,20 @@ class Simulator {
   }
 
  private:
+  /// Of further sessions: what is true, and what is answered.
+  std::vector<std::pair<std::string, CauseResult>> answers(int sessions) {
+    std::vector<std::pair<std::string, CauseResult>> list(static_cast<std::size_t>(sessions));
+    Eigen::MatrixXd Y(rows_.y.size(), sessions);
+    Eigen::Index drawn = 0;
+    for (auto& each : list) Y.col(drawn++) = session(each.first);
+    const EvidenceEvaluator::Statistics statistics = evaluator_.statistics_of(Y);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      evaluator_.condition_on(statistics, static_cast<Eigen::Index>(i));
+      list[i].second = answered(evaluator_.search_coarsely(kDiagnosis.simulation.extended_singles));
+    }
+    return list;
+  }
+
   CauseResult answered(const Posterior& posterior) const {
     CauseResult best{.effect = kUnknown, .probability = posterior.unknown};
     if (posterior.none >= options_.name_below_none)
