@@ -161,6 +161,12 @@ Eigen::MatrixXd StructuredRows::AC() const {
   return noise->AC - transposed_product(hidden.asDiagonal() * kernel->UA, kernel->UC);
 }
 
+Eigen::MatrixXd StructuredRows::AC(const std::vector<int>& columns) const {
+  const Eigen::MatrixXd AC = noise->AC(Eigen::all, columns);
+  if (!kernel) return AC;
+  return AC - transposed_product(hidden.asDiagonal() * kernel->UA, kernel->UC(Eigen::all, columns));
+}
+
 std::vector<double> StructuredRows::products() const {
   std::vector<double> all = noise->products;
   if (!kernel) return all;

@@ -108,8 +108,9 @@ struct StructuredRows {
   Eigen::MatrixXd inverse_times(Eigen::MatrixXd X) const;
   /// X becomes a root of S^-1 times X: its square is X'S^-1 X.
   void whiten(Eigen::MatrixXd& X) const;
-  /// A'S^-1 C.
+  /// A'S^-1 C, and that of some columns of C.
   Eigen::MatrixXd AC() const;
+  Eigen::MatrixXd AC(const std::vector<int>& columns) const;
   std::vector<double> products() const;
 };
 

@@ -122,7 +122,7 @@ Eigen::MatrixXd MarginalLikelihood::root_of_gram(const std::vector<int>& columns
   const double scale = 1 / fixed_->structure.noise;
   const Eigen::MatrixXd& root = fixed_->root;
   Eigen::MatrixXd X = rows().rows().C(Eigen::all, columns);
-  const Eigen::MatrixXd AX = scale * transposed_product(fixed_->seen.inverse_times(rows().A()), X);
+  const Eigen::MatrixXd AX = scale * fixed_->seen.AC(columns);
   const Eigen::MatrixXd taken = solve_lower_transposed(root, solve_lower(root, AX));
   X.noalias() -= rows().A() * taken;
   fixed_->seen.whiten(X);
