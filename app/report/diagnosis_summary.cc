@@ -1,6 +1,7 @@
 // First the verdict in a sentence, then the gap, the causes, where it lies, what to do next.
 #include "app/report/diagnosis_summary.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/report/format.h"
@@ -47,9 +48,9 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     for (size_t p = 0;
          p < each.parameters.size() && each.probability > 0.5 && p < kMostListedCauses; ++p) {
       const NamedValue& v = each.parameters[p];
-      const ReadableUnit unit = readable_unit(v.unit, std::abs(v.value));
+      const ReadableUnit unit = readable_unit(v.unit, std::max(std::abs(v.value), v.sigma));
       text += "                 " + v.name + " = " + plain_figure(unit.factor * v.value) + " ± " +
-              plain_figure(unit.factor * v.sigma, 1) + " " + unit.name + " (usual " +
+              plain_figure(unit.factor * v.sigma, 2) + " " + unit.name + " (usual " +
               plain_figure(unit.factor * v.usual_least, 1) + " to " +
               plain_figure(unit.factor * v.usual_most, 1) + ")\n";
     }

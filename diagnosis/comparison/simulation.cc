@@ -88,9 +88,9 @@ std::string geometry_in_words(const Comparison& geometry) {
             (plain ? each.where : cause_in_words(each.effect, each.where));
     if (each.values.size() != 1) continue;
     const NamedValue& by = each.values[0];
-    const ReadableUnit unit = readable_unit(by.unit, std::abs(by.value));
+    const ReadableUnit unit = readable_unit(by.unit, std::max(std::abs(by.value), by.sigma));
     text += " by " + plain_figure(unit.factor * by.value) + " ± " +
-            plain_figure(unit.factor * by.sigma, 1) + " " + unit.name;
+            plain_figure(unit.factor * by.sigma, 2) + " " + unit.name;
   }
   return text;
 }

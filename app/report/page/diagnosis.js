@@ -10,7 +10,7 @@ function cause_words(cause) {
 }
 
 function value_words(value) {
-  const [factor, unit] = shown(value.unit, Math.abs(value.value));
+  const [factor, unit] = shown(value.unit, Math.max(Math.abs(value.value), value.sigma));
   return figure(factor * value.value) + " ± " + figure(factor * value.sigma, 2) + " " + unit;
 }
 
@@ -69,11 +69,18 @@ function causes_of(data) {
   ];
 }
 
+// Of what is sure of a size, two sigma less; far beyond from three times the usual largest on, as the verdict has it.
+function plausibility(size, sigma, most) {
+  const sure = size - 2 * sigma;
+  if (sure > 3 * most) return "far beyond the usual";
+  return sure > most ? "larger than usual" : "plausible";
+}
+
 function sizes_of(candidates) {
   const rows = candidates.filter(each => each.probability >= 0.5).flatMap(each => each.parameters.map(value => {
-    const [factor, unit] = shown(value.unit, Math.abs(value.value)), [least, most] = value.usual;
+    const [factor, unit] = shown(value.unit, Math.max(Math.abs(value.value), value.sigma)), [least, most] = value.usual;
     return [value.name, value_words(value), figure(factor * least, 2) + " to " + figure(factor * most, 2) + " " + unit,
-            Math.abs(value.value) > 3 * most ? "larger than usual" : "plausible"];
+            plausibility(Math.abs(value.value), value.sigma, most)];
   }));
   return table([{title: "parameter"}, {title: "value ± 1 sigma", number: true}, {title: "usual", number: true},
                 {title: ""}], rows);
@@ -136,7 +143,7 @@ function shown_causes(title, causes) {
 
 function simulation_of(sim, sentences) {
   const shared = sim.both.flatMap(cause => cause.parameters.map(p => {
-    const [factor, unit] = shown(p.unit, Math.abs(p.robot));
+    const [factor, unit] = shown(p.unit, Math.max(Math.abs(p.robot), p.robot_sigma));
     const side = (value, sigma) => figure(factor * value) + " ± " + figure(factor * sigma, 2) + " " + unit;
     return [cause_words(cause) + ": " + p.name, side(p.robot, p.robot_sigma), side(p.simulation, p.simulation_sigma),
             figure(p.sigmas, 2) + " sigma"];
