@@ -9,7 +9,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "constraints/methods/data_set.h"
@@ -33,23 +35,36 @@ struct Scale {
   double of(Quantity quantity) const { return quantity == Quantity::angle ? angle : length; }
 };
 
-/// The scalars of a residual: few in place, the further ones (of markers) beside them.
+/// The scalars of a residual: few in place, the further ones (of markers) beside them. There are as
+/// many of it as rows.
 class Scalars {
  public:
-  double operator[](std::size_t i) const { return i < kFew ? few_[i] : more_[i - kFew]; }
+  Scalars() = default;
+  Scalars(Scalars&&) noexcept = default;
+  Scalars(const Scalars& other)
+      : few_(other.few_), more_(other.more_ ? std::make_unique<More>(*other.more_) : nullptr) {}
+  Scalars& operator=(Scalars other) noexcept {
+    std::swap(few_, other.few_);
+    std::swap(more_, other.more_);
+    return *this;
+  }
+
+  double operator[](std::size_t i) const { return i < kFew ? few_[i] : (*more_)[i - kFew]; }
   void set(std::size_t i, double value) {
     if (i < kFew) {
       few_[i] = value;
       return;
     }
-    if (more_.size() <= i - kFew) more_.resize(i - kFew + 1);
-    more_[i - kFew] = value;
+    if (!more_) more_ = std::make_unique<More>();
+    if (more_->size() <= i - kFew) more_->resize(i - kFew + 1);
+    (*more_)[i - kFew] = value;
   }
 
  private:
+  using More = std::vector<double>;
   static constexpr std::size_t kFew = 3;
   std::array<double, kFew> few_{};
-  std::vector<double> more_;
+  std::unique_ptr<More> more_;
 };
 
 /// Residual of one row: the length of its length and angle parts and the scalars of each. Infinite

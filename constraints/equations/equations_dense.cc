@@ -62,8 +62,9 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
   Eigen::Index most = 0;
   for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
     between.push_back(own_equations(s, pass, whole_layout(s, false), unused));
-    most += static_cast<Eigen::Index>(plans_[s].items.size() * quantities_[s].size()) +
-            between.back().rows();
+    const auto kept = std::ranges::count_if(
+        plans_[s].items, [&](const SetPlan::Item& item) { return !outlier[item.row]; });
+    most += kept * static_cast<Eigen::Index>(quantities_[s].size()) + between.back().rows();
     for (const SetPlan::Cluster& cluster : plans_[s].clusters)
       most += static_cast<Eigen::Index>(cluster.links.size());
   }

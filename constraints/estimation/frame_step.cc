@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 
-#include "constraints/estimation/lock_slip.h"
 #include "kinematics/readable.h"
 #include "kinematics/rotation.h"
 #include "kinematics/size.h"
@@ -29,11 +28,6 @@ constexpr int kMostPlaced = 1000;  ///< rows at which another explanation is tri
 constexpr double kAsMuch = 0.97;   ///< of the squares explained: another explains as much
 constexpr double kDifference = 1e-5;  ///< units of a reading, for derivatives
 constexpr double kRegular = 1e-12;    ///< of its squares, that regularises a motion
-
-struct Row {
-  int row = 0;
-  Vector3d at, way;
-};
 
 /// Least squares of a rigid motion over some rows: normal equations that add up.
 struct Sums {
@@ -63,16 +57,17 @@ bool gives_positions(const Set& set) {
          std::ranges::count(equations, Quantity::length) == 3;
 }
 
-/// Rows of a set in their order, without those put aside.
-std::vector<Row> rows_of_set(const DataSet& data, const std::vector<RowFigure>& figures, int set) {
-  std::vector<const RowFigure*> by_row(static_cast<std::size_t>(data.rows.rows()), nullptr);
+/// Rows of a set in the order in which they were taken, without those put aside; `figures` are in
+/// that of the file.
+std::vector<const RowFigure*> rows_of_set(const DataSet& data,
+                                          const std::vector<RowFigure>& figures, int set) {
+  std::vector<const RowFigure*> rows;
   for (const RowFigure& each : figures)
     if (each.set == set && !each.outlier && each.way_after.allFinite() && each.at.allFinite())
-      by_row[static_cast<std::size_t>(each.row)] = &each;
-  std::vector<Row> rows;
-  for (const int row : rows_in_time(data.rows, set))
-    if (const RowFigure* each = by_row[static_cast<std::size_t>(row)])
-      rows.push_back({row, each->at, each->way_after});
+      rows.push_back(&each);
+  if (data.rows.time.rows() > 0)
+    std::ranges::stable_sort(rows, {},
+                             [&](const RowFigure* each) { return data.rows.time[each->row]; });
   return rows;
 }
 
@@ -90,9 +85,9 @@ struct Split {
 
 class SetSteps {
  public:
-  explicit SetSteps(std::vector<Row> rows) : rows_(std::move(rows)) {
-    for (const Row& each : rows_) middle_ += each.at / static_cast<double>(rows_.size());
-    for (const Row& each : rows_) all_.add(motion_of(each.at - middle_), each.way);
+  explicit SetSteps(std::vector<const RowFigure*> rows) : rows_(std::move(rows)) {
+    for (const RowFigure* each : rows_) middle_ += each->at / static_cast<double>(rows_.size());
+    for (const RowFigure* each : rows_) all_.add(motion_of(each->at - middle_), each->way_after);
   }
 
   double without() const { return all_.left(); }
@@ -128,7 +123,7 @@ class SetSteps {
     Eigen::VectorXd ways(3 * some.size());
     Eigen::VectorXd after(3 * some.size());
     for (std::size_t s = 0; s < some.size(); ++s) {
-      const Row& row = rows_[some[s]];
+      const RowFigure& row = *rows_[some[s]];
       const auto at = static_cast<Eigen::Index>(3 * s);
       const Eigen::VectorXd q = data.rows.q.row(row.row).transpose();
       rigid.middleRows<3>(at) = motion_of(row.at - middle_);
@@ -141,7 +136,7 @@ class SetSteps {
         const Location up = locate(robot, xi, more, body), down = locate(robot, xi, less, body);
         readings.block<3, 4>(at, 4 * j) << (up.p - down.p) / (2 * h), (up.R - down.R) / (2 * h);
       }
-      ways.segment<3>(at) = row.way;
+      ways.segment<3>(at) = row.way_after;
       after.segment<3>(at).setConstant(some[s] >= split.at ? 1 : 0);
     }
     const auto left = [&](const Eigen::MatrixXd& columns) {
@@ -155,7 +150,7 @@ class SetSteps {
     return least * static_cast<double>(stride);
   }
 
-  const Row& row(std::size_t i) const { return rows_[i]; }
+  int row(std::size_t i) const { return rows_[i]->row; }
 
  private:
   Split best_of(std::size_t first, std::size_t last, std::size_t stride) const {
@@ -167,7 +162,7 @@ class SetSteps {
         if (const double left = before.left() + after.left(); left < best.left)
           best = {at, left, before.motion(), after.motion() - before.motion()};
       }
-      before.add(motion_of(rows_[at].at - middle_), rows_[at].way);
+      before.add(motion_of(rows_[at]->at - middle_), rows_[at]->way_after);
     }
     return best;
   }
@@ -175,15 +170,15 @@ class SetSteps {
   double shown(const Split& split, std::size_t from, std::size_t to) const {
     double along = 0, squares = 0;
     for (std::size_t i = from; i < to; ++i) {
-      const Motion J = motion_of(rows_[i].at - middle_);
+      const Motion J = motion_of(rows_[i]->at - middle_);
       const Vector3d step = J * split.step;
-      along += step.dot(rows_[i].way - J * split.before);
+      along += step.dot(rows_[i]->way_after - J * split.before);
       squares += step.squaredNorm();
     }
     return squares > 0 ? along / squares : 0;
   }
 
-  std::vector<Row> rows_;
+  std::vector<const RowFigure*> rows_;
   Vector3d middle_ = Vector3d::Zero();
   Sums all_;
 };
@@ -191,7 +186,7 @@ class SetSteps {
 std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,
                                      const DataSet& data, const std::vector<RowFigure>& figures,
                                      int set) {
-  std::vector<Row> rows = rows_of_set(data, figures, set);
+  std::vector<const RowFigure*> rows = rows_of_set(data, figures, set);
   if (rows.size() < 2 * kFewestBesideStep) return std::nullopt;
   const SetSteps steps(std::move(rows));
   const double without = steps.without();
@@ -202,8 +197,8 @@ std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& 
   if (split.left > kPlainly * otherwise || without - otherwise > kAsMuch * (without - split.left))
     return std::nullopt;
   return FrameStep{data.sets[static_cast<std::size_t>(set)].name,
-                   steps.row(split.at - 1).row,
-                   steps.row(split.at).row,
+                   steps.row(split.at - 1),
+                   steps.row(split.at),
                    split.step.head<3>().norm(),
                    split.step.tail<3>().norm(),
                    1 - split.left / without};

@@ -105,8 +105,9 @@ void add_figures(const std::vector<RowResidual>& after, const Was& was,
 std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, const Judged& after,
                                    const std::vector<char>& outlier,
                                    const std::vector<char>& check_outlier) {
-  std::vector<RowFigure> rows;
   const int every = shown_every(data);
+  std::vector<RowFigure> rows;
+  rows.reserve(1 + (after.fit.size() + after.check.size()) / static_cast<size_t>(every));
   add_figures(
       after.fit, [&](size_t i) { return before.fit_norms[i]; }, before.fit_places, after.fit_places,
       false, outlier, every, rows);
@@ -163,6 +164,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   expects(before.fit_norms.size() == after.fit.size() && before.check.size() == after.check.size(),
           "both models are judged by the same rows");
   Residuals result;
+  result.check_rows.reserve(after.check.size());
   Tally fit, check;
   for (size_t i = 0; i < after.fit.size(); ++i)
     if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
