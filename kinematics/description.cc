@@ -294,7 +294,7 @@ std::optional<double> parse_number(std::string_view text) {
   double number = 0;
   const auto [end, error] = std::from_chars(first, last, number);
   if (error != std::errc() || end != last || !std::isfinite(number)) return std::nullopt;
-  return number;
+  return number + 0.0;  // no negative zero
 }
 
 std::optional<double> written_number(std::string_view text) {
@@ -318,7 +318,7 @@ std::optional<double> written_number(std::string_view text) {
     if (!divisor) return std::nullopt;
     number /= *divisor;
   }
-  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+  return std::isfinite(number) ? std::optional(number + 0.0) : std::nullopt;
 }
 
 std::string format_number(double number) {

@@ -102,7 +102,7 @@ class Fields {
   std::set<std::string, std::less<>> asked_;
 };
 
-/// The whole of `text` as a finite number, else nothing.
+/// The whole of `text` as a finite number, else nothing; a zero has no sign.
 std::optional<double> parse_number(std::string_view text);
 
 /// A number as a person writes it: one that parse_number reads, or a part of pi, [sign] [NUMBER *]

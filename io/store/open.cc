@@ -5,6 +5,7 @@
 // that a damaged or newer store keeps what it has. WAL with synchronous=FULL syncs the log in
 // every commit; see sqlite.org/wal.html and sqlite.org/pragma.html.
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <system_error>
@@ -64,6 +65,11 @@ Result<bool> is_sound(sqlite3* database) {
   const int code = sqlite3_errcode(database) & 0xff;  // without the extension
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) return false;
   return tl::unexpected(found.error());
+}
+
+/// A word of the file's header keeps SQLite from writing what the system lets one write.
+bool is_locked_by_its_header(sqlite3* database, const fs::path& path) {
+  return sqlite3_db_readonly(database, "main") == 1 && ::access(path.c_str(), W_OK) == 0;
 }
 
 Result<void> refuse_newer(sqlite3* database) {
@@ -143,7 +149,8 @@ Result<Connection> connect_to_sound(const fs::path& folder, std::string& said) {
     const Result<bool> sound = is_sound(database->get());
     if (!sound) return tl::unexpected(sound.error());
     const bool emptied = *sound && had_store(folder) && version(database->get()) == 0;
-    if (*sound && !emptied) return database;
+    const bool writable = !is_locked_by_its_header(database->get(), path);
+    if (*sound && !emptied && writable) return database;
     begun = begin_anew(folder, emptied ? "was emptied" : "was damaged", *std::move(database));
   }
   if (!begun) return tl::unexpected(begun.error());

@@ -59,6 +59,8 @@ TEST(Numbers, AreWrittenWithAPointBeforeTheExponent) {
 
 TEST(Numbers, AcceptAPlusAndRefuseEverythingThatIsNoFiniteNumber) {
   EXPECT_EQ(parse_number("+1.5"), 1.5);
+  EXPECT_FALSE(
+      std::signbit(*parse_number("-0")));  // found by a fuzzer: another hash, the same robot
   EXPECT_EQ(parse_number("-2e3"), -2000.0);
   for (const char* text : {"", "+", "+-1", "++1", "1.5 ", " 1.5", "1,5", "abc", "1.5x", "nan",
                            "NaN", "inf", "-inf", "infinity", "1e400", "0x10", "1_000"}) {

@@ -49,6 +49,21 @@ TEST(StoreDamage, OverwrittenBytesSetItAside) {
   expect_set_aside(scratch, bytes, 1);
 }
 
+// Found by a fuzzer: with a write version that SQLite does not know it reads alone.
+TEST(StoreDamage, AHeaderThatForbidsToWriteSetsItAsideWithAllThatItHad) {
+  const Scratch scratch;
+  std::string bytes = bytes_of_sessions(scratch);
+  constexpr std::size_t kWriteVersion = 18;
+  bytes[kWriteVersion] = 3;
+  scratch.write("selfcal.db", bytes);
+  std::filesystem::remove(scratch.folder() / "selfcal.db-wal");
+  const auto again = Store::open(scratch.folder());
+  ASSERT_TRUE(again.has_value()) << again.error().what;
+  EXPECT_THAT(again->set_aside, HasSubstr("selfcal.db.damaged-1"));
+  EXPECT_EQ(again->store->sessions(10)->size(), 4u);
+  whole_session(*again->store, 3);
+}
+
 TEST(StoreDamage, ATruncatedFileIsSetAside) {
   const Scratch scratch;
   const std::string bytes = bytes_of_sessions(scratch);

@@ -46,7 +46,7 @@ const std::vector<Hidden>& hidden_in_irb1600() {
        "{effect: fixture_shift, at: gauge_right, shift: 2.0e-4, moment: 180}"},
       {"base_drift", "base",
        "{effect: base_drift, x: 1.5e-4, y: 1.0e-4, rz: 1.0e-4, begin: 0, end: 400}"},
-      {"link_compliance", "j2", "{effect: link_compliance, at: j2, bend_z: 8.0e-7}"},
+      {"link_compliance", "j2", "{effect: link_compliance, at: j2, bend_x: 8.0e-7}"},
       {"thermal_expansion", "", "{effect: thermal_expansion, alpha: 3.0e-5, reference: 20}"},
       {"tool_compliance", "probe", "{effect: tool_compliance, bend_x: 1.5e-4, bend_y: 1.5e-4}"},
       {"trigger_latency", "probe", "{effect: trigger_latency, delay: 4.0e-3}"}};
