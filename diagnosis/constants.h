@@ -68,6 +68,9 @@ struct DiagnosisConstants {
     double warms = 0.2;   ///< K; 0.05 to 2 [physics]
     /// Doubt of masses that are usual ones, over their torques; 0.25 to 1 [physics]
     double assumed = 0.6;
+    /// Probability that what drifts with the rows' order drifts with time, where they carry none
+    /// and may lie in their order by place; 0.3 to 0.9 [physics]
+    double order_as_time = 0.5;
     int fewest_rows = 8;  ///< of a surface that is to show its form or shift; 4 to 30 [habit]
     /// kg/m^2, of an arm's mass over the square of its reach, where no mass is known; 20 to 150
     /// [physics]

@@ -102,9 +102,10 @@ class Diagnostician {
     for (CauseResult& each : result_.candidates) {
       each.p_value = each.effect != kUnknown ? p.known : structure ? p.unknown : NAN;
       each.probability = calibrated(each.probability, result_.simulation);
+      each.together = calibrated(each.together, result_.simulation);
     }
-    for (double* const each : {&result_.verdict.probability, &result_.verdict.together})
-      *each = calibrated(*each, result_.simulation);
+    result_.verdict.probability = calibrated(result_.verdict.probability, result_.simulation);
+    result_.verdict.together = calibrated(result_.verdict.together, result_.simulation);
     result_.verdict = unless_none(std::move(result_.verdict), result_.candidates, options_);
     agree(result_.candidates, result_.verdict);
     result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);

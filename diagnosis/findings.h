@@ -1,6 +1,7 @@
 // What a diagnosis may be asked and what it answers with.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -33,7 +34,9 @@ struct CauseResult {
   std::string effect;
   std::vector<std::string> where = {};
   double probability = 0;
-  double together = 0;  ///< of the verdict: with the known causes that cannot be told from it
+  /// With what goes along with the rows' order as well; of the verdict: with the known causes that
+  /// cannot be told from it. 0 where it is no more than its own.
+  double together = 0;
   double beyond_nuisance = 0;  ///< share of it that calibration cannot absorb
   double rms_after =
       0;               ///< m, on the validation rows with this cause alone; 0 where hardly probable
@@ -47,6 +50,9 @@ struct CauseResult {
   /// ones.
   std::optional<double> closes_alone = {}, closes_beside = {};
   Correction correction = {};  ///< with its values
+
+  /// Probability that it or what these rows cannot tell from it is there: what it is named by.
+  double of_its_kind() const { return std::max(probability, together); }
 };
 
 struct Detectable {

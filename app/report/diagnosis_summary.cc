@@ -46,7 +46,7 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
     text += "\n";
     for (size_t p = 0;
-         p < each.parameters.size() && each.probability > 0.5 && p < kMostListedCauses; ++p) {
+         p < each.parameters.size() && each.of_its_kind() > 0.5 && p < kMostListedCauses; ++p) {
       const NamedValue& v = each.parameters[p];
       const ReadableUnit unit = readable_unit(v.unit, std::max(std::abs(v.value), v.sigma));
       text += "                 " + v.name + " = " + plain_figure(unit.factor * v.value) + " ± " +

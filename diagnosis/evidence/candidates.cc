@@ -82,6 +82,7 @@ class Maker {
     candidate.shape = supposed.shape;
     candidate.beside = supposed.beside;
     candidate.doubt = supposed.doubt;
+    if (supposed.drifts && data_.order_is_time) candidate.meant = kDiagnosis.shapes.order_as_time;
     all_.list.push_back(std::move(candidate));
   }
 

@@ -26,6 +26,8 @@ struct Candidate {
   int joint = -1;               ///< at which it acts; -1 elsewhere
   std::string needs = {};       ///< what rows must have so that it can be seen
   double log_prior = 0;         ///< of the place and the shape within the family
+  /// Probability that it is meant where it explains; else it is what no candidate has.
+  double meant = 1;
 };
 
 struct Candidates {

@@ -167,10 +167,9 @@ class Search {
     }
     for (const Visit* each : worth_telling()) posterior.hypotheses.push_back(each->hypothesis());
     for (int c = 0; c < candidates_; ++c) {
-      const Candidate& candidate = evaluator_.all_.list[static_cast<std::size_t>(c)];
       const auto at = static_cast<std::size_t>(c);
-      if (family[at] > 0) posterior.family[candidate.effect] = family[at];
-      if (cause[at] > 0) posterior.cause[{candidate.effect, candidate.at}] = cause[at];
+      if (family[at] > 0) posterior.family[candidate(c).effect] = family[at];
+      if (cause[at] > 0) posterior.cause[{candidate(c).effect, candidate(c).at}] = cause[at];
     }
     return posterior;
   }
@@ -196,19 +195,25 @@ class Search {
     return list;
   }
 
+  const Candidate& candidate(int c) const {
+    return evaluator_.all_.list[static_cast<std::size_t>(c)];
+  }
+
   /// Its probability, to each family and cause (by number) that it has.
   void share_out(const Visit& visit, std::vector<double>& family, std::vector<double>& cause,
                  Posterior& posterior) const {
     const double p = std::exp(visit.log_weight);
     const bool unknown = evaluator_.structure(visit.structure).kind > 0;
-    if (unknown) posterior.unknown += p;
+    double meant = 1;  // all that it has
+    for (const int c : visit.all()) meant *= candidate(c).meant;
+    posterior.unknown += unknown ? p : p * (1 - meant);
     if (!unknown && visit.count == 0) posterior.none += p;
     const auto once = [&](const std::vector<int>& number, std::vector<double>& to) {
       for (int i = 0; i < visit.count; ++i) {
         const int mine = number[visit.candidates[i]];
         bool before = false;
         for (int j = 0; j < i; ++j) before = before || number[visit.candidates[j]] == mine;
-        if (!before) to[mine] += p;
+        if (!before) to[mine] += p * candidate(visit.candidates[i]).meant;
       }
     };
     once(evaluator_.family_, family);

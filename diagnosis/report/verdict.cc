@@ -47,6 +47,11 @@ std::string one_cause(const CauseResult& verdict, double p) {
   return words + phrase(", p %.2g)", p);
 }
 
+/// What leaves more than before closes nothing.
+std::string percent(double share) {
+  return share < 0.005 ? "nothing" : phrase("%.0f %%", 100 * share);
+}
+
 std::string several_causes(const std::vector<CauseResult>& named, double p) {
   std::string words;
   for (size_t i = 0; i < named.size(); ++i) {
@@ -56,8 +61,8 @@ std::string several_causes(const std::vector<CauseResult>& named, double p) {
                                       : ", ") +
              with_shape(each) + look_alikes(each) + phrase(" (probability %.2f", each.probability);
     if (each.closes_alone && each.closes_beside)
-      words += phrase(", alone it closes %.0f %%, beside the others %.0f %%",
-                      100 * *each.closes_alone, 100 * *each.closes_beside);
+      words += ", alone it closes " + percent(*each.closes_alone) + ", beside the others " +
+               percent(*each.closes_beside);
     words += ")";
   }
   return words + phrase(" cause the gap together (p %.2g)", p);
@@ -98,7 +103,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            unusual_sizes(diagnosis.named);
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
-    if (names_effect(each.effect) && each.probability > kDiagnosis.report.beside)
+    if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)
       beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
   return "there is structure that no known effect explains" +
          phrase(" (probability %.2f, p %.2g)", verdict.probability, diagnosis.p_value) + beside +

@@ -56,7 +56,10 @@ std::string of_masses(const LinearisedModel& linearised) {
 
 std::string of_order(const DataSet& data) {
   if (!data.order_is_time) return {};
-  return "the rows carry no time: their order is taken for it, a second from one to the next";
+  return "the rows carry no time: their order is taken for it, a second from one to the next; a "
+         "drift is half as sure for that, since whatever goes with their places in this order "
+         "looks "
+         "like one";
 }
 
 }  // namespace

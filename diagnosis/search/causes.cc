@@ -51,6 +51,7 @@ class Teller {
       cause.where = places(family, probability);
       describe(cause);
       confound(cause);
+      doubt_order(cause);
       list.push_back(std::move(cause));
     }
     list.push_back({.effect = kNone, .probability = posterior_.none});
@@ -146,6 +147,16 @@ class Teller {
         cause.confounded_with.push_back(label(other.first, other.second));
   }
 
+  /// What drifts with the order of rows that carry no time may be what goes with their places.
+  void doubt_order(CauseResult& cause) const {
+    const double meant =
+        std::ranges::find(linearised_.candidates().list, cause.effect, &Candidate::effect)->meant;
+    if (meant >= 1) return;
+    cause.together = std::min(cause.probability / meant, 1.0);
+    if (std::ranges::count(cause.confounded_with, kUnknown) == 0)
+      cause.confounded_with.emplace_back(kUnknown);
+  }
+
   const LinearisedModel& linearised_;
   const EvidenceEvaluator& evaluator_;
   const Posterior& posterior_;
@@ -212,7 +223,7 @@ CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluat
   const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
   if (posterior.none >= options.name_below_none) return without_cause(posterior);
   const auto rank = [](const CauseResult& each) {
-    return each.probability > 0.5 ? 1 + each.visible : each.probability;
+    return each.of_its_kind() > 0.5 ? 1 + each.visible : each.of_its_kind();
   };
   const CauseResult* best = nullptr;
   for (const CauseResult& each : causes)
@@ -256,7 +267,7 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
   if (p.known <= options.name_below_p)
     std::ranges::copy_if(causes, std::back_inserter(list), [&](const CauseResult& each) {
       return names_effect(each.effect) && each.effect != verdict.effect &&
-             each.probability >= kDiagnosis.naming.sure;
+             each.of_its_kind() >= kDiagnosis.naming.sure;
     });
   std::ranges::stable_sort(list, std::ranges::greater{}, &CauseResult::visible);
   if (names_effect(verdict.effect)) list.insert(list.begin(), verdict);

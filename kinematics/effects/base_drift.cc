@@ -88,12 +88,16 @@ void suppose_base_drift(const Supposed& rows, const EffectPlace& place, Supposit
   if (!place.whole()) return;
   const double span = rows.context.end - rows.context.begin;
   if (!(span > 0)) return to.cannot("base", "the rows carry no time");
-  to.add("base");
-  for (const double share : {0.15, 0.5}) to.add("base", {.settle = share * span});
+  std::vector<EffectShape> shapes = {{}};
+  for (const double share : {0.15, 0.5}) shapes.push_back({.settle = share * span});
   for (const int most : {2, 4}) {
     std::vector<double> half_waves(static_cast<size_t>(most));
     std::iota(half_waves.begin(), half_waves.end(), 1.0);
-    to.add("base", {.half_waves = std::move(half_waves)});
+    shapes.push_back({.half_waves = std::move(half_waves)});
+  }
+  for (EffectShape& each : shapes) {
+    to.add("base", std::move(each));
+    to.last().drifts = true;
   }
 }
 

@@ -161,5 +161,28 @@ TEST(OrderOfRows, StandsForTheTimeAndIsSaid) {
   EXPECT_THAT(diagnosis.warnings, testing::Contains(testing::HasSubstr("order is taken for it")));
 }
 
+/// A drift of a fifth of a millimetre over the rows, a second from one to the next.
+Diagnosis of_drift(bool order_is_time) {
+  TwoSessions sessions;
+  DataSet& data = sessions.before;
+  const int rows = data.rows.rows();
+  data.order_is_time = order_is_time;
+  data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, rows - 1);
+  for (int row = 0; row < rows; ++row)
+    data.rows.position.row(row) += 2e-4 * row / rows * Eigen::RowVector3d(1, -0.5, 0.5);
+  return diagnose(sessions.robot, data, without_simulation());
+}
+
+TEST(OrderOfRows, MakesADriftHalfAsSureAndNamesItAllTheSame) {
+  const CauseResult by_time = of_drift(false).verdict, by_order = of_drift(true).verdict;
+  EXPECT_EQ(by_time.effect, "base_drift");
+  EXPECT_GT(by_time.probability, 0.95);
+  EXPECT_THAT(by_time.confounded_with, testing::IsEmpty());
+  EXPECT_EQ(by_order.effect, "base_drift");
+  EXPECT_NEAR(by_order.probability, by_time.probability / 2, 0.01);
+  EXPECT_NEAR(by_order.together, by_time.probability, 0.01);
+  EXPECT_THAT(by_order.confounded_with, testing::ElementsAre("unknown"));
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -76,8 +76,9 @@ function plausibility(size, sigma, most) {
   return sure > most ? "larger than usual" : "plausible";
 }
 
-function sizes_of(candidates) {
-  const rows = candidates.filter(each => each.probability >= 0.5).flatMap(each => each.parameters.map(value => {
+function sizes_of(candidates, named) {
+  const told = each => each.probability >= 0.5 || named.some(cause => cause.effect === each.effect);
+  const rows = candidates.filter(told).flatMap(each => each.parameters.map(value => {
     const [factor, unit] = shown(value.unit, Math.max(Math.abs(value.value), value.sigma)), [least, most] = value.usual;
     return [value.name, value_words(value), figure(factor * least, 2) + " to " + figure(factor * most, 2) + " " + unit,
             plausibility(Math.abs(value.value), value.sigma, most)];
@@ -162,7 +163,7 @@ function show_diagnosis(data) {
   if (result.warnings.length) section("Warnings", bullets(result.warnings));
   section("How far the gap closes", gap_of(data));
   section("What causes it", causes_of(data));
-  section("How large, and is that plausible", sizes_of(result.candidates));
+  section("How large, and is that plausible", sizes_of(result.candidates, result.verdict.named));
   section("What to measure next", next_of(result));
   if (result.since) section("What changed since " + data.since_name, paragraph(result.since.why),
                             changes_table(result.since.changes));
