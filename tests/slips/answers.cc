@@ -40,32 +40,37 @@ constexpr std::string_view kProgress[] = {"weighing the causes",
 constexpr std::string_view kTelling[] = {"Look at",   "data sheet's noise", "instrument",
                                          "check the", "times go back",      "in every digit"};
 
-/// A number of a cause, and how probable the cause is.
+/// A number of a cause, how probable the cause is, and whether it is named.
 struct Figure {
   double value = 0, sigma = 0, probability = 0;
+  bool named = false;
 };
 
 /// The figures of `effect` at one of `places` (or at none, of the whole robot), by their names.
 std::map<std::string, Figure> figures_of(const json& diagnosis, const json& effect,
                                          const json& places) {
   std::map<std::string, Figure> figures;
+  const bool named =
+      std::ranges::any_of(diagnosis.at("verdict").at("named"),
+                          [&](const json& each) { return each.at("effect") == effect; });
   for (const json& each : diagnosis.at("candidates")) {
     const bool there = std::ranges::all_of(each.at("where"), [&](const json& place) {
       return std::ranges::find(places, place) != places.end();
     });
     if (each.at("effect") != effect || !there) continue;
     for (const json& number : each.at("parameters"))
-      figures[number.at("name")] = {number.at("value"), number.at("sigma"), each.at("probability")};
+      figures[number.at("name")] = {number.at("value"), number.at("sigma"), each.at("probability"),
+                                    named};
   }
   return figures;
 }
 
-/// Whether a cause that is named is the sound set's as well: as probable as not at the least, at
+/// Whether a cause that is named is the sound set's as well: named there or as probable as not, at
 /// the same place, and of the same size within their sigmas or a half.
 bool is_the_same(const Figure& spoiled, const Figure& sound) {
   constexpr double kSigmas = 4, kShare = 0.5;
   const double off = std::abs(spoiled.value - sound.value);
-  return sound.probability >= 0.5 &&
+  return (sound.named || sound.probability >= 0.5) &&
          (off < kSigmas * std::hypot(spoiled.sigma, sound.sigma) ||
           off < kShare * std::max(std::abs(spoiled.value), std::abs(sound.value)));
 }
