@@ -1,4 +1,4 @@
-// What the two halves of the equations share; nobody else includes this.
+// What the sources of the equations share; nobody else includes this.
 #pragma once
 
 #include <algorithm>
@@ -99,14 +99,5 @@ struct Equations::GeodesicStep {
   static constexpr double kPart = 0.1;  ///< of the step
   State ahead, middle, behind;
 };
-
-/// Of a lane that `closure` leaves open it is infinite.
-RowResidual row_residual(const MethodOutput& out, const std::vector<Quantity>& quantities,
-                         const Closure& closure, int lane, int row, int set, double factor);
-
-/// The smallest shift of the method's body, in the world (m), that to first order makes the lengths
-/// among the residuals of a lane zero (minimum norm).
-Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity>& quantities,
-                             int lane);
 
 }  // namespace selfcal

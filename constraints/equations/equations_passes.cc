@@ -138,4 +138,44 @@ Linearised Equations::linearise(const State& state, const Weighting& weighting, 
   return result;
 }
 
+State Equations::stepped(const State& state, const Linearised& at,
+                         const Eigen::VectorXd& step) const {
+  return stepped(state, at.clusters, step, step);
+}
+
+State Equations::stepped(const State& state, const NormalEquations& at,
+                         const Eigen::VectorXd& step) const {
+  return stepped(state, at.clusters, step, step(at.columns));
+}
+
+State Equations::stepped(const State& state, const std::vector<ClusterFactor>& clusters,
+                         const Eigen::VectorXd& step, const Eigen::VectorXd& of_columns) const {
+  State next = state;
+  next.xi += step.head(robot_columns());
+  size_t cluster_index = 0;
+  for (int s = 0; s < static_cast<int>(plans_.size()); ++s) {
+    const Method& method = *data_.sets[s].method;
+    if (nuisance_count_[s] > 0)
+      method.retract(next.nuisance[s], step.segment(nuisance_at_[s], nuisance_count_[s]));
+    const int freedom = method.group_freedom();
+    for (const SetPlan::Cluster& cluster : plans_[s].clusters) {
+      if (cluster.groups.empty()) continue;
+      const Eigen::MatrixXd& factor = clusters[cluster_index++].rows;
+      const Eigen::Index local = factor.rows();
+      const Eigen::VectorXd right =
+          factor.rightCols(1) - factor.middleCols(local, of_columns.size()) * of_columns;
+      Eigen::VectorXd move = right;
+      for (Eigen::Index i = local - 1; i >= 0; --i) {
+        const double diagonal = factor(i, i);
+        move[i] -= factor.row(i).segment(i + 1, local - 1 - i).dot(move.tail(local - 1 - i));
+        move[i] = std::abs(diagonal) > 1e-12 ? move[i] / diagonal : 0;
+      }
+      for (size_t g = 0; g < cluster.groups.size(); ++g)
+        method.retract_group(next.groups[s].col(cluster.groups[g]),
+                             move.segment(static_cast<Eigen::Index>(g) * freedom, freedom));
+    }
+  }
+  return next;
+}
+
 }  // namespace selfcal

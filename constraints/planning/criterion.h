@@ -16,6 +16,11 @@ std::string_view to_string(Criterion criterion);
 /// The criterion called `name`; nothing where there is none.
 std::optional<Criterion> criterion_of(std::string_view name);
 std::vector<std::string_view> criterion_names();
+/// It is made of the eigenvalues of the covariance: neither the end position's nor the determinant.
+bool is_spectral(Criterion criterion);
+/// Of such a one the merit of the eigenvalues (ascending) of C, the larger the better, -infinity
+/// where one is not positive; `slope`, where asked for, has its derivatives to them.
+double spectral_merit(Criterion criterion, const Eigen::VectorXd& values, Eigen::VectorXd* slope);
 
 /// A choice has the information H = prior + sum WᵀW of its m columns and C = H^-1.
 struct Objective {

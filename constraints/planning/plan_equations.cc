@@ -4,7 +4,7 @@
 #include <map>
 
 #include "constraints/identifiability/given_doubt.h"
-#include "constraints/planning/touch_choice.h"
+#include "constraints/planning/touch_rows.h"
 
 namespace selfcal {
 PlanEquations::PlanEquations(const Robot& robot, const std::vector<Set>& sets, State state)

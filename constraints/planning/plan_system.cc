@@ -8,7 +8,7 @@
 #include "constraints/identifiability/gauge.h"
 #include "constraints/identifiability/identifiability.h"
 #include "constraints/identifiability/observability.h"
-#include "constraints/planning/touch_choice.h"
+#include "constraints/planning/touch_rows.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "constraints/statistics.h"

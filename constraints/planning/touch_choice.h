@@ -12,31 +12,11 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/methods/data_set.h"
-#include "constraints/methods/method.h"
+#include "constraints/planning/touch_rows.h"
 #include "constraints/progress.h"
 #include "constraints/workspace.h"
-#include "kinematics/robot.h"
 
 namespace selfcal {
-
-/// A touch that could be made.
-struct PossibleTouch {
-  Eigen::VectorXd q;        ///< readings in the contact
-  int set = 0, group = -1;  ///< group: of sockets and nests
-  Eigen::Vector3d outward;  ///< of a surface (world, unit)
-};
-
-/// 1 sigma² of where a surface or socket lies, or how it is turned, that is not known (m², rad²).
-inline constexpr double kPlaceVariance = 1;
-
-/// Inverse of the covariance `C`, whose directions without variance get a little.
-Eigen::MatrixXd inverse_of_covariance(const Eigen::MatrixXd& C);
-
-/// 1 sigma of a touch of the set as its data sheet says (m), 20 um where it says none.
-double touch_noise(const Set& set);
-/// The same of an angle (rad).
-double angle_noise(const Set& set);
 
 /// How many touches of each set are wanted, to identify and to judge.
 struct TouchCounts {
@@ -84,19 +64,5 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
                                    const std::vector<PossibleTouch>& touches,
                                    const Eigen::MatrixXd& weight, const Progress& progress = {},
                                    const Eigen::MatrixXd& prior = {});
-
-/// Orthonormal motions of the world (6 x k, shift then turn) that the touches cannot see, for their
-/// places are not given (see gauge.h).
-Eigen::MatrixXd unseen_by_touches(const Robot& robot, const Eigen::VectorXd& xi,
-                                  const std::vector<Set>& sets,
-                                  const std::vector<PossibleTouch>& touches);
-
-/// Covariance of the robot's parameters after the touches, from their priors and each set's noise
-/// (20 um where a set says none); surfaces and sockets are unknown where they are not given, and
-/// what is given is in doubt (given_doubt.h).
-Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
-                                 const std::vector<Set>& sets,
-                                 const std::vector<PossibleTouch>& touches,
-                                 const Eigen::MatrixXd& prior = {});
 
 }  // namespace selfcal

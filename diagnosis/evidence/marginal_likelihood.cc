@@ -1,7 +1,6 @@
 #include "diagnosis/evidence/marginal_likelihood.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "constraints/statistics.h"
@@ -10,9 +9,6 @@
 
 namespace selfcal {
 namespace {
-
-constexpr double kAlikeColumns = 1e-8;  ///< of two columns' square: they are nearly one
-constexpr double kAbsorbed = 1e-10;     ///< of an equation's square, that is nothing of its own
 
 /// One block of at most kMostLooped columns: so small that plain loops on the stack beat any
 /// library.
@@ -197,73 +193,6 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
                         Eigen::Map<const Eigen::VectorXd>(s.z, s.n));
 }
 
-void MarginalLikelihood::add_spectrum(const Block& block, std::span<const double> sizes,
-                                      std::vector<double>& to) const {
-  const auto n = static_cast<Eigen::Index>(block.columns.size());
-  Eigen::MatrixXd scaled(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      scaled(i, j) = scaled(j, i) = block.unit[i] * block.unit[j] * product(block.group, i, j);
-  const Symmetric eigen =
-      n == 1 ? Symmetric{scaled.col(0), Eigen::MatrixXd::Identity(1, 1)} : symmetric_eigen(scaled);
-  const Eigen::ArrayXd value = eigen.values.array().max(0);
-  for (const double size : sizes) to.push_back((size * size * value).log1p().sum() / 2);
-  to.insert(to.end(), value.begin(), value.end());
-  const auto vectors = eigen.vectors.reshaped();
-  to.insert(to.end(), vectors.begin(), vectors.end());
-}
-
-std::size_t MarginalLikelihood::spectrum_size(const Block& block, std::size_t sizes) {
-  const std::size_t n = block.columns.size();
-  return sizes + n + n * n;
-}
-
-void MarginalLikelihood::log_evidences(const Block& block, std::span<const double> sizes,
-                                       const double* spectrum, double* logs) const {
-  const std::size_t n = block.columns.size();
-  const double* const value = spectrum + sizes.size();
-  const double* const U = value + n;
-  std::array<double, kMostLooped> turned;  // U'D g
-  std::fill_n(turned.begin(), n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double each = block.unit[static_cast<Eigen::Index>(i)] * g_[block.columns[i]];
-    for (std::size_t k = 0; k < n; ++k) turned[k] += U[k * n + i] * each;
-  }
-  for (std::size_t s = 0; s < sizes.size(); ++s) {
-    const double squared = sizes[s] * sizes[s];
-    double explained = 0;
-    for (std::size_t k = 0; k < n; ++k)
-      explained += squared * turned[k] * turned[k] / (1 + squared * value[k]);
-    const double left = yy_ - explained;
-    logs[s] = constant_ - spectrum[s] + of_noise(left, nu_);
-    for (const int i : block.positive) {
-      double mean = 0, square = 0;  // of the parameter, and its variance over s^2
-      for (std::size_t k = 0; k < n; ++k) {
-        const double of = U[k * n + static_cast<std::size_t>(i)];
-        mean += sizes[s] * of * turned[k] / (1 + squared * value[k]);
-        square += of * of / (1 + squared * value[k]);
-      }
-      logs[s] += of_sign(mean / std::sqrt(square * variance(left)));
-    }
-  }
-}
-
-double MarginalLikelihood::at_most(const Block& block) const {
-  if (block.columns.size() > 2 || block.group < 0) return INFINITY;
-  const double a = g_[block.columns.front()], b = g_[block.columns.back()];
-  const double aa = product(block.group, 0, 0);
-  double explained = a * a / aa;
-  if (block.columns.size() == 2) {
-    const double ab = product(block.group, 1, 0), bb = product(block.group, 1, 1);
-    const double volume = aa * bb - ab * ab;
-    if (!(volume > kAlikeColumns * aa * bb)) return INFINITY;
-    explained = (a * a * bb - 2 * a * b * ab + b * b * aa) / volume;
-  }
-  if (!(explained >= 0)) return INFINITY;
-  return constant_ + of_noise(yy_ - explained, nu_) +
-         static_cast<double>(block.positive.size()) * std::log(2 * kDiagnosis.evidence.right_sign);
-}
-
 double MarginalLikelihood::of_sign(double in_sigmas) const {
   const double probability = student_below_nearly(in_sigmas, nu_);
   return std::log(2 * (kDiagnosis.evidence.right_sign * probability +
@@ -302,85 +231,6 @@ Eigen::VectorXd MarginalLikelihood::log_evidences_of(ObservedRows& observed) con
   Eigen::VectorXd list = statistics_of(observed, {}, false).yy;
   for (double& each : list) each = constant_ + of_noise(each, nu_);
   return list;
-}
-
-double MarginalLikelihood::gained_without(std::span<const Term> terms, const Eigen::VectorXd& y,
-                                          const std::vector<int>& out) const {
-  if (out.empty() || terms.empty()) return 0;
-  const auto unfolded = unfold(terms);
-  const auto& D = unfolded.second;
-  const Eigen::Index n = D.size() + 1;  // the terms, then y, then what is left out
-  // An equation left out is one with an unknown of its own.
-  Eigen::MatrixXd X = Eigen::MatrixXd::Zero(y.size(), n + static_cast<Eigen::Index>(out.size()));
-  X.leftCols(n - 1) = rows().rows().C(Eigen::all, unfolded.first) * D.asDiagonal();
-  X.col(n - 1) = y;
-  for (size_t i = 0; i < out.size(); ++i) X(out[i], n + static_cast<Eigen::Index>(i)) = 1;
-  const Eigen::MatrixXd all = transposed_product(X, beyond_geometry(X));
-  const auto gain = [&](const Eigen::MatrixXd& G, double freedom) {
-    const Eigen::MatrixXd L =
-        cholesky_root(Eigen::MatrixXd::Identity(n - 1, n - 1) + G.topLeftCorner(n - 1, n - 1));
-    const double square = G(n - 1, n - 1);
-    const double explained =
-        solve_lower(L, Eigen::VectorXd(G.col(n - 1).head(n - 1))).squaredNorm();
-    return of_noise(square - explained, freedom) - of_noise(square, freedom) -
-           L.diagonal().array().log().sum();
-  };
-  const Symmetric own = symmetric_eigen(all.bottomRightCorner(all.rows() - n, all.cols() - n));
-  const double least = kAbsorbed * own.values.cwiseAbs().maxCoeff();
-  const Eigen::VectorXd inverse =
-      (own.values.array() > least).select(own.values.cwiseInverse(), 0.0);
-  const Eigen::MatrixXd shared = own.vectors.transpose() * all.bottomLeftCorner(all.rows() - n, n);
-  const Eigen::MatrixXd less =
-      all.topLeftCorner(n, n) - shared.transpose() * inverse.asDiagonal() * shared;
-  return gain(less, nu_ - static_cast<double>(out.size())) - gain(all.topLeftCorner(n, n), nu_);
-}
-
-MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms) const {
-  return terms.empty() ? *this : given(terms, products(unfold(terms).first));
-}
-
-MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms,
-                                             const Eigen::MatrixXd& products) const {
-  MarginalLikelihood rest = *this;
-  const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd H =
-      Eigen::MatrixXd::Identity(D.size(), D.size()) +
-      Eigen::MatrixXd(D.asDiagonal() * products(Eigen::all, columns) * D.asDiagonal());
-  const Eigen::MatrixXd L = cholesky_root(H);
-  const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * products);
-  const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
-  rows().products().add(seen, -1, rest.kept_);
-  rest.g_ -= seen.transpose() * z;
-  rest.yy_ -= z.squaredNorm();
-  rest.constant_ += of_signs(terms, L, z) - L.diagonal().array().log().sum();
-  return rest;
-}
-
-MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> terms) const {
-  if (terms.empty()) return {{}, {}, variance(yy_)};
-  const auto [columns, D] = unfold(terms);
-  const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
-                            Eigen::MatrixXd(D.asDiagonal() * gram(columns) * D.asDiagonal());
-  const Eigen::MatrixXd inverse = inverse_of_positive(H);
-  Estimate estimate;
-  const Eigen::VectorXd g = D.cwiseProduct(g_(columns));
-  estimate.mean = D.cwiseProduct(inverse * g);
-  estimate.covariance = D.asDiagonal() * inverse * D.asDiagonal();
-  estimate.variance = variance(yy_ - g.dot(inverse * g));
-  return estimate;
-}
-
-Eigen::VectorXd MarginalLikelihood::mean(std::span<const Term> terms) const {
-  // (I + Z Z')^-1 h = h - Z (I + Z'Z)^-1 Z'h: there may be more columns than equations.
-  const auto [columns, D] = unfold(terms);
-  if (columns.empty()) return D;
-  const Eigen::VectorXd h = D.cwiseProduct(g_(columns));
-  const Eigen::MatrixXd Z = D.asDiagonal() * root_of_gram(columns).transpose();
-  Eigen::MatrixXd H = transposed_product(Z, Z);
-  H.diagonal().array() += 1;
-  const Eigen::MatrixXd L = cholesky_root(std::move(H));
-  const Eigen::VectorXd Zh = Z.transpose() * h;
-  return D.cwiseProduct(h - Z * solve_lower_transposed(L, solve_lower(L, Zh)));
 }
 
 }  // namespace selfcal
