@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "constraints/estimation/fit.h"
 #include "constraints/estimation/options.h"
+#include "constraints/fitting/fit.h"
 #include "constraints/progress.h"
 #include "constraints/solution.h"
 

@@ -10,8 +10,8 @@
 
 #include "constraints/equations/resolution.h"
 #include "constraints/estimation/half_samples.h"
-#include "constraints/estimation/noise.h"
 #include "constraints/estimation/posterior.h"
+#include "constraints/fitting/noise.h"
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "kinematics/linear_algebra.h"
 

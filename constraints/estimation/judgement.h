@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "constraints/estimation/fit.h"
+#include "constraints/fitting/fit.h"
 #include "constraints/solution.h"
 
 namespace selfcal {

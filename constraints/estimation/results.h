@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "constraints/estimation/fit.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/fitting/fit.h"
 #include "constraints/identifiability/identifiability.h"
 #include "constraints/solution.h"
 

@@ -11,8 +11,8 @@
 
 #include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/angles.h"
-#include "constraints/estimation/fit.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/fitting/fit.h"
 #include "constraints/identifiability/gauge.h"
 #include "constraints/slips/slips_of_rows.h"
 #include "constraints/slips/two_planes.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "constraints/equations/equations.h"
-#include "constraints/estimation/fit.h"
+#include "constraints/fitting/fit.h"
 
 namespace selfcal {
 

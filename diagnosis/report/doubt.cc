@@ -6,7 +6,7 @@
 
 #include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/identification.h"
-#include "constraints/estimation/noise.h"
+#include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/search/causes.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "constraints/estimation/identification.h"
-#include "constraints/estimation/masked_outlier.h"
+#include "constraints/fitting/masked_outlier.h"
 #include "tests/sim/simulated_robot.h"
 
 namespace selfcal {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "constraints/estimation/identification.h"
-#include "constraints/estimation/noise.h"
+#include "constraints/fitting/noise.h"
 #include "tests/sim/simulated_robot.h"
 #include "tests/support/end_position.h"
 

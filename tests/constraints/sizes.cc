@@ -6,8 +6,8 @@
 #include <random>
 
 #include "constraints/estimation/controller_sigma.h"
-#include "constraints/estimation/fit.h"
 #include "constraints/estimation/frame_step.h"
+#include "constraints/fitting/fit.h"
 #include "constraints/slips/two_planes.h"
 #include "kinematics/readable.h"
 #include "tests/recovery/session.h"

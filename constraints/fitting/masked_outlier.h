@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/estimation/noise.h"
-#include "constraints/estimation/prior.h"
+#include "constraints/fitting/noise.h"
+#include "constraints/fitting/prior.h"
 
 namespace selfcal {
 

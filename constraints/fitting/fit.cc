@@ -5,14 +5,14 @@
 // which the priors keep regular, or where even these leave a direction to rounding by a QR of the
 // rows themselves. What an iteration finds is the same to rounding, for the gradient is; what is
 // told of the last one comes of a QR in any case.
-#include "constraints/estimation/fit.h"
+#include "constraints/fitting/fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 
-#include "constraints/estimation/masked_outlier.h"
+#include "constraints/fitting/masked_outlier.h"
 #include "kinematics/description.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/size.h"

@@ -1,4 +1,4 @@
-#include "constraints/estimation/masked_outlier.h"
+#include "constraints/fitting/masked_outlier.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Noise by set: robust first (median of the residual lengths over the median of the chi
 // distribution), then the root mean square of the rows that stay, both corrected for the fitted
 // freedoms (11.34).
-#include "constraints/estimation/noise.h"
+#include "constraints/fitting/noise.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "constraints/estimation/prior.h"
+#include "constraints/fitting/prior.h"
 
 #include <cmath>
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "constraints/equations/equations.h"
-#include "constraints/estimation/noise.h"
-#include "constraints/estimation/prior.h"
+#include "constraints/fitting/noise.h"
+#include "constraints/fitting/prior.h"
 
 namespace selfcal {
 
