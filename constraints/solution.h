@@ -169,6 +169,11 @@ struct RobotScale {
   std::vector<std::string> contradictions;  ///< in words
 };
 
+/// Sources of doubt: what the rows' noise makes, and what halves of the rows differ by beyond that,
+/// which no geometry explains.
+inline constexpr std::string_view kNoiseOfRows = "noise of the rows";
+inline constexpr std::string_view kSharedErrors = "rows that share errors";
+
 /// A part of the end position's doubt in the workspace, 1 sigma (m); the squares add up.
 struct BudgetLine {
   std::string source;

@@ -149,6 +149,30 @@ std::string scale_line(const ScaleLength& each, bool alone) {
                     1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
 }
 
+double doubt_from(const Solution& solution, std::string_view source) {
+  const std::vector<BudgetLine>& budget = solution.uncertainty.budget;
+  const auto found = std::ranges::find(budget, source, &BudgetLine::source);
+  return found == budget.end() ? 0 : found->sigma;
+}
+
+/// Rows near each other err alike, more than by chance.
+bool structured(const Solution& solution) {
+  return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows);
+}
+
+/// Against the largest part of the end position's doubt.
+std::string what_helps(const Solution& solution) {
+  const double shared = doubt_from(solution, kSharedErrors);
+  const bool of_rows = std::ranges::all_of(
+      solution.uncertainty.budget, [&](const BudgetLine& each) { return each.sigma <= shared; });
+  if (shared > 0 && of_rows)
+    return "Most of that comes of what the geometry does not explain; more rows like these do not "
+           "help.";
+  const std::string rows = solution.unexcited.empty() ? "Add rows in other postures"
+                                                      : "Add rows that move the joints named above";
+  return rows + (solution.gauge.empty() ? "." : ", and a known length for the scale.");
+}
+
 }  // namespace
 
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
@@ -175,10 +199,8 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "and cone.");
   else if (solution.workspace.rms > data.target)
     steps.push_back(
-        with_figures("The end position is known to %.3g mm only. Add rows that move the joints "
-                     "named above",
-                     1e3 * solution.workspace.rms) +
-        (solution.gauge.empty() ? "." : ", and a known length for the scale."));
+        with_figures("The end position is known to %.3g mm only. ", 1e3 * solution.workspace.rms) +
+        what_helps(solution));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
   else if (solution.verdict.answer == Answer::not_determined)
@@ -188,6 +210,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         "The result is a candidate: look at the changes, then use "
         "calibrated.robot.yaml.");
+  if (solution.converged && structured(solution))
+    steps.push_back(
+        "What the geometry leaves of these rows is more than noise: see what causes it (selfcal "
+        "diagnose).");
   return steps;
 }
 

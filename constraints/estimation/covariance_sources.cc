@@ -13,6 +13,7 @@
 #include "constraints/estimation/posterior.h"
 #include "constraints/fitting/noise.h"
 #include "constraints/identifiability/endpoint_sigma.h"
+#include "constraints/solution.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -55,7 +56,7 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
     encoders += coarse * of_set;
     repeats += repeated * of_set;
   }
-  return {{"noise of the rows", all - encoders - repeats},
+  return {{kNoiseOfRows, all - encoders - repeats},
           {"resolution of the encoders", encoders},
           {"repeatability, from repeats", repeats}};
 }
@@ -85,7 +86,7 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
   sources.push_back({"what was given", posterior(equations, adjusted, R, true) - exact});
-  sources.push_back({"rows that share errors", shared_errors(equations, adjusted, weight)});
+  sources.push_back({kSharedErrors, shared_errors(equations, adjusted, weight)});
   return sources;
 }
 

@@ -1,0 +1,65 @@
+// What a person is told to do after an identification.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/report/summary.h"
+
+namespace selfcal {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kTarget = 1e-3;  // m
+
+/// An identification that knows the end position to `sigma` (m), of which `noise` comes of the
+/// rows' noise and `shared` of what no geometry explains.
+Solution known_to(double sigma, double noise, double shared) {
+  Solution solution;
+  solution.converged = true;
+  solution.verdict.answer = Answer::not_determined;
+  solution.residual.check.rows = 30;
+  solution.endpoint.poses = solution.workspace.poses = 300;
+  solution.workspace.rms = sigma;
+  solution.uncertainty.budget = {{std::string(kNoiseOfRows), noise},
+                                 {std::string(kSharedErrors), shared}};
+  solution.unexcited = {{"theta2", "hardly seen by these rows"}};
+  return solution;
+}
+
+std::vector<std::string> steps_of(const Solution& solution) {
+  DataSet data;
+  data.target = kTarget;
+  return next_steps(data, solution);
+}
+
+TEST(NextSteps, AskForRowsWhereNoiseIsTheLargestDoubt) {
+  const std::vector<std::string> steps = steps_of(known_to(2e-3, 1.9e-3, 0.6e-3));
+  EXPECT_THAT(steps, Contains(HasSubstr("2 mm only. Add rows that move the joints named above.")));
+  EXPECT_THAT(steps, Each(Not(HasSubstr("diagnose"))));
+}
+
+TEST(NextSteps, NameNoJointsWhereNoneAreListed) {
+  Solution solution = known_to(2e-3, 1.9e-3, 0.6e-3);
+  solution.unexcited.clear();
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Add rows in other postures.")));
+}
+
+TEST(NextSteps, SendToTheDiagnosisWhereTheGeometryDoesNotExplainTheRows) {
+  EXPECT_THAT(steps_of(known_to(2e-3, 0.6e-3, 1.9e-3)),
+              AllOf(Contains(HasSubstr("more rows like these do not help")),
+                    Contains(HasSubstr("selfcal diagnose"))));
+}
+
+TEST(NextSteps, SendACandidateToTheDiagnosisAsWell) {
+  Solution solution = known_to(0.5e-3, 0.2e-3, 0.4e-3);
+  solution.verdict.answer = Answer::improved;
+  EXPECT_THAT(steps_of(solution), AllOf(Contains(HasSubstr("The result is a candidate")),
+                                        Contains(HasSubstr("selfcal diagnose"))));
+}
+
+}  // namespace
+}  // namespace selfcal
