@@ -1,9 +1,11 @@
-// Decompositions by Eigen; large triangles by OpenBLAS (blas_kernels.h).
+// Decompositions by Eigen; large triangles by OpenBLAS (blas_kernels.h), from one thread at a time:
+// its builds without threads, Debian's serial one among them, hand one buffer to two callers.
 #include "kinematics/linear_algebra.h"
 
 #include <cblas.h>
 
 #include <cmath>
+#include <mutex>
 #include <vector>
 
 #include "kinematics/expects.h"
@@ -28,8 +30,16 @@ constexpr double kWorthACall = 1e5;  ///< multiplications from which it is
 
 int width(Eigen::Index n) { return static_cast<int>(n); }
 
+/// To be held during a call; of nothing where OpenBLAS takes care of its callers itself.
+std::unique_lock<std::mutex> turn_of_one() {
+  static std::mutex one;
+  static const bool alone = openblas_get_parallel() == OPENBLAS_SEQUENTIAL;
+  return alone ? std::unique_lock(one) : std::unique_lock<std::mutex>();
+}
+
 /// op(L)^-1 B in place.
 void solve_in_place(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& L, Eigen::MatrixXd& B) {
+  const auto turn = turn_of_one();
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, CblasNonUnit, width(B.rows()),
               width(B.cols()), 1, L.data(), width(L.rows()), B.data(), width(B.rows()));
 }
@@ -42,6 +52,7 @@ Symmetric large_symmetric_eigen(const Eigen::MatrixXd& A) {
   std::vector<double> work(static_cast<std::size_t>(work_size));
   std::vector<int> integers(static_cast<std::size_t>(integers_size));
   int info = 0;
+  const auto turn = turn_of_one();
   dsyevd_("V", "L", &n, eigen.vectors.data(), &n, eigen.values.data(), work.data(), &work_size,
           integers.data(), &integers_size, &info);
   expects(info == 0, "the eigenvalues of a finite symmetric matrix are found");
@@ -55,6 +66,7 @@ void large_qr(Eigen::Ref<Eigen::MatrixXd> A) {
   Eigen::VectorXd factors(std::min(A.rows(), A.cols())), work(kBlock * A.cols());
   const int work_size = width(work.size());
   int info = 0;
+  const auto turn = turn_of_one();
   dgeqrf_(&rows, &columns, A.data(), &stride, factors.data(), work.data(), &work_size, &info);
   expects(info == 0, "every matrix has a QR decomposition");
 }
@@ -104,6 +116,7 @@ Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) 
   Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>();
   const int n = width(R.rows());
   int info = 0;
+  const auto turn = turn_of_one();
   dtrtri_("U", "N", &n, inverse.data(), &n, &info);
   return inverse;
 }
@@ -116,6 +129,7 @@ Eigen::MatrixXd inverse_of_square(const Eigen::Ref<const Eigen::MatrixXd>& R) {
   Eigen::MatrixXd C = R.triangularView<Eigen::Upper>();
   const int n = width(R.rows());
   int info = 0;
+  const auto turn = turn_of_one();
   dpotri_("U", &n, C.data(), &n, &info);
   C.triangularView<Eigen::StrictlyLower>() = C.transpose();
   return C;
@@ -155,6 +169,7 @@ Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A) {
   if (A.rows() < kLarge) return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
   const int n = width(A.rows());
   int info = 0;
+  const auto turn = turn_of_one();
   dpotrf_("L", &n, A.data(), &n, &info);
   A.triangularView<Eigen::StrictlyUpper>().setZero();
   return A;
@@ -183,6 +198,7 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
   if (static_cast<double>(A.size() * B.cols()) < kWorthACall) return A.transpose() * B;
   Eigen::MatrixXd AB(A.cols(), B.cols());
   if (AB.size() == 0) return AB;
+  const auto turn = turn_of_one();
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, width(A.cols()), width(B.cols()),
               width(A.rows()), 1, A.data(), width(A.rows()), B.data(), width(B.rows()), 0,
               AB.data(), width(A.cols()));

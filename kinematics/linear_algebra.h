@@ -1,5 +1,5 @@
 // The few matrix decompositions that the project needs, compiled once: Eigen's templates take
-// minutes where every file makes its own.
+// minutes where every file makes its own. Several threads may call them at a time.
 #pragma once
 
 #include <Eigen/Dense>

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 #include <random>
+#include <thread>
+#include <vector>
 
 #include "kinematics/blas_kernels.h"
 
@@ -21,6 +23,29 @@ Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19
 }
 
 Eigen::MatrixXd gram(const Eigen::MatrixXd& A) { return A.transpose() * A; }
+
+TEST(LinearAlgebra, SaysTheSameToSeveralThreadsAtATime) {
+  constexpr Eigen::Index kSize = 150;  // large enough for OpenBLAS
+  constexpr int kThreads = 4, kTimes = 200;
+  std::mt19937_64 random(40);
+  std::vector<Eigen::MatrixXd> positive, product, vectors;
+  for (int t = 0; t < kThreads; ++t) {
+    const Eigen::MatrixXd A = random_matrix(kSize, kSize, random);
+    positive.push_back(gram(A));
+    product.push_back(transposed_product(positive.back(), positive.back()));
+    vectors.push_back(symmetric_eigen(positive.back()).vectors);
+  }
+  std::vector<int> wrong(kThreads, 0);
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < kThreads; ++t)
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kTimes; ++i)
+        wrong[t] += transposed_product(positive[t], positive[t]) != product[t] ||
+                    (i % 20 == 0 && symmetric_eigen(positive[t]).vectors != vectors[t]);
+    });
+  for (std::thread& each : threads) each.join();
+  EXPECT_EQ(wrong, std::vector<int>(kThreads, 0));
+}
 
 TEST(Triangularise, LeavesAnUpperTriangleWithTheSameProduct) {
   std::mt19937_64 random(41);
