@@ -119,6 +119,9 @@ struct DiagnosisConstants {
     double beyond = 1.25;
     int folds = 3;         ///< in which rows take turns at judging; 2 to 10 [cost]
     int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
+    /// Of which an interval is drawn: a sign test of fewer cannot reach 2.5 % on one side;
+    /// 6 to 10 [habit]
+    std::size_t fewest_blocks = 6;
     /// Before over floor below which nothing can be said; 1 to 1.2 [habit]
     double within_floor = 1.05;
   };

@@ -5,6 +5,7 @@
 #include <cblas.h>
 
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -69,6 +70,11 @@ void large_qr(Eigen::Ref<Eigen::MatrixXd> A) {
   const auto turn = turn_of_one();
   dgeqrf_(&rows, &columns, A.data(), &stride, factors.data(), work.data(), &work_size, &info);
   expects(info == 0, "every matrix has a QR decomposition");
+}
+
+/// What everything that is made of it shows.
+Eigen::MatrixXd no_root(Eigen::Index n) {
+  return Eigen::MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
 }
 
 bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
@@ -166,11 +172,16 @@ OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A) {
 }
 
 Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A) {
-  if (A.rows() < kLarge) return Eigen::LLT<Eigen::MatrixXd>(A).matrixL();
+  if (A.rows() < kLarge) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(A);
+    if (factor.info() != Eigen::Success) return no_root(A.rows());
+    return factor.matrixL();
+  }
   const int n = width(A.rows());
   int info = 0;
   const auto turn = turn_of_one();
   dpotrf_("L", &n, A.data(), &n, &info);
+  if (info != 0) return no_root(A.rows());
   A.triangularView<Eigen::StrictlyUpper>().setZero();
   return A;
 }
@@ -206,8 +217,11 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
 }
 
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {
-  if (A.rows() < kLarge)
-    return Eigen::LLT<Eigen::MatrixXd>(A).solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  if (A.rows() < kLarge) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(A);
+    if (factor.info() != Eigen::Success) return no_root(A.rows());
+    return factor.solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  }
   return inverse_of_square(cholesky_root(A).transpose());
 }
 

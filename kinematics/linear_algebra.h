@@ -38,7 +38,7 @@ struct OrthogonalColumns {
 };
 OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A);
 
-/// Lower Cholesky factor of the positive definite `A`.
+/// Lower Cholesky factor of the positive definite `A`; not a number where it is none.
 Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A);
 /// L^-1 B of the lower triangular `L`.
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
@@ -46,7 +46,7 @@ Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
 Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
 /// A^T B.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-/// Inverse of the positive definite `A`.
+/// Inverse of the positive definite `A`; not a number where it is none.
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A);
 
 struct SingularValues {

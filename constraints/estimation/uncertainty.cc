@@ -38,6 +38,23 @@ std::vector<const RowResidual*> used_rows(const Judged& after, const Noise& nois
   return rows;
 }
 
+/// Squares of what rows of one configuration differ by, over their noise.
+double spread_of_repeats(const std::vector<const RowResidual*>& same,
+                         const std::vector<Quantity>& quantities, const Scale& noise) {
+  double sum = 0;
+  for (size_t a = 0; a < quantities.size(); ++a) {
+    double mean = 0, weight = 0;
+    for (const RowResidual* r : same) {
+      mean += r->scalars[a] / (r->factor * r->factor);
+      weight += 1 / (r->factor * r->factor);
+    }
+    mean /= weight;
+    for (const RowResidual* r : same)
+      sum += std::pow((r->scalars[a] - mean) / r->factor / noise.of(quantities[a]), 2);
+  }
+  return sum;
+}
+
 LackOfFit lack_of_fit(const DataSet& data, const std::vector<const RowResidual*>& rows,
                       const Noise& noise, double freedoms) {
   LackOfFit result;
@@ -49,16 +66,12 @@ LackOfFit lack_of_fit(const DataSet& data, const std::vector<const RowResidual*>
     if (repeat >= 0) repeats[{r->set, repeat}].push_back(r);
   }
   double pure = 0;
-  for (const auto& [key, same] : repeats)
-    for (int a = 0; a < same.front()->lengths; ++a) {
-      const auto n = static_cast<double>(same.size());
-      const double sigma = noise.used[static_cast<size_t>(key.first)].length;
-      double mean = 0;
-      for (const RowResidual* r : same) mean += r->scalars[a] / n;
-      for (const RowResidual* r : same)
-        pure += std::pow((r->scalars[a] - mean) / sigma / r->factor, 2);
-      result.repeat_freedoms += n - 1;
-    }
+  for (const auto& [key, same] : repeats) {
+    pure += spread_of_repeats(same, data.sets[static_cast<size_t>(key.first)].method->equations(),
+                              noise.used[static_cast<size_t>(key.first)]);
+    for (size_t i = 1; i < same.size(); ++i)
+      result.repeat_freedoms += same.front()->lengths + same.front()->angles;
+  }
   result.freedoms = freedoms - result.repeat_freedoms;
   if (result.repeat_freedoms < 1 || result.freedoms < 1 || !(pure > 0)) return result;
   result.F = std::max(0.0, all - pure) / result.freedoms / (pure / result.repeat_freedoms);

@@ -169,9 +169,13 @@ double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>
   double sum = 0, freedom = 0;
   for (const auto& [id, rows] : repeats)
     for (int a = 0; a < rows.front()->lengths; ++a) {
-      double mean = 0;
-      for (const RowResidual* r : rows) mean += r->scalars[a] / static_cast<double>(rows.size());
-      for (const RowResidual* r : rows) sum += std::pow(r->scalars[a] - mean, 2);
+      double mean = 0, weight = 0;
+      for (const RowResidual* r : rows) {
+        mean += r->scalars[a] / (r->factor * r->factor);
+        weight += 1 / (r->factor * r->factor);
+      }
+      mean /= weight;
+      for (const RowResidual* r : rows) sum += std::pow((r->scalars[a] - mean) / r->factor, 2);
       freedom += static_cast<double>(rows.size()) - 1;
     }
   return freedom > 0 ? std::sqrt(sum / freedom) : -1;

@@ -67,7 +67,7 @@ void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValid
     if (all.lengths == 0) continue;
     const double near = std::min({before.length, after.length, all.length});
     const double limit = chi_quantile(all.lengths, kDiagnosis.validation.far);
-    const bool false_reading = near > kDiagnosis.validation.beyond * limit *
+    const bool false_reading = near > kDiagnosis.validation.beyond * limit * all.factor *
                                           std::max(noise, whole.check_scale[all.set].length);
     if (false_reading)
       validation.outliers.push_back({all.row + 1, data.sets[all.set].name, all.length, true,

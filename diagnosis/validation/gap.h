@@ -22,7 +22,8 @@ struct ValidationRow {
 /// 0.
 struct Closed {
   std::optional<double> fraction;  ///< nothing where the gap is within 5 % of the floor
-  /// 95 % interval; infinite where too many resamples lie within the floor.
+  /// 95 % interval; infinite where too many resamples lie within the floor, or too few blocks are
+  /// drawn from.
   double least = -std::numeric_limits<double>::infinity(),
          most = std::numeric_limits<double>::infinity();
 };

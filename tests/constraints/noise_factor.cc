@@ -67,6 +67,26 @@ TEST(NoiseFactor, KeepsUncertainRowsFromSpoilingTheOthers) {
   EXPECT_LT(error(data), 0.8 * error(unsaid));
 }
 
+TEST(NoiseFactor, IsTakenOffWhatRepeatsDifferBy) {
+  constexpr double kSigma = 2e-5;
+  DataSet data = touches().data;
+  const int rows = data.rows.rows();
+  data.rows.noise_factor.setOnes(rows);
+  data.rows.repeat.assign(rows, 0);
+  Random random(6);
+  std::normal_distribution<double> normal;
+  std::vector<RowResidual> residuals;
+  for (int row = 0; row < rows; ++row) {
+    data.rows.repeat[row] = row / 3;
+    RowResidual& r = residuals.emplace_back(RowResidual{row, 0});
+    r.lengths = 1;
+    r.factor = row % 3 == 0 ? 10 : 1;
+    r.scalars.set(0, kSigma * r.factor * normal(random));
+  }
+  // 120 freedoms tell a sigma to 6 %, three times which is allowed.
+  EXPECT_NEAR(repeat_sigma(data, 0, residuals, std::vector<char>(rows, 0)), kSigma, 0.19 * kSigma);
+}
+
 TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
   const Simulated simulated = touches();
   const auto told_with = [&](double stated) {

@@ -84,6 +84,19 @@ TEST(Gap, GivesNoIntervalWhereResamplesLieWithinTheFloor) {
   EXPECT_EQ(closed.most, INFINITY);
 }
 
+TEST(Gap, GivesNoIntervalOfFewBlocks) {
+  std::vector<ValidationRow> list = rows(4, 3, 1);
+  const auto bounded = [&](int blocks) {
+    for (size_t i = 0; i < list.size(); ++i) list[i].block = static_cast<int>(i) % blocks;
+    const Gap gap = gap_of(list, 1);
+    EXPECT_TRUE(gap.closed.fraction);
+    return std::isfinite(gap.closed.least) && std::isfinite(gap.closed.most);
+  };
+  EXPECT_FALSE(bounded(1));
+  EXPECT_FALSE(bounded(5));
+  EXPECT_TRUE(bounded(6));
+}
+
 TEST(Gap, CountsTheRowsThatAreLeftOutAndSaysWhatItIsWithThem) {
   std::vector<ValidationRow> list = rows(4, 3, 1);
   list[7] = {900, 404, 403, 401, 1, 7, true};

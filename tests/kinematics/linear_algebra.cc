@@ -24,6 +24,17 @@ Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19
 
 Eigen::MatrixXd gram(const Eigen::MatrixXd& A) { return A.transpose() * A; }
 
+TEST(LinearAlgebra, HasNoNumbersWhereThereIsNoRoot) {
+  std::mt19937_64 random(45);
+  for (const Eigen::Index n : {8, 100}) {
+    Eigen::MatrixXd A = gram(random_matrix(2 * n, n, random));
+    EXPECT_TRUE(cholesky_root(A).allFinite());
+    A(n / 2, n / 2) = -1;
+    EXPECT_TRUE(cholesky_root(A).array().isNaN().all()) << n;
+    EXPECT_TRUE(inverse_of_positive(A).array().isNaN().all()) << n;
+  }
+}
+
 TEST(LinearAlgebra, SaysTheSameToSeveralThreadsAtATime) {
   constexpr Eigen::Index kSize = 150;  // large enough for OpenBLAS
   constexpr int kThreads = 4, kTimes = 200;

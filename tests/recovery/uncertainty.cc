@@ -9,6 +9,7 @@
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "tests/recovery/rx90.h"
+#include "tests/sim/simulated_robot.h"
 
 namespace selfcal::recovery {
 namespace {
@@ -81,6 +82,16 @@ TEST(Uncertainty, SeesAnEffectThatTheModelLacks) {
   EXPECT_LT(with.uncertainty.lack_of_fit.p_value, 1e-6);
   EXPECT_GT(with.uncertainty.lack_of_fit.F, 5);
   EXPECT_GT(with.workspace.rms, 2 * without.workspace.rms);
+}
+
+TEST(Uncertainty, FindsNoLackOfFitInLocationsWhosePositionsAreBetterThanSaid) {
+  const Simulated simulated = made(
+      "robot: rx90.robot.yaml\nseed: 3\nerrors: {length: 1.0e-3, angle: 1.0e-3}\n"
+      "repeats: {share: 1, times: 3}\nsets: {nest: {method: location, rows: 60, noise: 1.0e-4,\n"
+      "  noise_angle: 1.0e-4, noise_true: 1.0e-5, noise_angle_true: 1.0e-4}}\n");
+  const LackOfFit fit = identify(rx90(), simulated.data).uncertainty.lack_of_fit;
+  EXPECT_EQ(fit.repeat_freedoms, 156);  // 13 configurations identify: two each, times six scalars
+  EXPECT_GT(fit.p_value, 0.01);
 }
 
 TEST(Uncertainty, GrowsWhereHalvesOfTheRowsDisagree) {
