@@ -61,15 +61,16 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
           {"repeatability, from repeats", repeats}};
 }
 
+/// The end position's, of a covariance whose first columns are the robot's parameters (m^2).
+double squared(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
+  return std::pow(endpoint_rms(weight, C.topLeftCorner(weight.rows(), weight.cols())), 2);
+}
+
 /// What halves of the rows differ by more than they should.
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
                               const Eigen::MatrixXd& weight) {
   const HalfSamples halves = half_samples(equations, adjusted);
-  const Eigen::Index n = equations.robot_columns();
-  const auto squared = [&](const Eigen::MatrixXd& C) {
-    return std::pow(endpoint_rms(weight, C), 2);
-  };
-  const double seen = squared(halves.seen.topLeftCorner(n, n)), expected = squared(halves.expected);
+  const double seen = squared(weight, halves.seen), expected = squared(weight, halves.expected);
   return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
 }
 
@@ -85,8 +86,10 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, noise);
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
-  sources.push_back({"what was given", posterior(equations, adjusted, R, true) - exact});
-  sources.push_back({kSharedErrors, shared_errors(equations, adjusted, weight)});
+  Eigen::MatrixXd shared = shared_errors(equations, adjusted, weight);
+  const double structure = 1 + squared(weight, shared) / squared(weight, noise);
+  sources.push_back({"what was given", posterior(equations, adjusted, R, true, structure) - exact});
+  sources.push_back({kSharedErrors, std::move(shared)});
   return sources;
 }
 

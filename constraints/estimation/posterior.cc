@@ -1,7 +1,9 @@
-// C = (W^T W + Lambda)^-1 over free and considered unknowns together; the estimate keeps the
-// considered ones where they are, and errs by what they are off as the posterior follows them.
-// A given place of a set may be off by a motion of it all: columns of the world's motions, of the
-// rows of that set alone.
+// C = (W^T W + Lambda)^-1 over free unknowns x and considered ones p together. The estimate keeps p
+// where it was given, while the rows put it d_p = (S / t + Lambda_p)^-1 W_p^T Delta Y / t from
+// there (S: C_pp^-1 - Lambda_p; t: by how much the rows' errors are more than their noise, for
+// structure speaks against anything), and has moved x to make up for that: it errs by C + d d^T, d
+// = C_.p C_pp^-1 d_p. Where the rows agree with what was given d is nothing. A given place of a set
+// may be off by a motion of it all: columns of the world's motions, of the rows of that set alone.
 #include "constraints/estimation/posterior.h"
 
 #include <algorithm>
@@ -32,6 +34,7 @@ class Information {
       : equations_(equations), adjusted_(adjusted), R_(R) {
     for (const int c : free_columns(equations, adjusted.prior))
       add(c, prior_weight(equations, adjusted.prior, c));
+    free_ = columns_.size();
   }
 
   /// Parameters of links and gears that are fixed. Where base and tool are put is then what they
@@ -64,7 +67,7 @@ class Information {
   }
 
   /// Of columns(); the one held for the scale with what follows it.
-  Eigen::MatrixXd covariance() const {
+  Eigen::MatrixXd covariance(double structure) const {
     const auto n = static_cast<Eigen::Index>(columns_.size());
     const auto m = n + kMotionColumns * static_cast<Eigen::Index>(places_.size());
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(m, m);
@@ -85,8 +88,9 @@ class Information {
     const Eigen::MatrixXd C = unit.asDiagonal() *
                               inverse_of_positive(unit.asDiagonal() * H * unit.asDiagonal()) *
                               unit.asDiagonal();
-    if (adjusted_.scale < 0) return spread(C);
-    const Eigen::MatrixXd all = spread(C);
+    const Eigen::VectorXd off = spread_rows(given_off(C, unit, structure));
+    const Eigen::MatrixXd all = spread(C) + off * off.transpose();
+    if (adjusted_.scale < 0) return all;
     Eigen::VectorXd follow = spread_rows(-C * asked_by(adjusted_.scale, m));
     follow[adjusted_.scale] = 1;
     return all + std::pow(adjusted_.scale_sigma, 2) * follow * follow.transpose();
@@ -119,6 +123,43 @@ class Information {
       at += kMotionColumns;
     }
     return all;
+  }
+
+  /// W^T Delta Y of what is considered, and the precision that is known of it beforehand; of the
+  /// free unknowns the fit has left nothing.
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> pulled() const {
+    const auto n = static_cast<Eigen::Index>(columns_.size());
+    const auto of_columns = n - static_cast<Eigen::Index>(free_);
+    const auto k = of_columns + kMotionColumns * static_cast<Eigen::Index>(places_.size());
+    Eigen::VectorXd pull(k), known(k);
+    pull.head(of_columns) =
+        R_(Eigen::all, columns_).rightCols(of_columns).transpose() * R_.rightCols<1>();
+    known.head(of_columns) = weights_.tail(of_columns).cwiseAbs2();
+    Eigen::Index at = of_columns;
+    for (const GivenPlace& place : places_) {
+      pull.segment(at, kMotionColumns) =
+          place.R.middleCols(equations_.columns(), kMotionColumns).transpose() *
+          place.R.rightCols<1>();
+      known.segment(at, kMotionColumns) = place.weight.cwiseAbs2();
+      at += kMotionColumns;
+    }
+    return {pull, known};
+  }
+
+  /// d of all unknowns; C in `unit` of each is of the order of one.
+  Eigen::VectorXd given_off(const Eigen::MatrixXd& C, const Eigen::VectorXd& unit,
+                            double structure) const {
+    const auto [pull, known] = pulled();
+    const Eigen::Index k = pull.size();
+    if (k == 0) return Eigen::VectorXd::Zero(C.rows());
+    const Eigen::VectorXd by = unit.tail(k), inverse = unit.cwiseInverse();
+    const Eigen::MatrixXd one = inverse.asDiagonal() * C * inverse.asDiagonal();
+    const Eigen::MatrixXd precision = inverse_of_positive(one.bottomRightCorner(k, k));
+    const Eigen::VectorXd before = known.cwiseProduct(by.cwiseAbs2());
+    Eigen::MatrixXd H = precision / structure;
+    H.diagonal() += (1 - 1 / structure) * before;
+    const Eigen::VectorXd off = inverse_of_positive(H) * (by.cwiseProduct(pull) / structure);
+    return unit.cwiseProduct(one.rightCols(k) * (precision * off));
   }
 
   Eigen::VectorXd spread_rows(const Eigen::VectorXd& x) const {
@@ -177,6 +218,7 @@ class Information {
   const Adjusted& adjusted_;
   const Eigen::MatrixXd& R_;
   std::vector<int> columns_;
+  std::size_t free_ = 0;  ///< so many of them are free, the others considered
   Eigen::VectorXd weights_;
   std::vector<GivenPlace> places_;
 };
@@ -184,13 +226,13 @@ class Information {
 }  // namespace
 
 Eigen::MatrixXd posterior(const Equations& equations, const Adjusted& adjusted,
-                          const Eigen::MatrixXd& R, bool considered) {
+                          const Eigen::MatrixXd& R, bool considered, double structure) {
   Information information(equations, adjusted, R);
   if (considered) {
     information.add_fixed();
     information.add_known();
   }
-  return information.covariance();
+  return information.covariance(structure);
 }
 
 }  // namespace selfcal

@@ -116,6 +116,27 @@ TEST_P(Coverage, IsWhatIsStated) {
   EXPECT_LT(share, std::max(0.98, 0.95 + slack));
 }
 
+TEST(HeldParameter, ThatIsOffMakesTheOthersAsDoubtful) {
+  const auto robot = robot_of(kRx90);
+  constexpr int kRobots = 10;
+  Options options;
+  options.fix = {"d5"};
+  Tally tally;
+  for (int seed = 1; seed <= kRobots; ++seed) {
+    const std::string text = "robot: r\nseed: " + std::to_string(seed) +
+                             "\nerrors: " + drawn_errors_of(*robot, seed) +
+                             "\ncheck: 0.25\nsets:\n" + kPositions;
+    Problems problems;
+    const Scenario scenario = read_scenario(*parse_yaml(text, "scenario"), problems);
+    const Simulated made = make_data_set(scenario, *robot, problems);
+    ASSERT_FALSE(problems.any()) << problems.list.front();
+    tally.add(identify(*robot, made.data, options), made.truth.xi);
+  }
+  // A parameter is off by 2 sigma of its tolerance in one robot of twenty, all others with it.
+  EXPECT_GT(tally.within, 0.93 * tally.errors);
+  EXPECT_GT(tally.errors, 10 * kRobots);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Stated, Coverage,
     testing::Values(
