@@ -13,10 +13,10 @@ struct ChangePoint {
   double p_value = 1;    ///< of rows without a step, for as many splits as were tried
 };
 
-/// The split of `rows` (rows x equations) with the largest statistic, `fewest` rows or more on
+/// The split of `all` rows (rows x equations) with the largest statistic, `fewest` rows or more on
 /// either side; nothing of fewer than twice as many. sigma, of one equation, is taken from the
-/// differences of successive rows, which a step leaves alone, and is `least_sigma` or more.
-std::optional<ChangePoint> change_point(const Eigen::MatrixXd& rows, double least_sigma,
-                                        int fewest);
+/// differences of successive rows, which a step leaves alone, and is `least_sigma` or more. A false
+/// row between good ones is no step.
+std::optional<ChangePoint> change_point(const Eigen::MatrixXd& all, double least_sigma, int fewest);
 
 }  // namespace selfcal

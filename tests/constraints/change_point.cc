@@ -65,6 +65,23 @@ TEST(ChangePoint, IsSeenInCleanRowsNoMoreOftenThanStated) {
   }
 }
 
+TEST(ChangePoint, IsNotMadeOfOneFalseRow) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 2e-5);
+  Eigen::MatrixXd rows(40, 2);
+  for (double& each : rows.reshaped()) each = noise(random);
+  const double without = change_point(rows, 0, kFewest)->p_value;
+  for (const int at : {0, 1, 9, 20, 38, 39}) {
+    Eigen::MatrixXd spoilt = rows;
+    spoilt(at, 1) += 0.1;
+    EXPECT_GT(change_point(spoilt, 0, kFewest)->p_value, without / 100) << at;
+  }
+  // Beside a true one it moves nothing.
+  rows.bottomRows(20).col(0).array() += 1e-3;
+  rows(9, 1) += 0.1;
+  EXPECT_EQ(change_point(rows, 0, kFewest)->at, 20);
+}
+
 TEST(ChangePoint, IsNotMissedAtFiveTimesTheNoise) {
   EXPECT_GE(share_seen(30, 0.001, 1e-4, 4), 0.999);
 }
