@@ -81,6 +81,7 @@ struct Figures {
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
   double rms_without_outliers = 0;
   AngleFigures angle;
+  int configurations = 0;  ///< repeats of one count once
 };
 
 struct SetFigures {
@@ -91,8 +92,9 @@ struct SetFigures {
 
 /// One row that judges.
 struct CheckRow {
-  double residual = 0;   ///< m, after
-  bool outlier = false;  ///< beyond the noise
+  double residual = 0;    ///< m, after
+  bool outlier = false;   ///< beyond the noise
+  int configuration = 0;  ///< from 0 on; repeats have the same
 };
 
 /// A row before (the maker's robot, placed) and after, for a person to look at.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "constraints/statistics.h"
 #include "kinematics/expects.h"
@@ -122,6 +123,20 @@ bool is_outlier(const RowResidual& r, const Judged& judged) {
   return r.sigmas(judged.check_scale[r.set]) > chi_quantile(r.lengths + r.angles, kFar);
 }
 
+/// Numbers of the configurations that the rows are of.
+std::vector<int> configurations_of(const DataSet& data, const std::vector<RowResidual>& rows) {
+  std::vector<int> list;
+  list.reserve(rows.size());
+  std::map<std::pair<int, int>, int> known;  // by set and repeat
+  int count = 0;
+  for (const RowResidual& row : rows) {
+    const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[row.row];
+    const bool added = repeat < 0 || known.try_emplace({row.set, repeat}, count).second;
+    list.push_back(added ? count++ : known.at({row.set, repeat}));
+  }
+  return list;
+}
+
 }  // namespace
 
 Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
@@ -170,17 +185,20 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
     if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
   std::vector<char> check_outlier(outlier.size(), 0);
   std::vector<Tally> of_set(data.sets.size());
+  const std::vector<int> configuration = configurations_of(data, after.check);
   for (size_t i = 0; i < after.check.size(); ++i) {
     const RowResidual& row = after.check[i];
     const bool is_far = is_outlier(row, after);
     check_outlier[row.row] = is_far;
-    result.check_rows.push_back({row.size(), is_far});
+    result.check_rows.push_back({row.size(), is_far, configuration[i]});
     check.add(norm_of_row(before.check[i]), row, is_far);
     of_set[row.set].add(norm_of_row(before.check[i]), row, is_far);
   }
   result.rows = row_figures(data, before, after, outlier, check_outlier);
   result.fit = fit.figures();
   result.check = check.figures();
+  for (const CheckRow& each : result.check_rows)
+    result.check.configurations = std::max(result.check.configurations, each.configuration + 1);
   for (size_t s = 0; s < data.sets.size(); ++s)
     if (const Figures figures = of_set[s].figures(); figures.rows > 0)
       result.check_by_set.push_back({data.sets[s].name, after.aligned[s] != 0, figures});
@@ -267,6 +285,19 @@ std::string certainty(const Grounds& grounds) {
          with_figures(" (over the whole range of the joints %.3g mm)", 1e3 * grounds.endpoint.rms);
 }
 
+/// Of each configuration that judges, on average over its repeats: these share more than their
+/// noise, so that one of them says as much as many.
+std::vector<double> gains(const Judged& before, const Judged& after, const Residuals& residual) {
+  std::vector<double> gain(static_cast<size_t>(residual.check.configurations), 0), count = gain;
+  for (size_t i = 0; i < after.check.size(); ++i) {
+    const auto at = static_cast<size_t>(residual.check_rows[i].configuration);
+    gain[at] += before.check[i].size() - after.check[i].size();
+    ++count[at];
+  }
+  for (size_t at = 0; at < gain.size(); ++at) gain[at] /= count[at];
+  return gain;
+}
+
 /// What became of the check rows.
 std::string change(const Figures& check, double p_value) {
   std::string text = with_figures(
@@ -287,10 +318,7 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
     v.why = "no check rows to judge by";
     return v;
   }
-  std::vector<double> gain;
-  for (size_t i = 0; i < after.check.size(); ++i)
-    gain.push_back(before.check[i].size() - after.check[i].size());
-  v.p_value = signed_rank_p(gain);
+  v.p_value = signed_rank_p(gains(before, after, residual));
   v.why = change(residual.check, v.p_value) + "; " + certainty(grounds);
   const bool worse_turned = angles_rise(before, after);
   const bool better = v.p_value < kSignificance && lengths_fall(before, after) && !worse_turned;

@@ -72,6 +72,19 @@ TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
   EXPECT_EQ(rows.answer(), Answer::improved);
 }
 
+TEST(Verdict, IsNotImprovedByRepeatsOfFewConfigurations) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  rows.data.rows.repeat.resize(60);
+  const auto answer_of = [&](int configurations) {
+    for (int i = 0; i < 60; ++i) rows.data.rows.repeat[i] = i % configurations;
+    EXPECT_EQ(rows.figures().check.configurations, configurations);
+    return rows.answer();
+  };
+  EXPECT_EQ(answer_of(3), Answer::not_improved);  // three of three are better in one of eight
+  EXPECT_EQ(answer_of(10), Answer::improved);
+}
+
 TEST(Verdict, IsNotImprovedWhereTheSquaresGrow) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 90 * kMicrometre);

@@ -168,7 +168,7 @@ TEST(AcceptanceDecision, CountsTheParametersThatAreIdentified) {
 
 Solution check_of(int rows, double rms) {
   Solution solution;
-  solution.residual.check.rows = rows;
+  solution.residual.check.rows = solution.residual.check.configurations = rows;
   solution.residual.check.rms_after = solution.residual.check.rms_without_outliers = rms;
   return solution;
 }

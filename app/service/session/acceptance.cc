@@ -169,8 +169,8 @@ CheckDecision decide_on_check(const Solution& then, const Solution& now, double 
     decided.why = "nothing to compare with";
     return decided;
   }
-  decided.p_value =
-      f_exceeds(std::pow(decided.check_after / decided.check_before, 2), after.rows, before.rows);
+  decided.p_value = f_exceeds(std::pow(decided.check_after / decided.check_before, 2),
+                              after.configurations, before.configurations);
   decided.explained = decided.p_value >= least_p;
   decided.why =
       sentence("%d touches with %.4g mm rms against %.4g expected (p = %.2g): %s", after.rows,

@@ -53,7 +53,8 @@ struct CheckDecision : ResultFigures {
 /// `then` is the session behind the active parameters, `now` the same fit rows with the new touches
 /// as check rows; both with every parameter of the robot held. The mean squares of the new touches
 /// and of the session's check rows have the same expectation as long as nothing has changed: their
-/// ratio is compared with F.
+/// ratio is compared with F, whose freedoms are the configurations, for repeats share more than
+/// their noise.
 CheckDecision decide_on_check(const Solution& then, const Solution& now, double least_p);
 
 }  // namespace selfcal
