@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "constraints/equations/resolution.h"
 #include "constraints/estimation/half_samples.h"
@@ -27,7 +28,36 @@ Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted)
   return transposed_product(C, prior_precision(equations, adjusted.prior).asDiagonal() * C);
 }
 
-/// The noise of the rows by where it comes from; `all` is what they add up to.
+/// Rows that a row of the set is a repeat of, itself among them, on average over its rows that took
+/// part.
+double rows_of_a_configuration(const Equations& equations, int set,
+                               const std::vector<char>& outlier) {
+  const Observations& rows = equations.data().rows;
+  std::map<int, double> count;  // by repeat
+  double all = 0, squares = 0;
+  for (const SetPlan::Item& item : equations.plan(set).items) {
+    if (outlier[static_cast<size_t>(item.row)]) continue;
+    ++all;
+    if (const int repeat = rows.repeat[static_cast<size_t>(item.row)]; repeat >= 0)
+      ++count[repeat];
+    else
+      ++squares;
+  }
+  for (const auto& [repeat, times] : count) squares += times * times;
+  return all > 0 ? squares / all : 1;
+}
+
+/// Of the set's noise, so many times more: repeats, which differ by `spread`, have the rest of what
+/// is left of the rows in common (the design effect of Kish, 1 + (n - 1) rho).
+double shared_by_repeats(const Equations& equations, const Fit& fitted, int set, double spread) {
+  const double left = fitted.noise.estimated[static_cast<size_t>(set)].length;
+  const double used = fitted.noise.used[static_cast<size_t>(set)].length;
+  const double rho = std::max(0.0, 1 - std::pow(spread / left, 2));
+  const double n = rows_of_a_configuration(equations, set, fitted.noise.outlier);
+  return std::max(0.0, std::pow(left / used, 2) * (1 + (n - 1) * rho) - 1);
+}
+
+/// The noise of the rows by where it comes from; `all` is what they add up to where rows err apart.
 std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adjusted& adjusted,
                                           const Eigen::MatrixXd& all) {
   const Fit& fitted = adjusted.fitted;
@@ -36,15 +66,17 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
   const Observations& rows = equations.data().rows;
   const std::vector<RowResidual> residuals =
       rows.repeat.empty() ? std::vector<RowResidual>() : equations.residuals(fitted.state);
-  Eigen::MatrixXd encoders = Eigen::MatrixXd::Zero(all.rows(), all.cols()), repeats = encoders;
+  Eigen::MatrixXd encoders = Eigen::MatrixXd::Zero(all.rows(), all.cols()), repeats = encoders,
+                  shared = encoders;
   for (int s = 0; s < static_cast<int>(rounding.size()); ++s) {
     if (equations.plan(s).items.empty()) continue;
-    const double spread =
-        std::max(0.0, repeat_sigma(equations.data(), s, residuals, fitted.noise.outlier));
+    const double told = repeat_sigma(equations.data(), s, residuals, fitted.noise.outlier);
+    const double spread = std::max(0.0, told);
+    const double in_common = told < 0 ? 0 : shared_by_repeats(equations, fitted, s, spread);
     const double coarse = std::min(1.0, rounding[s]);
     const double repeated =
         std::clamp(std::pow(spread / fitted.noise.used[s].length, 2) - coarse, 0.0, 1 - coarse);
-    if (coarse + repeated == 0) continue;
+    if (coarse + repeated + in_common == 0) continue;
     Weighting alone{fitted.noise.used, fitted.noise.outlier};
     alone.passed_over = true;
     for (int row = 0; row < rows.rows(); ++row)
@@ -55,10 +87,12 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
     const Eigen::MatrixXd of_set = transposed_product(half, half);
     encoders += coarse * of_set;
     repeats += repeated * of_set;
+    shared += in_common * of_set;
   }
   return {{kNoiseOfRows, all - encoders - repeats},
           {"resolution of the encoders", encoders},
-          {"repeatability, from repeats", repeats}};
+          {"repeatability, from repeats", repeats},
+          {"noise that repeats share", shared}};
 }
 
 /// The end position's, of a covariance whose first columns are the robot's parameters (m^2).
@@ -66,11 +100,12 @@ double squared(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
   return std::pow(endpoint_rms(weight, C.topLeftCorner(weight.rows(), weight.cols())), 2);
 }
 
-/// What halves of the rows differ by more than they should.
+/// What halves of the rows differ by more than they should, `by_repeats` being known.
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
-                              const Eigen::MatrixXd& weight) {
+                              const Eigen::MatrixXd& weight, const Eigen::MatrixXd& by_repeats) {
   const HalfSamples halves = half_samples(equations, adjusted);
-  const double seen = squared(weight, halves.seen), expected = squared(weight, halves.expected);
+  const double seen = squared(weight, halves.seen);
+  const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);
   return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
 }
 
@@ -84,10 +119,13 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   const Eigen::MatrixXd exact =
       adjusted.scale < 0 ? fitted : posterior(equations, adjusted, R, false);
   std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, noise);
+  const Eigen::MatrixXd& by_repeats = sources.back().C;
+  Eigen::MatrixXd shared = shared_errors(equations, adjusted, weight, by_repeats);
+  const double apart = squared(weight, noise);
+  const double together = squared(weight, shared) + squared(weight, by_repeats);
+  const double structure = apart > 0 ? 1 + together / apart : 1;
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
-  Eigen::MatrixXd shared = shared_errors(equations, adjusted, weight);
-  const double structure = 1 + squared(weight, shared) / squared(weight, noise);
   sources.push_back({"what was given", posterior(equations, adjusted, R, true, structure) - exact});
   sources.push_back({kSharedErrors, std::move(shared)});
   return sources;

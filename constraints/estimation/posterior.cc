@@ -70,28 +70,13 @@ class Information {
   Eigen::MatrixXd covariance(double structure) const {
     const auto n = static_cast<Eigen::Index>(columns_.size());
     const auto m = n + kMotionColumns * static_cast<Eigen::Index>(places_.size());
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(m, m);
-    const Eigen::MatrixXd W = R_(Eigen::all, columns_);
-    H.topLeftCorner(n, n) = transposed_product(W, W);
-    for (Eigen::Index i = 0; i < n; ++i) H(i, i) += std::pow(weights_[i], 2);
-    Eigen::Index at = n;
-    for (const GivenPlace& place : places_) {
-      const Eigen::MatrixXd M = place.R.middleCols(equations_.columns(), kMotionColumns);
-      H.block(0, at, n, kMotionColumns) = place.R(Eigen::all, columns_).transpose() * M;
-      H.block(at, 0, kMotionColumns, n) = H.block(0, at, n, kMotionColumns).transpose();
-      H.block(at, at, kMotionColumns, kMotionColumns) = M.transpose() * M;
-      H.block(at, at, kMotionColumns, kMotionColumns) +=
-          place.weight.cwiseAbs2().asDiagonal().toDenseMatrix();
-      at += kMotionColumns;
-    }
-    const Eigen::VectorXd unit = H.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd C = unit.asDiagonal() *
-                              inverse_of_positive(unit.asDiagonal() * H * unit.asDiagonal()) *
-                              unit.asDiagonal();
-    const Eigen::VectorXd off = spread_rows(given_off(C, unit, structure));
-    const Eigen::MatrixXd all = spread(C) + off * off.transpose();
+    const Eigen::MatrixXd T = triangle(m);
+    const auto root = T.topLeftCorner(m, m);
+    const Eigen::VectorXd off = spread_rows(given_off(T, structure));
+    const Eigen::MatrixXd all = spread(inverse_of_square(root)) + off * off.transpose();
     if (adjusted_.scale < 0) return all;
-    Eigen::VectorXd follow = spread_rows(-C * asked_by(adjusted_.scale, m));
+    Eigen::VectorXd follow =
+        spread_rows(-root.triangularView<Eigen::Upper>().solve(T.col(m).head(m)));
     follow[adjusted_.scale] = 1;
     return all + std::pow(adjusted_.scale_sigma, 2) * follow * follow.transpose();
   }
@@ -112,54 +97,86 @@ class Information {
     return sum.normalized();
   }
 
-  /// W^T w of all unknowns, w the column of a parameter that is held.
-  Eigen::VectorXd asked_by(int held, Eigen::Index unknowns) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(unknowns);
-    auto at = static_cast<Eigen::Index>(columns_.size());
-    all.head(at) = R_(Eigen::all, columns_).transpose() * R_.col(held);
+  /// Triangular [W | w | Delta Y] of the rows and of all that is known beforehand, W of the `m`
+  /// unknowns, w of the parameter that is held for the scale (zero without one).
+  Eigen::MatrixXd triangle(Eigen::Index m) const {
+    const auto n = static_cast<Eigen::Index>(columns_.size());
+    const Eigen::MatrixXd others = places_.empty() ? R_ : rows_without_place();
+    Eigen::Index rows = others.rows() + m;
+    for (const GivenPlace& place : places_) rows += place.R.rows();
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows, m + 2);
+    Eigen::Index at = 0;
+    const auto put = [&](const Eigen::MatrixXd& R, Eigen::Index motions) {
+      auto of = A.middleRows(at, R.rows());
+      of.leftCols(n) = R(Eigen::all, columns_);
+      if (motions > 0)
+        of.middleCols(motions, kMotionColumns) = R.middleCols(equations_.columns(), kMotionColumns);
+      if (adjusted_.scale >= 0) of.col(m) = R.col(adjusted_.scale);
+      of.col(m + 1) = R.rightCols<1>();
+      at += R.rows();
+    };
+    put(others, 0);
+    Eigen::Index motions = n;
     for (const GivenPlace& place : places_) {
-      all.segment(at, kMotionColumns) =
-          place.R.middleCols(equations_.columns(), kMotionColumns).transpose() * place.R.col(held);
-      at += kMotionColumns;
+      put(place.R, motions);
+      A.block(rows - m + motions, motions, kMotionColumns, kMotionColumns) =
+          place.weight.asDiagonal();
+      motions += kMotionColumns;
     }
-    return all;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int c = columns_[static_cast<size_t>(i)];
+      A(rows - m + i, i) = weights_[i];
+      if (i < static_cast<Eigen::Index>(free_) && c < equations_.robot_columns())
+        A(rows - m + i, m + 1) =
+            weights_[i] * (adjusted_.prior.centre[c] - adjusted_.fitted.state.xi[c]);
+    }
+    triangularise(A);
+    return A.topRows(m + 2);
   }
 
-  /// W^T Delta Y of what is considered, and the precision that is known of it beforehand; of the
-  /// free unknowns the fit has left nothing.
-  std::pair<Eigen::VectorXd, Eigen::VectorXd> pulled() const {
-    const auto n = static_cast<Eigen::Index>(columns_.size());
-    const auto of_columns = n - static_cast<Eigen::Index>(free_);
-    const auto k = of_columns + kMotionColumns * static_cast<Eigen::Index>(places_.size());
-    Eigen::VectorXd pull(k), known(k);
-    pull.head(of_columns) =
-        R_(Eigen::all, columns_).rightCols(of_columns).transpose() * R_.rightCols<1>();
+  /// The system of the rows of sets whose places are not given.
+  Eigen::MatrixXd rows_without_place() const {
+    Weighting rest{adjusted_.fitted.noise.used, adjusted_.fitted.noise.outlier};
+    rest.passed_over = true;
+    const Observations& rows = equations_.data().rows;
+    for (int row = 0; row < rows.rows(); ++row)
+      if (equations_.data().sets[rows.set[static_cast<size_t>(row)]].method->place_known())
+        rest.outlier[static_cast<size_t>(row)] = 1;
+    return equations_.linearise(adjusted_.fitted.state, rest, true).R;
+  }
+
+  /// The precision of what is considered beforehand.
+  Eigen::VectorXd given_precision() const {
+    const auto of_columns = static_cast<Eigen::Index>(columns_.size() - free_);
+    Eigen::VectorXd known(of_columns + kMotionColumns * static_cast<Eigen::Index>(places_.size()));
     known.head(of_columns) = weights_.tail(of_columns).cwiseAbs2();
     Eigen::Index at = of_columns;
     for (const GivenPlace& place : places_) {
-      pull.segment(at, kMotionColumns) =
-          place.R.middleCols(equations_.columns(), kMotionColumns).transpose() *
-          place.R.rightCols<1>();
       known.segment(at, kMotionColumns) = place.weight.cwiseAbs2();
       at += kMotionColumns;
     }
-    return {pull, known};
+    return known;
   }
 
-  /// d of all unknowns; C in `unit` of each is of the order of one.
-  Eigen::VectorXd given_off(const Eigen::MatrixXd& C, const Eigen::VectorXd& unit,
-                            double structure) const {
-    const auto [pull, known] = pulled();
-    const Eigen::Index k = pull.size();
-    if (k == 0) return Eigen::VectorXd::Zero(C.rows());
-    const Eigen::VectorXd by = unit.tail(k), inverse = unit.cwiseInverse();
-    const Eigen::MatrixXd one = inverse.asDiagonal() * C * inverse.asDiagonal();
-    const Eigen::MatrixXd precision = inverse_of_positive(one.bottomRightCorner(k, k));
-    const Eigen::VectorXd before = known.cwiseProduct(by.cwiseAbs2());
+  /// d of all unknowns. Below the free ones T has the root of C_pp^-1 and what the rows and they
+  /// ask of p.
+  Eigen::VectorXd given_off(const Eigen::MatrixXd& T, double structure) const {
+    const Eigen::Index m = T.cols() - 2;
+    const auto free = static_cast<Eigen::Index>(free_), k = m - free;
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(m);
+    if (k == 0) return d;
+    const Eigen::MatrixXd root = T.block(free, free, k, k).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd precision = transposed_product(root, root);
+    const Eigen::VectorXd unit = precision.diagonal().cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd H = precision / structure;
-    H.diagonal() += (1 - 1 / structure) * before;
-    const Eigen::VectorXd off = inverse_of_positive(H) * (by.cwiseProduct(pull) / structure);
-    return unit.cwiseProduct(one.rightCols(k) * (precision * off));
+    H.diagonal() += (1 - 1 / structure) * given_precision();
+    const Eigen::VectorXd asked = root.transpose() * T.col(m + 1).segment(free, k) / structure;
+    d.tail(k) = unit.cwiseProduct(inverse_of_positive(unit.asDiagonal() * H * unit.asDiagonal()) *
+                                  unit.cwiseProduct(asked));
+    d.head(free) = -T.topLeftCorner(free, free)
+                        .triangularView<Eigen::Upper>()
+                        .solve(T.block(0, free, free, k) * d.tail(k));
+    return d;
   }
 
   Eigen::VectorXd spread_rows(const Eigen::VectorXd& x) const {
