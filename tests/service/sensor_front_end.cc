@@ -16,11 +16,19 @@ class NoEncoders final : public EncoderSource {
   std::vector<EncoderScale> scales_;
 };
 
-class NoMotion final : public Motion {
+class NotedMotion final : public Motion {
  public:
-  Result<void> request(const MotionRequest&) override { return {}; }
-  Result<void> stop(const std::string&) override { return {}; }
+  Result<void> request(const MotionRequest& request) override {
+    noted.push_back("move " + std::to_string(request.id));
+    return {};
+  }
+  Result<void> stop(const std::string& why) override {
+    noted.push_back("stop: " + why);
+    return {};
+  }
   Result<void> take(std::vector<MotionReply>&) override { return {}; }
+
+  std::vector<std::string> noted;
 };
 
 class PlayedTrigger final : public TouchTrigger {
@@ -54,7 +62,7 @@ class HeardTrigger : public testing::Test {
   void SetUp() override { listen(0, 10); }
 
   NoEncoders encoders;
-  NoMotion motion;
+  NotedMotion motion;
   PlayedTrigger trigger;
   std::deque<Event> events;
   const Ports ports{nullptr, &encoders, &trigger, &motion, nullptr};
@@ -72,6 +80,31 @@ TEST_F(HeardTrigger, KeepsTheFirstContactOfAProbeThatBouncesWhileTheRobotBrakes)
   ASSERT_TRUE(front_end.closing());
   EXPECT_EQ(front_end.closing()->time, 20 * kMillisecond);
   EXPECT_EQ(front_end.closed(), true);
+}
+
+/// A move that ends at a contact.
+MotionRequest to_contact(std::uint64_t id) {
+  MotionRequest request;
+  request.id = id;
+  return request;
+}
+
+TEST_F(HeardTrigger, StopsAMoveToAContactThatIsThereBeforeItIsAskedFor) {
+  trigger.set(20 * kMillisecond, true);
+  listen(20, 25);
+  ASSERT_TRUE(reflex.request(to_contact(7), true));
+  EXPECT_EQ(motion.noted, (std::vector<std::string>{"move 7", "stop: touched"}));
+  EXPECT_TRUE(reflex.has_stopped(7));
+}
+
+TEST_F(HeardTrigger, StopsAMoveToAContactOnceItComes) {
+  ASSERT_TRUE(reflex.request(to_contact(7), true));
+  EXPECT_EQ(motion.noted, std::vector<std::string>{"move 7"});
+  trigger.set(20 * kMillisecond, true);
+  listen(20, 25);
+  EXPECT_EQ(motion.noted, (std::vector<std::string>{"move 7", "stop: touched"}));
+  ASSERT_TRUE(reflex.request(to_contact(8), std::nullopt));  // away from it, which nothing guards
+  EXPECT_EQ(motion.noted.back(), "move 8");
 }
 
 TEST_F(HeardTrigger, TakesTheNextContactAfterTheLastOneWasForgotten) {

@@ -11,6 +11,8 @@ namespace {
 
 constexpr Nanoseconds kLook = 20 * kMillisecond;  // at the level, when no edge comes
 
+const char* why_stopped(bool closed) { return closed ? "touched" : "the lock opened"; }
+
 }  // namespace
 
 Reflex::Reflex(const Ports& ports, Nanoseconds debounce)
@@ -27,9 +29,12 @@ Reflex::~Reflex() {
 
 Result<void> Reflex::request(const MotionRequest& request, std::optional<bool> until) {
   const std::lock_guard lock(motion_);
-  guarded_ = until ? request.id : 0;
+  const bool there = until && held_ == until;
+  guarded_ = until && !there ? request.id : 0;
   until_ = until.value_or(true);
-  return ports_.motion->request(request);
+  if (there) stopped_ = request.id;
+  const auto sent = ports_.motion->request(request);
+  return sent && there ? ports_.motion->stop(why_stopped(*until)) : sent;
 }
 
 Result<void> Reflex::stop(const std::string& why) {
@@ -64,6 +69,8 @@ void Reflex::listen(Nanoseconds now) {
     debouncer_.begin(*closed);
     level_ = closed;
     settled_ = Edge{now, *closed, false};
+    const std::lock_guard lock(motion_);
+    held_ = closed;
     return;
   }
   for (const Edge& edge : edges_) debouncer_.add(edge, now);
@@ -82,9 +89,10 @@ void Reflex::settle(Nanoseconds now) {
 void Reflex::guard(const Edge& edge) {
   {
     const std::lock_guard lock(motion_);
+    held_ = edge.closed;
     if (guarded_ == 0 || edge.closed != until_) return;
     stopped_ = std::exchange(guarded_, 0);
-    if (const auto sent = ports_.motion->stop(edge.closed ? "touched" : "the lock opened"); !sent)
+    if (const auto sent = ports_.motion->stop(why_stopped(edge.closed)); !sent)
       broken_ = sent.error().what;
   }
   if (!ports_.trigger_clock || !edge.timed) return;

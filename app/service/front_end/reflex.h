@@ -42,7 +42,8 @@ class Reflex {
   Reflex(const Reflex&) = delete;
   Reflex& operator=(const Reflex&) = delete;
 
-  /// Asks for a move, which the trigger's next change to `until` stops.
+  /// Asks for a move, which the trigger's next change to `until` stops; at once where it is there
+  /// already, though the loop has not heard of it yet.
   Result<void> request(const MotionRequest& request, std::optional<bool> until);
   Result<void> stop(const std::string& why);
   /// Whether a contact stopped this move: the robot's word that it was stopped is then no refusal.
@@ -82,6 +83,7 @@ class Reflex {
   std::mutex motion_;          ///< requests and stops in their order
   std::uint64_t guarded_ = 0;  ///< the move that the next change to until_ stops; 0 for none
   bool until_ = true;          ///< closed
+  std::optional<bool> held_;   ///< the last level that has settled; nothing before the first
 
   std::mutex news_mutex_;
   TriggerNews news_;
