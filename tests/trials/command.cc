@@ -111,6 +111,20 @@ TEST_F(TrialCommand, AnswersTheOthersWhereADataSetIsBad) {
   EXPECT_LE(trial("score " + path("a").string() + " " + answers), 1) << said_;
 }
 
+TEST_F(TrialCommand, AnswersTheSameHoweverManyAtOnce) {
+  ASSERT_EQ(trial("seal --make 6 --seed 3 --rows 120-130 --out " + path("a").string()), 0) << said_;
+  const auto answers = [&](const std::string& jobs) {
+    const std::string name = "answers" + jobs + ".json";
+    EXPECT_EQ(
+        trial("run " + path("a").string() + " --jobs " + jobs + " --out " + path(name).string()), 0)
+        << said_;
+    auto list = nlohmann::json::parse(text(name))["answers"];
+    for (auto& each : list) each.erase("seconds");
+    return list;
+  };
+  EXPECT_EQ(answers("1"), answers("3"));
+}
+
 TEST_F(TrialCommand, EndsAtOnceWhereItsAnswersCannotBeWritten) {
   ASSERT_EQ(make("a"), 0) << said_;
   EXPECT_EQ(trial("run " + path("a").string() + " --jobs 1 --baseline compliance --out " +
