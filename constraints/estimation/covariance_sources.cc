@@ -57,20 +57,47 @@ double shared_by_repeats(const Equations& equations, const Fit& fitted, int set,
   return std::max(0.0, std::pow(left / used, 2) * (1 + (n - 1) * rho) - 1);
 }
 
+/// What immediate repeats differ by, by set (m); negative without any.
+std::vector<double> spreads_of_repeats(const Equations& equations, const Fit& fitted) {
+  const DataSet& data = equations.data();
+  std::vector<double> spreads(data.sets.size(), -1);
+  if (data.rows.repeat.empty()) return spreads;
+  const std::vector<RowResidual> residuals = equations.residuals(fitted.state);
+  for (size_t s = 0; s < spreads.size(); ++s)
+    if (!equations.plan(static_cast<int>(s)).items.empty())
+      spreads[s] = repeat_sigma(data, static_cast<int>(s), residuals, fitted.noise.outlier);
+  return spreads;
+}
+
+/// By how much the squares of what is left of the rows are more than a data sheet or repeats say of
+/// their noise, on average over the rows; a set that neither speaks of has no more.
+double over_stated(const Equations& equations, const Fit& fitted,
+                   const std::vector<double>& spreads) {
+  double sum = 0, count = 0;
+  for (size_t s = 0; s < spreads.size(); ++s) {
+    const int set = static_cast<int>(s);
+    const auto rows = static_cast<double>(equations.plan(set).items.size());
+    const double told = std::max(equations.stated(set).length, spreads[s]);
+    const double over = told > 0 ? std::pow(fitted.noise.estimated[s].length / told, 2) : 1;
+    sum += rows * std::max(1.0, over);
+    count += rows;
+  }
+  return count > 0 ? sum / count : 1;
+}
+
 /// The noise of the rows by where it comes from; `all` is what they add up to where rows err apart.
 std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adjusted& adjusted,
+                                          const std::vector<double>& spreads,
                                           const Eigen::MatrixXd& all) {
   const Fit& fitted = adjusted.fitted;
   const std::vector<double> rounding =
       resolution_shares(equations, fitted.state, fitted.noise.used, fitted.noise.outlier);
   const Observations& rows = equations.data().rows;
-  const std::vector<RowResidual> residuals =
-      rows.repeat.empty() ? std::vector<RowResidual>() : equations.residuals(fitted.state);
   Eigen::MatrixXd encoders = Eigen::MatrixXd::Zero(all.rows(), all.cols()), repeats = encoders,
                   shared = encoders;
   for (int s = 0; s < static_cast<int>(rounding.size()); ++s) {
     if (equations.plan(s).items.empty()) continue;
-    const double told = repeat_sigma(equations.data(), s, residuals, fitted.noise.outlier);
+    const double told = spreads[static_cast<size_t>(s)];
     const double spread = std::max(0.0, told);
     const double in_common = told < 0 ? 0 : shared_by_repeats(equations, fitted, s, spread);
     const double coarse = std::min(1.0, rounding[s]);
@@ -118,12 +145,14 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   const Eigen::MatrixXd priors = prior_part(equations, adjusted), noise = fitted - priors;
   const Eigen::MatrixXd exact =
       adjusted.scale < 0 ? fitted : posterior(equations, adjusted, R, false);
-  std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, noise);
+  const std::vector<double> spreads = spreads_of_repeats(equations, adjusted.fitted);
+  std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, spreads, noise);
   const Eigen::MatrixXd& by_repeats = sources.back().C;
   Eigen::MatrixXd shared = shared_errors(equations, adjusted, weight, by_repeats);
   const double apart = squared(weight, noise);
   const double together = squared(weight, shared) + squared(weight, by_repeats);
-  const double structure = apart > 0 ? 1 + together / apart : 1;
+  const Structure structure{apart > 0 ? 1 + together / apart : 1,
+                            over_stated(equations, adjusted.fitted, spreads)};
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
   sources.push_back({"what was given", posterior(equations, adjusted, R, true, structure) - exact});

@@ -1,9 +1,10 @@
 // C = (W^T W + Lambda)^-1 over free unknowns x and considered ones p together. The estimate keeps p
 // where it was given, while the rows put it d_p = (S / t + Lambda_p)^-1 W_p^T Delta Y / t from
-// there (S: C_pp^-1 - Lambda_p; t: by how much the rows' errors are more than their noise, for
-// structure speaks against anything), and has moved x to make up for that: it errs by C + d d^T, d
-// = C_.p C_pp^-1 d_p. Where the rows agree with what was given d is nothing. A given place of a set
-// may be off by a motion of it all: columns of the world's motions, of the rows of that set alone.
+// there (S: C_pp^-1 - Lambda_p; t: by how much the rows' errors are more than their noise and than
+// p would explain, for structure speaks against anything), and has moved x to make up for that: it
+// errs by C + d d^T, d = C_.p C_pp^-1 d_p. Where the rows agree with what was given d is nothing. A
+// given place of a set may be off by a motion of it all: columns of the world's motions, of the
+// rows of that set alone.
 #include "constraints/estimation/posterior.h"
 
 #include <algorithm>
@@ -67,7 +68,7 @@ class Information {
   }
 
   /// Of columns(); the one held for the scale with what follows it.
-  Eigen::MatrixXd covariance(double structure) const {
+  Eigen::MatrixXd covariance(const Structure& structure) const {
     const auto n = static_cast<Eigen::Index>(columns_.size());
     const auto m = n + kMotionColumns * static_cast<Eigen::Index>(places_.size());
     const Eigen::MatrixXd T = triangle(m);
@@ -160,7 +161,7 @@ class Information {
 
   /// d of all unknowns. Below the free ones T has the root of C_pp^-1 and what the rows and they
   /// ask of p.
-  Eigen::VectorXd given_off(const Eigen::MatrixXd& T, double structure) const {
+  Eigen::VectorXd given_off(const Eigen::MatrixXd& T, const Structure& structure) const {
     const Eigen::Index m = T.cols() - 2;
     const auto free = static_cast<Eigen::Index>(free_), k = m - free;
     Eigen::VectorXd d = Eigen::VectorXd::Zero(m);
@@ -168,9 +169,12 @@ class Information {
     const Eigen::MatrixXd root = T.block(free, free, k, k).triangularView<Eigen::Upper>();
     const Eigen::MatrixXd precision = transposed_product(root, root);
     const Eigen::VectorXd unit = precision.diagonal().cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd H = precision / structure;
-    H.diagonal() += (1 - 1 / structure) * given_precision();
-    const Eigen::VectorXd asked = root.transpose() * T.col(m + 1).segment(free, k) / structure;
+    const Eigen::VectorXd explained = T.col(m + 1).segment(free, k);
+    const double left = 1 - explained.squaredNorm() / adjusted_.fitted.at.equations;
+    const double t = std::max(structure.halves, structure.stated * left);
+    Eigen::MatrixXd H = precision / t;
+    H.diagonal() += (1 - 1 / t) * given_precision();
+    const Eigen::VectorXd asked = root.transpose() * explained / t;
     d.tail(k) = unit.cwiseProduct(inverse_of_positive(unit.asDiagonal() * H * unit.asDiagonal()) *
                                   unit.cwiseProduct(asked));
     d.head(free) = -T.topLeftCorner(free, free)
@@ -243,7 +247,7 @@ class Information {
 }  // namespace
 
 Eigen::MatrixXd posterior(const Equations& equations, const Adjusted& adjusted,
-                          const Eigen::MatrixXd& R, bool considered, double structure) {
+                          const Eigen::MatrixXd& R, bool considered, const Structure& structure) {
   Information information(equations, adjusted, R);
   if (considered) {
     information.add_fixed();
