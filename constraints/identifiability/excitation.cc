@@ -125,6 +125,8 @@ StructuralRank structural(const Robot& robot, const std::vector<Set>& sets,
     request.set = static_cast<int>(s);
     request.rows = most.empty() ? rows : std::min(rows, most[s]);
     request.held = held;
+    request.together =
+        held.empty() && !sets[s].method->paired() && sets[s].method->group_freedom() == 0;
     requests.push_back(request);
   }
   Random random(seed);
