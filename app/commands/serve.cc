@@ -15,8 +15,8 @@
 #include "app/commands/support/signals.h"
 #include "app/commands/support/simulated_robot.h"
 #include "app/report/progress_line.h"
+#include "app/service/loop/pose_thread.h"
 #include "app/service/loop/service.h"
-#include "app/service/models/pose_answers.h"
 #include "io/clock.h"
 #include "io/dds/context.h"
 #include "io/dds/messenger.h"
@@ -122,15 +122,10 @@ void set_up_log(const std::string& level) {
   spdlog::set_default_logger(std::move(log));
 }
 
-void run_sessions(Service& service, int sessions, DdsPoses* poses) {
-  PoseAnswers answers;
+void run_sessions(Service& service, int sessions, PoseThread* poses) {
   while (!told_to_stop() && (sessions == 0 || service.extended_state().published < sessions)) {
     service.turn();
-    if (!poses) continue;
-    const Models& models = service.models();
-    poses->answer([&](const PoseRequestMessage& request) {
-      return answers.answer(request, models.factory(), models.active(), models.name());
-    });
+    if (poses) poses->use(service.models());
   }
   service.shut_down();
 }
@@ -172,9 +167,9 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   if (!messenger) return tl::unexpected(messenger.error());
 
   // Who may command it may ask it for readings.
-  std::unique_ptr<DdsPoses> poses;
+  std::unique_ptr<PoseThread> poses;
   if (config.commands.over != CommandRules::Over::none) {
-    auto opened_poses = DdsPoses::open(*participant, config.id, wakeup);
+    auto opened_poses = PoseThread::open(*participant, config.id, *models);
     if (!opened_poses) return tl::unexpected(opened_poses.error());
     poses = *std::move(opened_poses);
   }

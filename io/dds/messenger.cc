@@ -43,7 +43,7 @@ Result<std::unique_ptr<DdsMessenger>> DdsMessenger::open(const DdsParticipant& p
   opening.open(endpoints.result, robot_topic(robot, "result"), kLatched);
   opening.open(endpoints.diagnostics, ros_topic("diagnostics"), kDiagnostics);
   opening.open(endpoints.reply, robot_topic(robot, "command_reply"), kReplies);
-  opening.open(endpoints.command, robot_topic(robot, "command"), kExchange, &wakeup);
+  opening.open(endpoints.command, robot_topic(robot, "command"), kExchangeReader, &wakeup);
   opening.open(endpoints.own_status, robot_topic(robot, "status"), kLatched);
   return opening.finish(
       [&] { return std::unique_ptr<DdsMessenger>(new DdsMessenger(robot, std::move(endpoints))); });

@@ -14,7 +14,7 @@ Result<std::unique_ptr<DdsMotion>> DdsMotion::open(const DdsParticipant& partici
   DdsReader<dds::MotionReply> replies;
   DdsOpening opening(participant);
   opening.open(requests, robot_topic(robot, "motion_request"), kMotion, &wakeup);
-  opening.open(replies, robot_topic(robot, "motion_reply"), kExchange, &wakeup);
+  opening.open(replies, robot_topic(robot, "motion_reply"), kExchangeReader, &wakeup);
   return opening.finish([&] {
     return std::unique_ptr<DdsMotion>(
         new DdsMotion(robot, std::move(requests), std::move(replies)));

@@ -40,13 +40,15 @@ Result<std::unique_ptr<DdsPoses>> DdsPoses::open(const DdsParticipant& participa
   std::unique_ptr<DdsPoses> poses(new DdsPoses);
   DdsOpening opening(participant);
   opening.open(poses->replies_, robot_topic(robot, "pose_reply"), kReplies);
-  opening.open(poses->requests_, robot_topic(robot, "pose_request"), kExchange, &wakeup);
+  opening.open(poses->requests_, robot_topic(robot, "pose_request"), kPoseReader, &wakeup);
   return opening.finish([&] { return std::move(poses); });
 }
 
-void DdsPoses::answer(const std::function<PoseReplyMessage(const PoseRequestMessage&)>& to) {
+bool DdsPoses::answer(const std::function<PoseReplyMessage(const PoseRequestMessage&)>& to) {
+  bool answered = false;
   // A failure to read or to write is a bug of ours or of the library's; who asked asks again.
-  (void)requests_.take(kMostAtOnce, [&](const dds::PoseRequest& received) {
+  (void)requests_.take(1, [&](const dds::PoseRequest& received) {
+    answered = true;
     const PoseRequestMessage request = plain_request(received);
     PoseReplyMessage reply;
     if (allowance_.take(monotonic_now())) {
@@ -58,6 +60,7 @@ void DdsPoses::answer(const std::function<PoseReplyMessage(const PoseRequestMess
     reply.id = request.id;
     (void)replies_.write(borrowed_reply(reply));
   });
+  return answered;
 }
 
 }  // namespace selfcal

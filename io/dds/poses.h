@@ -32,15 +32,13 @@ class DdsPoses {
  public:
   /// Answered in a second; further ones are refused.
   static constexpr int kMostPoses = 200;
-  /// Answered in one call; the others wait for the next.
-  static constexpr std::size_t kMostAtOnce = 4;
 
   /// `wakeup` hears of requests and must outlive it.
   static Result<std::unique_ptr<DdsPoses>> open(const DdsParticipant& participant,
                                                 const std::string& robot, Wakeup& wakeup);
 
-  /// Answers what has come.
-  void answer(const std::function<PoseReplyMessage(const PoseRequestMessage&)>& to);
+  /// Answers the oldest of the last 64 that have come; false where there is none.
+  bool answer(const std::function<PoseReplyMessage(const PoseRequestMessage&)>& to);
 
  private:
   DdsPoses() = default;

@@ -29,6 +29,11 @@ inline constexpr DdsQos kDiagnostics{.depth = 10};
 /// Commands, and what a robot is asked as it hears it: none may be lost without the sender's
 /// knowing.
 inline constexpr DdsQos kExchange{.depth = 0};
+/// The service's readers of the same: the library receives everything in one thread, the touch
+/// among it, which a reader without room holds up; so the oldest makes room.
+inline constexpr DdsQos kExchangeReader{.depth = kMostKept};
+/// Poses that somebody asks for.
+inline constexpr DdsQos kPoseReader{.depth = 64};
 /// What the service asks of a robot: a stop never waits for a reader that has stopped reading.
 inline constexpr DdsQos kMotion{.depth = 16};
 /// Replies to commands: nor does the loop wait for who asks and does not listen.

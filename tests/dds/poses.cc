@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "io/dds/convert.h"
+#include "io/dds/messenger.h"
+#include "io/dds/motion.h"
 #include "io/dds/names.h"
 #include "tests/support/domain.h"
 
@@ -60,6 +62,32 @@ TEST_F(DdsPosesTest, AreAnsweredOnceEach) {
   EXPECT_EQ(told, (std::vector<std::string>{"a", "reached", "session 2"}));
   EXPECT_EQ(q, (std::vector<double>{1.5, -0.5}));
   EXPECT_EQ(asked, 1);
+}
+
+/// The first of more messages than any reader keeps that was not sent; 0 when all were.
+template <class T>
+int first_not_sent(const DdsParticipant& participant, const std::string& topic, const T& message) {
+  auto writer = must(DdsWriter<T>::open(participant, topic, kExchange));
+  Wakeup wakeup;
+  EXPECT_TRUE(eventually(wakeup, [&] { return writer.matched() > 0; }));
+  for (int i = 1; i <= 2 * kMostKept; ++i)
+    if (!writer.write(message)) return i;
+  return 0;
+}
+
+// A reader that has no room left holds up the thread that receives everything else, too.
+TEST_F(DdsPosesTest, AndWhateverElseTheServiceIsSentAlwaysFindRoom) {
+  const auto poses = must(DdsPoses::open(participant, "r", wakeup));
+  const auto messenger = must(DdsMessenger::open(participant, "r", wakeup));
+  const auto motion = must(DdsMotion::open(participant, "r", wakeup));
+  char text[] = "";
+  dds::PoseRequest request{};
+  request.id_ = text;
+  const dds::Command command{.id_ = text, .verb_ = text, .from_ = text};
+  const dds::MotionReply reply{.id_ = 1, .outcome_ = text, .why_ = text};
+  EXPECT_EQ(first_not_sent(participant, robot_topic("r", "pose_request"), request), 0);
+  EXPECT_EQ(first_not_sent(participant, robot_topic("r", "command"), command), 0);
+  EXPECT_EQ(first_not_sent(participant, robot_topic("r", "motion_reply"), reply), 0);
 }
 
 }  // namespace

@@ -6,7 +6,12 @@
 #include <cmath>
 #include <random>
 
+#include "app/service/loop/pose_thread.h"
+#include "io/dds/convert.h"
+#include "io/dds/names.h"
 #include "io/files/robot_file.h"
+#include "tests/io/scratch.h"
+#include "tests/io/store_content.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -96,6 +101,75 @@ TEST(PoseAnswers, SayWhatIsOutOfReachAndRefuseWhatIsNoPose) {
     EXPECT_THAT(reply.why, HasSubstr(what));
     EXPECT_TRUE(reply.q.empty());
   }
+}
+
+/// Somebody who asks a service for poses over DDS.
+class PosesOverDds : public DdsTest {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(eventually([&] { return asking_.matched() > 0 && replies_.matched() > 0; }));
+  }
+
+  void ask(const PoseRequestMessage& question) {
+    std::vector<double> place = question.position, turn = question.orientation;
+    dds::PoseRequest request{};
+    request.id_ = borrowed::text(question.id);
+    request.position_ = {3, 3, place.data(), false};
+    request.orientation_ = {4, 4, turn.data(), false};
+    request.temperature_ = question.temperature;
+    must(asking_.write(request));
+  }
+  /// Status and model of what has been answered since.
+  std::vector<std::string> replies() {
+    std::vector<std::string> told;
+    must(replies_.take([&](const dds::PoseReply& reply) {
+      told.push_back(std::string(reply.status_) + " by " + reply.model_);
+    }));
+    return told;
+  }
+  std::string reply() {
+    std::vector<std::string> told;
+    EXPECT_TRUE(eventually([&] { return told = replies(), !told.empty(); }));
+    return told.empty() ? "" : told.front();
+  }
+
+  const Active robots_ = active_robots();
+  const Scratch scratch_;
+  const std::unique_ptr<Store> store_ = opened(scratch_.folder());
+  std::unique_ptr<PoseThread> poses_ =
+      must(PoseThread::open(participant, "r", must(Models::load(robots_.factory, *store_))));
+  DdsWriter<dds::PoseRequest> asking_ = must(
+      DdsWriter<dds::PoseRequest>::open(participant, robot_topic("r", "pose_request"), kExchange));
+  DdsReader<dds::PoseReply> replies_ = must(DdsReader<dds::PoseReply>::open(
+      participant, robot_topic("r", "pose_reply"), kReplies, &wakeup));
+};
+
+TEST_F(PosesOverDds, AreAnsweredByTheParametersInUse) {
+  const PoseRequestMessage question = question_at(*robots_.factory, kAsked);
+  ask(question);
+  EXPECT_EQ(reply(), "reached by factory");
+
+  const std::int64_t id = store_->begin(some_session(), some_plan(2, 6)).value();
+  ResultRecord result = some_result(id);
+  result.robot_text = robot_text(*robots_.active, values(*robots_.active));
+  const SlotRecord candidate{id, id, model_hash(*robots_.factory), result.robot_text};
+  must(store_->finish(result, &candidate));
+  must(store_->accept(id));
+  poses_->use(must(Models::load(robots_.factory, *store_)));
+  ask(question);
+  EXPECT_EQ(reply(), "reached by session 1");
+}
+
+// Each takes a while, as it is tried from many starts.
+TEST_F(PosesOverDds, KeepNeitherThePersonWhoAsksNorTheEndOfTheServiceWaiting) {
+  PoseRequestMessage far = question_at(*robots_.factory, kAsked);
+  far.position[0] += 5;
+  constexpr int kMany = 1000;
+  for (int i = 0; i < kMany; ++i) ask(far);
+  EXPECT_EQ(reply(), "out-of-reach by factory");
+
+  poses_.reset();
+  EXPECT_LT(replies().size(), kPoseReader.depth / 2);
 }
 
 }  // namespace
