@@ -14,7 +14,7 @@
 namespace selfcal {
 namespace {
 
-struct Motion {
+struct CellMotion {
   double travel = 0, touching = 0;  ///< s
   int via_home = 0;
   double all() const { return travel + touching; }
@@ -22,11 +22,11 @@ struct Motion {
 
 /// The same touches without free ways or a tour: always to the nearest one of the set, straight
 /// where that is free and through home else, slowly from the clearance on, out twice as fast.
-Motion straight_or_through_home(const Config& config, std::vector<PlannedTouch> left) {
+CellMotion straight_or_through_home(const Config& config, std::vector<PlannedTouch> left) {
   const Robot& robot = *config.robot;
   const Eigen::VectorXd xi = values(robot), &home = config.plan.home;
   const Eigen::VectorXd speed = Eigen::VectorXd::Constant(home.size(), config.plan.speed);
-  Motion motion;
+  CellMotion motion;
   Eigen::VectorXd here = home;
   int set = -1;
   while (!left.empty()) {
@@ -51,7 +51,7 @@ Motion straight_or_through_home(const Config& config, std::vector<PlannedTouch> 
 }
 
 struct Compared {
-  Motion before, now;
+  CellMotion before, now;
   std::size_t touches = 0;
 };
 
@@ -66,7 +66,7 @@ Compared compare(const std::string& name) {
   Compared result{straight_or_through_home(*config, plan.touches), {}, plan.touches.size()};
   result.now = {time.travel, time.touching,
                 static_cast<int>(std::ranges::count(plan.touches, true, &PlannedTouch::via_home))};
-  const auto print = [](const char* what, const Motion& motion) {
+  const auto print = [](const char* what, const CellMotion& motion) {
     std::printf("  %s: %.0f s between touches, %.0f s into contacts and out, %d through home\n",
                 what, motion.travel, motion.touching, motion.via_home);
   };

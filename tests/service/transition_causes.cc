@@ -102,6 +102,38 @@ TEST(CauseTransition, AsksAPersonToHangThePayloadOnAndToTakeItOff) {
   EXPECT_EQ(script.ask(Verb::done).done(), "grant, analyse");
 }
 
+// The way out of a contact is one that no contact ends.
+TEST(CauseTransition, GoesNowhereFromAPersonWhileTheTriggerIsClosed) {
+  Script script = script_at(ServiceState::diagnosing);
+  script.planned(2, SessionKind::cause);
+  touch_then(script, 1, true);
+  script.on(What::closed);  // the payload leans on the probe
+  EXPECT_EQ(script.ask(Verb::done).done(), "refuse");
+  EXPECT_THAT(script.why(Do::refuse), HasSubstr("the trigger is closed"));
+  EXPECT_EQ(script.s.state, ServiceState::awaiting_person);
+  script.on(What::opened);
+  EXPECT_EQ(script.ask(Verb::done).done(), "grant, go_home");
+
+  touch_then(script, 2, false);
+  script.on(What::closed);
+  EXPECT_EQ(script.ask(Verb::done).done(), "grant, analyse") << "nothing moves";
+}
+
+TEST(CauseTransition, LeavesAContactOfAnEarlierLifeBeforeItAsksForThePayload) {
+  Script script = script_at(ServiceState::diagnosing);
+  script.on(What::closed);
+  Event planned;
+  planned.what = What::planned;
+  planned.kind = SessionKind::cause;
+  planned.steps = 3;
+  planned.via_home = false;  // it stands in the touch that comes next
+  planned.load_unknown = true;
+  EXPECT_EQ(script.on(planned).done(), "back_off");
+  script.on(What::opened);
+  EXPECT_EQ(script.on(What::moved).done(), "tell");
+  EXPECT_EQ(script.s.state, ServiceState::awaiting_person);
+}
+
 TEST(CauseTransition, AsksForThePayloadAgainWhereAnEarlierLifeMayHaveChangedIt) {
   for (const bool loaded : {false, true}) {
     Script script = script_at(ServiceState::diagnosing);

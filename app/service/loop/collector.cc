@@ -83,10 +83,8 @@ void Collector::announce_plan() {
   event.lock = lock_of(event.step);
   event.loaded = is_loaded(event.step);
   event.load_unknown = std::exchange(recalled_, false) && touched_loaded();
-  if (!front_end_.encoders_alive(c_.now) || front_end_.at_rest() != true)
-    return c_.put(Event::What::planned, false, "the robot does not stand still, or is silent");
-  if (const std::string strangers = two_senders(); !strangers.empty())
-    return c_.put(Event::What::planned, false, strangers);
+  if (std::string why = unfit(); !why.empty())
+    return c_.put(Event::What::planned, false, std::move(why));
   const auto here = front_end_.q();
   if (here) reached_.assign(here->begin(), here->end());
   if (here && event.step < event.steps) {
@@ -100,15 +98,14 @@ void Collector::announce_plan() {
     const bool in_it = !event.release && off_path(*c_.models.active(), *here, step) < kNearPath;
     if (in_it) {
       event.via_home = false;
+      if (front_end_.closed() == true) reached_ = step.start;
     } else if (!event.release && last && off_path(*c_.models.active(), *here, *last) < kNearPath) {
       // The last touch was stored, and the robot is not out of it yet.
       event.back_off = true;
       reached_ = last->start;
-    } else if (!path_is_free(*c_.models.active(), values(*c_.models.active()), *here,
-                             c_.config.plan.home, c_.config.obstacles, 0, -1,
-                             c_.config.plan.fence)) {
+    } else if (is_shut_in(*here)) {
       event.ok = false;
-      event.why = "no free way home from where the robot stands: move it there by hand";
+      event.why = kShutIn;
     }
   }
   c_.put(std::move(event));

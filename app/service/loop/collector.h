@@ -24,6 +24,9 @@ class Collector {
   void check_stop();
   /// The topic that somebody beside the robot writes; empty when there is none.
   std::string two_senders() const;
+  /// Why the robot must not go on from where a person who has changed its payload has left it;
+  /// empty when it may, or has nowhere to go.
+  std::string unfit_to_go_on() const;
   /// That another service of this robot is in the DDS domain, where both would move it; empty when
   /// none is.
   std::string rivals() const;
@@ -69,7 +72,14 @@ class Collector {
   double seconds_each() const;
 
  private:
+  static constexpr const char* kShutIn =
+      "no free way home from where the robot stands: move it there by hand";
+
   std::string beyond_limits() const;
+  /// Why the robot must not be moved now, wherever it stands; empty when it may.
+  std::string unfit() const;
+  /// No free way leads home.
+  bool is_shut_in(const Eigen::VectorXd& here) const;
   void move(MoveKind kind, const std::vector<double>& q, double speed);
   double touch_speed(const StepRecord& step) const;
   std::string label() const;

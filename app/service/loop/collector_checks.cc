@@ -42,6 +42,27 @@ std::string Collector::two_senders() const {
          ": are they of two robots, or does somebody pretend to be this one?";
 }
 
+std::string Collector::unfit() const {
+  if (!front_end_.encoders_alive(c_.now) || front_end_.at_rest() != true)
+    return "the robot does not stand still, or is silent";
+  return two_senders();
+}
+
+bool Collector::is_shut_in(const Eigen::VectorXd& here) const {
+  const Robot& robot = *c_.models.active();
+  return !path_is_free(robot, values(robot), here, c_.config.plan.home, c_.config.obstacles, 0, -1,
+                       c_.config.plan.fence);
+}
+
+std::string Collector::unfit_to_go_on() const {
+  const ExtendedState& s = c_.extended_state;
+  if (s.state != ServiceState::awaiting_person || s.step >= s.steps) return {};
+  if (std::string why = unfit(); !why.empty()) return why;
+  if (!front_end_.closed())
+    return because("the trigger's level is not known", front_end_.trigger().trouble);
+  return is_shut_in(*front_end_.q()) ? kShutIn : "";
+}
+
 std::string Collector::rivals() const {
   if (c_.messenger.rivals() == 0) return {};
   return "another service of robot " + c_.config.id +

@@ -31,6 +31,9 @@ void Service::handle_command(const CommandMessage& command) {
     return refuse(command,
                   "a cause is looked for in what a full session of this robot and configuration "
                   "leaves, and there is none: start one");
+  if (*verb == Verb::done)
+    if (const std::string unfit = collector_.unfit_to_go_on(); !unfit.empty())
+      return refuse(command, unfit);
   // What came in before the command is handled first, so that it meets the state as it is.
   handle_events();
   command_ = command;

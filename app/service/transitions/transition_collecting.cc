@@ -28,7 +28,9 @@ void TransitionStep::planned() {
   s_.next_via_home = event_.via_home;
   s_.next_way = event_.way;
   if (event_.release) return release();
-  if (!event_.back_off) return go_on_loaded();
+  // Nobody changes the payload of a robot that stands in a contact.
+  const bool touching = s_.closed && s_.step < s_.steps && s_.loaded != s_.next_loaded;
+  if (!event_.back_off && !touching) return go_on_loaded();
   s_.attempt = s_.failures = 0;
   s_.stray = true;
   back_off();

@@ -49,10 +49,12 @@ void TransitionStep::commanded_to_start(SessionKind kind) {
 void TransitionStep::told_done() {
   if (s_.state != ServiceState::awaiting_person)
     return refuse("nothing is waited for that a person does");
+  if (s_.closed && s_.step < s_.steps)
+    return refuse("the trigger is closed: open it first, then say done again");
   grant();
   s_.loaded = s_.next_loaded;
   enter(ServiceState::collecting, "goes on after the payload was changed");
-  s_.next_via_home = !s_.closed;  // out of a contact that an earlier life has left, first
+  s_.next_via_home = true;  // wherever it was moved meanwhile
   go_on_loaded();
 }
 

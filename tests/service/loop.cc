@@ -1,0 +1,165 @@
+// The loop around a robot of the test's, whose time passes in the service's turns: what begins by
+// itself while the robot is at other work, and what is left of a session that did not begin.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "app/service/loop/service.h"
+#include "tests/io/store_records.h"
+#include "tests/service/cell.h"
+#include "tests/support/domain.h"
+
+namespace selfcal {
+namespace {
+
+using testing::HasSubstr;
+
+/// Stands at home or swings about it, and does nothing that it is asked.
+struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
+  Nanoseconds now() override { return time; }
+  std::int64_t unix_ms() override { return 1'790'000'000'000 + time / kMillisecond; }
+  /// A fifth of a millisecond is twenty: what is planned meanwhile takes its time.
+  void wait(Nanoseconds) override {
+    usleep(200);
+    time += 20 * kMillisecond;
+  }
+  const std::vector<EncoderScale>& scales() const override { return counts; }
+  Result<void> take(std::vector<EncoderSample>& out) override {
+    EncoderSample sample{.time = time, .joints = 6};
+    for (int j = 0; j < 6; ++j) sample.counts[j] = std::llround(home[j] / counts[j].step);
+    if (working) sample.counts[0] += (++swing % 100) * 1000;
+    out.push_back(sample);
+    return {};
+  }
+  std::uint64_t dropped() const override { return 0; }
+  std::optional<bool> closed() override { return touching; }
+  Result<void> take(std::vector<Edge>&) override { return {}; }
+  Result<void> request(const MotionRequest& request) override {
+    asked.push_back(request.kind);
+    return {};
+  }
+  Result<void> stop(const std::string&) override { return {}; }
+  Result<void> take(std::vector<MotionReply>&) override { return {}; }
+  int senders() const override { return 1; }
+  std::uint64_t strange() const override { return 0; }
+
+  Nanoseconds time = 1000 * kSecond;
+  std::vector<EncoderScale> counts{6, EncoderScale{1e-6, 0}};
+  double home[6] = {0, -0.6, 0.9, 0, 1.2, 0};
+  bool working = false, touching = false;
+  int swing = 0;
+  std::vector<MoveKind> asked;
+};
+
+/// Commands as the test says them.
+struct Person final : Messenger {
+  void publish(const StatusMessage&) override {}
+  void publish(const ProgressMessage&) override {}
+  void publish(const ResultMessage&) override {}
+  void publish(const std::vector<HealthMessage>&, const std::string&) override {}
+  void reply(const CommandReplyMessage& reply) override { replies.push_back(reply); }
+  void take(std::vector<CommandMessage>& out) override {
+    out.insert(out.end(), said.begin(), said.end());
+    said.clear();
+  }
+  std::uint64_t refused() const override { return 0; }
+  std::uint64_t unsent() const override { return 0; }
+  void say(const std::string& verb) {
+    said.push_back({.id = verb, .verb = verb, .from = "a test"});
+  }
+
+  std::vector<CommandMessage> said;
+  std::vector<CommandReplyMessage> replies;
+};
+
+class Loop : public testing::Test {
+ protected:
+  Config config(const CellKeys& more = {}) const {
+    CellKeys keys{{"state", scratch.folder().string()},
+                  {"sets.touches", "8"},
+                  {"limits.planning", "3600"},
+                  {"commands.over", "loopback"},
+                  {"commands.allow", "[start, done, abort]"}};
+    for (const auto& [key, value] : more) keys[key] = value;
+    return must(load_cell(keys));
+  }
+  /// The service begins, or begins anew.
+  void start(Config config) {
+    service.reset();
+    journal.reset();
+    store = opened(scratch.folder());
+    journal = std::make_unique<Journal>(opened(scratch.folder()));
+    Models models = must(Models::load(config.robot, *store));
+    service.emplace(std::move(config), Ports{&robot, &robot, &robot, &robot}, person, *store,
+                    *journal, std::move(models), "");
+  }
+  const ExtendedState& state() const { return service->extended_state(); }
+  bool turning(const std::function<bool()>& holds) {
+    for (const Nanoseconds end = robot.time + 3600 * kSecond; robot.time < end; service->turn())
+      if (holds()) return true;
+    ADD_FAILURE() << to_string(state().state) << ": " << state().why;
+    return false;
+  }
+  bool comes_to(ServiceState wanted) {
+    return turning([&] { return state().state == wanted; });
+  }
+  void turn_for(Nanoseconds time) {
+    for (const Nanoseconds end = robot.time + time; robot.time < end;) service->turn();
+  }
+
+  const Scratch scratch;
+  BusyRobot robot;
+  Person person;
+  std::unique_ptr<Store> store;
+  std::unique_ptr<Journal> journal;
+  std::optional<Service> service;
+};
+
+/// A session that an earlier life has left before a touch with the payload.
+void leave_loaded_session(Store& store, const Config& config,
+                          const std::vector<EncoderScale>& scales) {
+  SessionRecord record;
+  record.kind = "cause";
+  record.model_hash = model_hash(*config.robot);
+  record.config = decoding_text(config, scales);
+  record.config_hash = config_hash(config, scales);
+  StepRecord step;
+  step.set = "table";
+  step.loaded = true;
+  step.start = step.touch = step.end = {0.3, -0.6, 0.9, 0, 1.2, 0};
+  must(store.begin(record, {step}));
+}
+
+TEST_F(Loop, GoesOnFromAPersonOnlyWhereTheWayHomeIsOpen) {
+  const Config cell = config({{"motion.keep_out", "[{point: [-0.3, 0, 0], normal: [1, 0, 0]}]"}});
+  leave_loaded_session(*opened(scratch.folder()), cell, robot.counts);
+  start(cell);
+  ASSERT_TRUE(comes_to(ServiceState::awaiting_person));
+  const auto answer = [&] {
+    person.replies.clear();
+    person.say("done");
+    turn_for(kSecond / 10);
+    return person.replies.size() == 1 ? person.replies.front().why : "no answer";
+  };
+
+  robot.working = true;
+  turn_for(kSecond);
+  EXPECT_THAT(answer(), HasSubstr("does not stand still"));
+  robot.working = false;
+  robot.touching = true;
+  turn_for(kSecond);
+  EXPECT_THAT(answer(), HasSubstr("the trigger is closed"));
+  robot.touching = false;
+  robot.home[0] += 1.2;  // beyond that
+  turn_for(kSecond);
+  EXPECT_THAT(answer(), HasSubstr("no free way home"));
+  EXPECT_EQ(state().state, ServiceState::awaiting_person);
+  EXPECT_TRUE(robot.asked.empty());
+
+  robot.home[0] -= 1.2;
+  turn_for(kSecond);
+  EXPECT_EQ(answer(), "done");
+  EXPECT_EQ(robot.asked, std::vector{MoveKind::travel});
+}
+
+}  // namespace
+}  // namespace selfcal
