@@ -49,12 +49,28 @@ Result<void> add_blob(sqlite3* database, const Verified& table, std::int64_t ses
   return put_checksum(database, table, session);
 }
 
+/// One session at a time: what another begins beside has been given up.
+Result<void> end_unfinished(sqlite3* database, std::int64_t unix_ms) {
+  const auto others =
+      sqlite::all(sqlite::Statement::prepare(database,
+                                             "SELECT id FROM session WHERE state IN (0, 1)"
+                                             " AND " SELFCAL_DAMAGED_SESSION " IS NULL"),
+                  [](const sqlite::Statement& row) { return row.integer(0); });
+  if (!others) return tl::unexpected(others.error());
+  for (const std::int64_t id : *others)
+    if (auto set = set_session_state(database, id, SessionState::aborted, unix_ms); !set)
+      return set;
+  return {};
+}
+
 }  // namespace
 
 Result<std::int64_t> Store::begin(const SessionRecord& session,
                                   const std::vector<StepRecord>& plan) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
+  if (auto ended = end_unfinished(database_, session.started_ms); !ended)
+    return tl::unexpected(ended.error());
   Result<std::int64_t> id = add_session(database_, session, plan.size());
   if (!id) return id;
   if (auto added = add_blob(database_, kPlans, *id, pack_labels(plan)); !added) {

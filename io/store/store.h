@@ -133,7 +133,8 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// Begins a session with its whole plan; `session.id` and `.steps` are ignored. Returns the id.
+  /// Begins a session with its whole plan; `session.id` and `.steps` are ignored. Those that are
+  /// unfinished are aborted with it. Returns the id.
   Result<std::int64_t> begin(const SessionRecord& session, const std::vector<StepRecord>& plan);
   /// Appends steps to the plan of a session that has not ended, which is collecting then. The
   /// session has all of its steps with their readings.

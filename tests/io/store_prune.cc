@@ -105,6 +105,7 @@ TEST_F(StorePrune, NeverForgetsTheNewestTheResumableTheActiveOrAnyFigure) {
   const std::int64_t resumable = store->begin(some_session(), some_plan(10, 6)).value();
   ASSERT_TRUE(store->add(resumable, some_touch(0, 6)).has_value());
   const std::int64_t newest = whole_session(*store, 10);
+  ASSERT_TRUE(store->set_state(resumable, SessionState::collected, 0).has_value());
   ASSERT_TRUE(store->prune(0).has_value());
   store = opened(scratch.folder());
 

@@ -161,5 +161,26 @@ TEST_F(Loop, GoesOnFromAPersonOnlyWhereTheWayHomeIsOpen) {
   EXPECT_EQ(robot.asked, std::vector{MoveKind::travel});
 }
 
+TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {
+  start(config());
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  person.say("start");
+  ASSERT_TRUE(comes_to(ServiceState::planning));
+  robot.working = true;
+  ASSERT_TRUE(comes_to(ServiceState::fault));
+  EXPECT_THAT(state().why, HasSubstr("does not stand still"));
+  EXPECT_TRUE(state().unfinished);
+  robot.working = false;
+  person.say("abort");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  EXPECT_EQ(must(store->session(1)).state, SessionState::aborted);
+
+  start(config());
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  EXPECT_FALSE(state().unfinished);
+  turn_for(kSecond);
+  EXPECT_TRUE(robot.asked.empty());
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -55,6 +55,20 @@ TEST(Transition, KeepsAnUnfinishedSessionWhenPlanningItsResumptionFails) {
   EXPECT_TRUE(script.s.unfinished);
 }
 
+TEST(Transition, KnowsASessionThatIsInTheStoreThoughItDoesNotBegin) {
+  for (const ServiceState state : {ServiceState::planning, ServiceState::diagnosing}) {
+    Script script = script_at(state);
+    Event planned;
+    planned.what = What::planned;
+    planned.ok = false;
+    planned.session = 9;
+    planned.why = "the robot does not stand still";
+    expect_fault(script.on(planned), "the robot does not stand still");
+    EXPECT_EQ(script.s.session, 9);
+    EXPECT_TRUE(script.s.unfinished) << "a person resumes or aborts it";
+  }
+}
+
 TEST(Transition, NamesATriggerThatStaysClosedAfterTheRetract) {
   Script script = script_at(ServiceState::collecting, Phase::retract);
   script.on(What::moved).after(script.limits.retract + kSecond);

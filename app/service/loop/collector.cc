@@ -32,9 +32,9 @@ Collector::Collector(ServiceContext& context)
 
 void Collector::open(Session session) {
   auto decoding = read_decoding(session.record.config);
-  if (!decoding) return c_.put(Event::What::planned, false, decoding.error().what);
-  decoding_ = std::move(*decoding);
   session_ = std::move(session);
+  if (!decoding) return refuse_plan(decoding.error().what);
+  decoding_ = std::move(*decoding);
   collecting_since_ = c_.now;
   touches_this_run_ = 0;
   announce_plan();
@@ -72,6 +72,15 @@ double Collector::seconds_each() const {
                                : std::nan("");
 }
 
+void Collector::refuse_plan(const std::string& why) {
+  Event event;
+  event.what = Event::What::planned;
+  event.ok = false;
+  event.why = why;
+  event.session = session_.record.id;
+  c_.put(std::move(event));
+}
+
 void Collector::announce_plan() {
   Event event;
   event.what = Event::What::planned;
@@ -83,8 +92,7 @@ void Collector::announce_plan() {
   event.lock = lock_of(event.step);
   event.loaded = is_loaded(event.step);
   event.load_unknown = std::exchange(recalled_, false) && touched_loaded();
-  if (std::string why = unfit(); !why.empty())
-    return c_.put(Event::What::planned, false, std::move(why));
+  if (const std::string why = unfit(); !why.empty()) return refuse_plan(why);
   const auto here = front_end_.q();
   if (here) reached_.assign(here->begin(), here->end());
   if (here && event.step < event.steps) {

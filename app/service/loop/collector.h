@@ -84,6 +84,8 @@ class Collector {
   double touch_speed(const StepRecord& step) const;
   std::string label() const;
   void announce_plan();
+  /// Of a session that is in the store.
+  void refuse_plan(const std::string& why);
   void tell_way(int step, Event& event) const;
   bool is_loaded(int step) const;
   /// The plan has touches with the payload, so that it may be on the tool.

@@ -79,7 +79,8 @@ struct Event {
     self_tested,  ///< ok or not, `why`; `resume` when a session shall go on by itself
     commanded,    ///< `verb`
     due,          ///< `kind`, `why`
-    planned,      ///< `session`, `steps`, `step` to begin with, or further steps of it
+    planned,      ///< `session`, `steps`, `step` to begin with, or further steps of it; or not ok,
+                  ///< with a `session` that is in the store by then
     moved,        ///< the last motion has ended as asked
     refused,      ///< the last motion was refused or stopped by others, `why`
     closed,       ///< the trigger closed, debounced

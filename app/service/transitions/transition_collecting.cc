@@ -7,6 +7,10 @@ namespace selfcal {
 
 void TransitionStep::planned() {
   if (s_.state != ServiceState::planning && s_.state != ServiceState::diagnosing) return;
+  if (event_.session > 0) {
+    s_.stored = true;
+    s_.session = event_.session;
+  }
   if (!event_.ok) return fault(event_.why);
   s_.stored = true;
   s_.wanted.reset();
