@@ -182,5 +182,28 @@ TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {
   EXPECT_TRUE(robot.asked.empty());
 }
 
+TEST_F(Loop, BeginsNothingByItselfWhileTheRobotIsAtOtherWork) {
+  start(config({{"schedule.every_hours", "0.001"}}));
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  robot.working = true;
+  turn_for(20 * kSecond);
+  EXPECT_EQ(state().state, ServiceState::idle) << state().why;
+
+  robot.working = false;
+  turn_for(4 * kSecond);
+  EXPECT_EQ(state().state, ServiceState::idle);
+  ASSERT_TRUE(comes_to(ServiceState::planning));
+  robot.working = true;
+  ASSERT_TRUE(comes_to(ServiceState::idle)) << "once the touches are planned";
+  EXPECT_FALSE(state().held);
+  turn_for(20 * kSecond);
+  EXPECT_EQ(state().state, ServiceState::idle) << state().why;
+  EXPECT_TRUE(robot.asked.empty());
+
+  robot.working = false;
+  ASSERT_TRUE(comes_to(ServiceState::collecting));
+  EXPECT_EQ(state().session, 1) << "the one that was planned";
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -69,6 +69,30 @@ TEST(Transition, KnowsASessionThatIsInTheStoreThoughItDoesNotBegin) {
   }
 }
 
+TEST(Transition, PostponesWhatNobodyAskedForUntilTheRobotStands) {
+  Event due, planned;
+  due.what = What::due;
+  due.why = "every night";
+  planned.what = What::planned;
+  planned.ok = false;
+  planned.later = true;
+  planned.session = 9;
+  planned.why = "the robot does not stand still";
+  Script script = script_at(ServiceState::idle);
+  script.on(due).on(planned);
+  EXPECT_EQ(script.s.state, ServiceState::idle);
+  EXPECT_TRUE(script.s.postponed);
+  EXPECT_FALSE(script.s.held);
+  EXPECT_EQ(script.on(due).done(), "tell, resume");
+  EXPECT_FALSE(script.s.postponed);
+
+  Script commanded = script_at(ServiceState::idle);
+  expect_fault(commanded.ask(Verb::start).on(planned), "the robot does not stand still");
+  planned.later = false;
+  planned.why = "no free way home";
+  expect_fault(script.on(planned), "no free way home");
+}
+
 TEST(Transition, NamesATriggerThatStaysClosedAfterTheRetract) {
   Script script = script_at(ServiceState::collecting, Phase::retract);
   script.on(What::moved).after(script.limits.retract + kSecond);

@@ -72,11 +72,12 @@ double Collector::seconds_each() const {
                                : std::nan("");
 }
 
-void Collector::refuse_plan(const std::string& why) {
+void Collector::refuse_plan(const std::string& why, bool later) {
   Event event;
   event.what = Event::What::planned;
   event.ok = false;
   event.why = why;
+  event.later = later;
   event.session = session_.record.id;
   c_.put(std::move(event));
 }
@@ -92,7 +93,7 @@ void Collector::announce_plan() {
   event.lock = lock_of(event.step);
   event.loaded = is_loaded(event.step);
   event.load_unknown = std::exchange(recalled_, false) && touched_loaded();
-  if (const std::string why = unfit(); !why.empty()) return refuse_plan(why);
+  if (const std::string why = unfit(); !why.empty()) return refuse_plan(why, !stands());
   const auto here = front_end_.q();
   if (here) reached_.assign(here->begin(), here->end());
   if (here && event.step < event.steps) {

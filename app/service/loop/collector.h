@@ -27,6 +27,8 @@ class Collector {
   /// Why the robot must not go on from where a person who has changed its payload has left it;
   /// empty when it may, or has nowhere to go.
   std::string unfit_to_go_on() const;
+  /// The joints are heard and stand.
+  bool stands() const { return front_end_.encoders_alive(c_.now) && front_end_.at_rest() == true; }
   /// That another service of this robot is in the DDS domain, where both would move it; empty when
   /// none is.
   std::string rivals() const;
@@ -85,7 +87,7 @@ class Collector {
   std::string label() const;
   void announce_plan();
   /// Of a session that is in the store.
-  void refuse_plan(const std::string& why);
+  void refuse_plan(const std::string& why, bool later = false);
   void tell_way(int step, Event& event) const;
   bool is_loaded(int step) const;
   /// The plan has touches with the payload, so that it may be on the tool.

@@ -43,9 +43,7 @@ std::string Collector::two_senders() const {
 }
 
 std::string Collector::unfit() const {
-  if (!front_end_.encoders_alive(c_.now) || front_end_.at_rest() != true)
-    return "the robot does not stand still, or is silent";
-  return two_senders();
+  return stands() ? two_senders() : "the robot does not stand still, or is silent";
 }
 
 bool Collector::is_shut_in(const Eigen::VectorXd& here) const {

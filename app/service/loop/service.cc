@@ -7,6 +7,7 @@ namespace selfcal {
 namespace {
 
 constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
+constexpr Nanoseconds kStands = 5 * kSecond;          // before a session begins by itself
 constexpr Nanoseconds kRemember = 60 * kSecond;       // between two savings of the hours of motion
 
 }  // namespace
@@ -17,7 +18,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
       collector_(c_),
       analyst_(c_, collector_),
       reporter_(c_, collector_, analyst_, damaged) {
-  c_.now = test_began_ = last_turn_ = began_ = c_.ports.clock->now();
+  c_.now = test_began_ = last_turn_ = began_ = moved_ = c_.ports.clock->now();
   c_.extended_state.since = c_.now;
   c_.extended_state.why = "testing encoders, trigger and store";
   testing_ = true;
@@ -42,6 +43,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
 void Service::turn() {
   c_.now = c_.ports.clock->now();
   collector_.listen();
+  if (!collector_.stands()) moved_ = c_.now;
   if (collector_.front_end().moving()) c_.use.motion_hours += seconds(c_.now - last_turn_) / 3600;
   handle_commands();
   check_rivals();
@@ -118,10 +120,13 @@ void Service::check_self() {
   c_.put(std::move(event));
 }
 
+/// The robot may be at other work, which nothing that begins by itself disturbs.
 void Service::check_schedule() {
-  if (c_.extended_state.state != ServiceState::idle || !c_.config.schedule.any()) return;
+  if (c_.extended_state.state != ServiceState::idle || c_.now - moved_ < kStands) return;
   if (c_.now - last_due_ < kSecond) return;
   last_due_ = c_.now;
+  if (c_.extended_state.postponed) return put_due({c_.extended_state.kind, "the robot stands"});
+  if (!c_.config.schedule.any()) return;
   const std::int64_t unix_ms = c_.unix_ms();
   Since& last = c_.use.since;
   // Before the first session, and after the clock was set back, the interval begins now.
@@ -131,11 +136,14 @@ void Service::check_schedule() {
   since.calibrated = analyst_.can_check();
   const auto next = due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(),
                         utc_offset(unix_ms));
-  if (!next) return;
+  if (next) put_due(*next);
+}
+
+void Service::put_due(const Due& next) {
   Event event;
   event.what = Event::What::due;
-  event.kind = next->kind;
-  event.why = next->why;
+  event.kind = next.kind;
+  event.why = next.why;
   c_.put(std::move(event));
 }
 

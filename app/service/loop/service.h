@@ -34,6 +34,7 @@ class Service {
   void begin_test();
   void check_self();
   void check_schedule();
+  void put_due(const Due& next);
   void remember();
   void recall();
 
@@ -65,6 +66,7 @@ class Service {
   Nanoseconds began_ = 0;  ///< this life of the service
   Nanoseconds test_began_ = 0;
   bool testing_ = false;
+  Nanoseconds moved_ = 0;  ///< when the robot was last seen not to stand
   Nanoseconds last_turn_ = 0, last_remembered_ = 0, last_due_ = 0;
 
   /// Commands that were refused, which are told once a second and not one by one.

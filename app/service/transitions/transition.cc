@@ -56,6 +56,7 @@ void TransitionStep::handle() {
 void TransitionStep::enter(ServiceState state, std::string why) {
   s_.state = state;
   s_.phase = Phase::none;
+  s_.postponed = false;
   s_.since = event_.now;
   s_.why = std::move(why);
 }

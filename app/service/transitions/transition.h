@@ -64,6 +64,8 @@ struct ExtendedState {
   bool closed = false;      ///< the trigger's debounced level
   bool candidate = false;   ///< a result waits for a person
   bool unfinished = false;  ///< a session can be resumed by `start`
+  bool by_itself = false;   ///< nobody has asked for the session in progress
+  bool postponed = false;   ///< idle: the unfinished one goes on once the robot stands
   bool stored = false;      ///< the session in progress is in the store
   /// Granted or due, and not in the store yet: a restart begins it.
   std::optional<SessionKind> wanted;
@@ -109,6 +111,7 @@ struct Event {
   bool loaded = false;    ///< as well
   bool load_unknown =
       false;             ///< of `planned`: an earlier life may have left the payload on the tool
+  bool later = false;    ///< of `planned` that is not ok: it may be, once the robot stands
   bool release = false;  ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
   bool cause = false;  ///< of `decided`: more than noise is left

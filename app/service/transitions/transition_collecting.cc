@@ -11,7 +11,7 @@ void TransitionStep::planned() {
     s_.stored = true;
     s_.session = event_.session;
   }
-  if (!event_.ok) return fault(event_.why);
+  if (!event_.ok) return event_.later && s_.by_itself ? postpone() : fault(event_.why);
   s_.stored = true;
   s_.wanted.reset();
   s_.session = event_.session;

@@ -40,7 +40,7 @@ void TransitionStep::commanded_to_start(SessionKind kind) {
   if (s_.state != ServiceState::idle) return refuse_in_this_state();
   if (kind != SessionKind::full && s_.unfinished)
     return refuse("an unfinished session waits: start or abort it first");
-  s_.held = false;
+  s_.held = s_.by_itself = false;
   grant();
   if (s_.unfinished) return resume("resumed by command");
   begin(kind, "by command");

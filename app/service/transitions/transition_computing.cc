@@ -79,8 +79,10 @@ void TransitionStep::publish() {
 void TransitionStep::published() {
   if (s_.state != ServiceState::publishing) return;
   ++s_.published;
-  if (const auto next = std::exchange(s_.follow_up, std::nullopt))
+  if (const auto next = std::exchange(s_.follow_up, std::nullopt)) {
+    s_.by_itself = true;
     return begin(*next, std::exchange(s_.follow_up_why, {}));
+  }
   go_idle(s_.why);
 }
 

@@ -12,6 +12,7 @@ void TransitionStep::self_tested() {
   if (s_.state != ServiceState::self_test) return;
   if (!event_.ok) return fault("self-test: " + event_.why);
   const bool goes_on = event_.resume && !s_.held;
+  s_.by_itself = true;
   if (goes_on && s_.unfinished) return resume("resumed after a restart");
   s_.tested = true;
   if (goes_on && s_.wanted) {
@@ -38,6 +39,7 @@ void TransitionStep::go_idle(std::string why) {
 
 void TransitionStep::due() {
   if (s_.state != ServiceState::idle || s_.held) return;
+  s_.by_itself = true;
   if (s_.unfinished) return resume("due: " + event_.why);
   begin(event_.kind, event_.why);
 }
@@ -56,6 +58,15 @@ void TransitionStep::resume(const std::string& why) {
   s_.tested = true;
   act(Do::tell, why);
   act(Do::resume);
+}
+
+/// Nobody waits for it: the robot ends its work first.
+void TransitionStep::postpone() {
+  s_.unfinished = s_.unfinished || s_.stored;
+  s_.wanted.reset();
+  act(Do::tell, "postponed: " + event_.why);
+  go_idle("postponed until the robot stands: " + event_.why);
+  s_.postponed = s_.unfinished;
 }
 
 bool TransitionStep::in_session() const {

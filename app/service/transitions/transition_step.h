@@ -43,6 +43,7 @@ class TransitionStep {
   void due();
   void begin(SessionKind kind, const std::string& why);
   void resume(const std::string& why);
+  void postpone();
   bool in_session() const;  ///< planning up to judging: what an abort can end
 
   // transition_commands.cc
