@@ -25,6 +25,7 @@ struct DdsContext;
 struct PortContext {
   const DdsContext& dds;
   Wakeup& wakeup;
+  Nanoseconds silence = kSecond / 2;  ///< of what repeats itself, after which it counts as lost
 };
 
 /// What a robot's end of a transport is opened with.

@@ -77,7 +77,7 @@ struct RobotPorts {
     const DdsContext dds{participant};
     auto encoders = config.encoders->open({dds, wakeup});
     if (!encoders) return tl::unexpected(encoders.error());
-    auto trigger = config.trigger->open({dds, trigger_wakeup});
+    auto trigger = config.trigger->open({dds, trigger_wakeup, nanoseconds(config.silence)});
     if (!trigger) return tl::unexpected(trigger.error());
     auto motion = DdsMotion::open(participant, config.id, wakeup);
     if (!motion) return tl::unexpected(motion.error());

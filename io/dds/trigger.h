@@ -13,6 +13,7 @@ namespace selfcal {
 
 struct DdsTriggerConfig {
   std::string topic = "touch_trigger";  ///< name in ROS
+  Nanoseconds silence = kSecond / 2;    ///< of a publisher that repeats its level; then it has hung
 };
 
 class DdsTrigger : public TouchTrigger {
@@ -26,23 +27,34 @@ class DdsTrigger : public TouchTrigger {
                                                   std::shared_ptr<TimeMapping> mapping,
                                                   Wakeup& wakeup);
 
-  /// Nothing before the first message and while no publisher is there.
+  /// Nothing before the first message, while no publisher is there, and while one that has repeated
+  /// its level is silent. Of one that tells of changes alone nobody knows whether it has hung.
   std::optional<bool> closed() override;
   Result<void> take(std::vector<Edge>& out) override;
   std::uint64_t dropped() const override { return reader_.lost() + overflowed_; }
   int senders() const override { return reader_.matched(); }
   std::uint64_t strange() const override { return writer_.strange(); }
+  std::string trouble() const override;
 
  private:
-  DdsTrigger(std::shared_ptr<TimeMapping> mapping, DdsReader<dds::StampedBool> reader)
-      : mapping_(std::move(mapping)), reader_(std::move(reader)) {}
+  DdsTrigger(std::shared_ptr<TimeMapping> mapping, DdsReader<dds::StampedBool> reader,
+             Nanoseconds silence)
+      : mapping_(std::move(mapping)), reader_(std::move(reader)), silence_(silence) {}
   Result<void> receive();
+  void note_level(bool closed, dds_instance_handle_t publisher);
+  bool has_ceased() const;
 
   std::shared_ptr<TimeMapping> mapping_;
   DdsReader<dds::StampedBool> reader_;
   SoleWriter writer_;
+  Nanoseconds silence_;
   std::optional<bool> level_;
-  std::deque<Edge> waiting_;  ///< not taken yet, with the sender's stamps
+  dds_instance_handle_t publisher_ = 0;  ///< who told the last level
+  Nanoseconds heard_ = 0;                ///< our time of it
+  Nanoseconds same_since_ = 0;           ///< of the first of the same ones before it without a gap
+  Nanoseconds longest_ = 0;              ///< of the gaps between the same ones
+  bool repeats_ = false;                 ///< the publisher has repeated its level for `silence`
+  std::deque<Edge> waiting_;             ///< not taken yet, with the sender's stamps
   std::uint64_t overflowed_ = 0;
 };
 

@@ -19,7 +19,9 @@ class DdsTriggerKind final : public TriggerKind {
   StampedBy stamped_by() const override { return StampedBy::sender; }
   std::string source() const override { return "topic " + config_.topic; }
   Result<std::unique_ptr<TouchTrigger>> open(const PortContext& context) const override {
-    return DdsTrigger::open(context.dds.participant, config_, context.dds.mapping, context.wakeup);
+    DdsTriggerConfig config = config_;
+    config.silence = context.silence;
+    return DdsTrigger::open(context.dds.participant, config, context.dds.mapping, context.wakeup);
   }
   Result<std::unique_ptr<TriggerSender>> open_sender(const RobotContext& context) const override {
     return DdsTriggerSender::open(context.dds.participant, config_.topic, context.wakeup);

@@ -101,6 +101,46 @@ TEST_F(DdsMachine, BoundsTheEdgesThatWait) {
   EXPECT_EQ(trigger->dropped(), 399 - TouchTrigger::kMostEdges);
 }
 
+/// A trigger that misses what has been repeated soon.
+class DdsTriggerSilence : public DdsMachine {
+ protected:
+  static constexpr Nanoseconds kSilence = 50 * kMillisecond;
+  DdsTriggerSilence() {
+    trigger = must(DdsTrigger::open(participant, {.silence = kSilence}, mapping, wakeup));
+  }
+  /// For much longer than that.
+  void meanwhile(const std::function<void()>& act) {
+    const Nanoseconds end = monotonic_now() + 10 * kSilence;
+    EXPECT_TRUE(eventually([&] {
+      act();
+      (void)trigger->closed();
+      return monotonic_now() > end;
+    }));
+  }
+};
+
+TEST_F(DdsTriggerSilence, MakesTheLevelOfWhoHasRepeatedItUnknown) {
+  meanwhile([&] { must(contact->send(1000, false)); });
+  EXPECT_EQ(trigger->closed(), false);
+  EXPECT_EQ(trigger->trouble(), "");
+
+  ASSERT_TRUE(eventually([&] { return !trigger->closed(); }));
+  EXPECT_EQ(trigger->trouble(), "its level, repeated before, has not come for 0.05 s");
+
+  must(contact->send(2000, true));
+  EXPECT_EQ(trigger->closed(), true);
+  EXPECT_EQ(trigger->trouble(), "");
+}
+
+TEST_F(DdsTriggerSilence, SaysNothingOfWhoTellsOfChangesAlone) {
+  must(contact->send(1000, false));
+  meanwhile([] {});
+  EXPECT_EQ(trigger->closed(), false);
+  must(contact->send(2000, true));
+  meanwhile([] {});
+  EXPECT_EQ(trigger->closed(), true);
+}
+
 TEST_F(DdsMachine, ForgetsTheLevelOfAPublisherThatIsGone) {
   must(contact->send(1000, true));
   EXPECT_EQ(trigger->closed(), true);
