@@ -29,6 +29,20 @@ void MotionBridge::see(std::vector<double> q, Nanoseconds time) {
   seen_ = time;
 }
 
+Result<void> MotionBridge::look(EncoderSource& encoders, Nanoseconds now) {
+  samples_.clear();
+  if (auto taken = encoders.take(samples_); !taken) return taken;
+  if (samples_.empty()) return {};
+  const EncoderSample& last = samples_.back();
+  std::vector<double> q(last.joints);
+  for (int j = 0; j < last.joints; ++j) {
+    const EncoderScale& scale = encoders.scales()[j];
+    q[j] = static_cast<double>(last.counts[j] - scale.zero) * scale.step;
+  }
+  see(std::move(q), now);
+  return {};
+}
+
 Result<void> MotionBridge::refuse(const MotionRequest& request, const std::string& why) {
   return service_.reply({request.id, Outcome::refused, why});
 }

@@ -13,6 +13,7 @@
 
 #include "io/dds/robot_side.h"
 #include "io/dds/ros/trajectory_action.h"
+#include "io/ports.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
@@ -33,6 +34,9 @@ class MotionBridge {
 
   /// Where the joints are, seen at `time` (our clock).
   void see(std::vector<double> q, Nanoseconds time);
+  /// Looks at what has come: the newest sample is of now. Its own stamp is the sender's, whose
+  /// clock may step or drift.
+  Result<void> look(EncoderSource& encoders, Nanoseconds now);
   /// Hears the service and the controller, and answers both.
   Result<void> turn(Nanoseconds now);
   /// Cancels what moves: before the end.
@@ -60,6 +64,7 @@ class MotionBridge {
   const std::vector<Joint>& joints_;
   DdsRobotSide& service_;
   TrajectoryAction& action_;
+  std::vector<EncoderSample> samples_;
   std::vector<double> here_;
   Nanoseconds seen_ = 0;
   std::optional<Move> move_;

@@ -20,17 +20,6 @@ struct BridgeArguments {
   double acceleration = 1, patience = 2;
 };
 
-/// The last sample of those that have come, as readings.
-void look(EncoderSource& encoders, std::vector<EncoderSample>& samples, MotionBridge& bridge) {
-  const EncoderSample& last = samples.back();
-  std::vector<double> q(last.joints);
-  for (int j = 0; j < last.joints; ++j) {
-    const EncoderScale& scale = encoders.scales()[j];
-    q[j] = static_cast<double>(last.counts[j] - scale.zero) * scale.step;
-  }
-  bridge.see(std::move(q), last.time);
-}
-
 /// The settings of a GPIO line, as the trigger of kind gpio has them.
 Result<TriggerKindPtr> line_kind(const std::string& text, const std::string& robot) {
   const auto node = parse_yaml(text, "--touch-gpio");
@@ -81,11 +70,8 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
                        .patience = nanoseconds(arguments.patience),
                        .action = arguments.action},
                       config.robot->joints(), **service, **action);
-  std::vector<EncoderSample> samples;
   while (!told_to_stop()) {
-    samples.clear();
-    if (auto taken = (*encoders)->take(samples); !taken) return taken;
-    if (!samples.empty()) look(**encoders, samples, bridge);
+    if (auto looked = bridge.look(**encoders, monotonic_now()); !looked) return looked;
     if (touch)
       if (auto passed = touch->turn(monotonic_now()); !passed) return passed;
     if (line)

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "app/bridge/touch_relay.h"
+#include "io/dds/encoders.h"
 #include "io/dds/motion.h"
 #include "io/dds/names.h"
 #include "io/dds/senders.h"
@@ -88,6 +89,23 @@ TEST_F(Bridged, MakesAGoalOfARequestAndAReplyOfItsResult) {
 
   ASSERT_TRUE(told(Outcome::done));
   EXPECT_EQ(replies.back().id, id);
+}
+
+// Less than a step that stamps are mapped anew for, and more than a position may be old.
+TEST_F(Bridged, KnowsWhereTheJointsAreThoughTheirClockWasSetBack) {
+  joints_speak = false;
+  const auto encoders =
+      must(DdsEncoders::open(participant, {.joints = {"a", "b"}}, std::make_shared<TimeMapping>()));
+  const auto sender = must(DdsJointSender::open(participant, "joint_states", {"a", "b"}, wakeup));
+  start_controller();
+  ASSERT_TRUE(turning([&] { return sender->matched() == 1 && encoders->senders() == 1; }));
+  for (const Nanoseconds set_back : {Nanoseconds{0}, 700 * kMillisecond}) {
+    must(sender->send(realtime_now() - set_back, here));
+    must(bridge->look(*encoders, monotonic_now()));
+  }
+  ask();
+  EXPECT_TRUE(turning([&] { return !controller->goals.empty() || !replies.empty(); }));
+  EXPECT_EQ(controller->goals.size(), 1) << (replies.empty() ? "" : replies.back().why);
 }
 
 TEST_F(Bridged, CancelsTheGoalOfAStopUntilItEnds) {
