@@ -58,7 +58,7 @@ TEST(RowsOf, WeighsATouchByWhatItsReadingLeavesOpen) {
   moving.before.counts[1] = standing.before.counts[1] - 1000;
   moving.after.counts[1] = standing.after.counts[1] + 1000;
   moving.temperature = 31;
-  moving.unix_ms = standing.unix_ms + 3'600'000;  // the wall clock stepped: the edges did not
+  moving.unix_ms = standing.unix_ms + 50'000;  // the wall clock stepped: the edges did not
   session.touches = {standing, moving};
   const DataSet data = rows_of(rx90(), session, decoding_of(two_planes()));
   ASSERT_EQ(data.rows.rows(), 2);
@@ -83,6 +83,27 @@ TEST(RowsOf, TakeTheWallClockForTheTimeThatTheComputerWasOff) {
   after.unix_ms = before.unix_ms + 2500;
   session.touches = {before, after};
   EXPECT_EQ(rows_of(rx90(), session, decoding_of(two_planes())).rows.time[1], 2.5);
+}
+
+/// How far apart two touches are (s) with these edges (s) and so much between them on the wall.
+double apart(double before, double after, double wall) {
+  Session session = session_of(2);
+  session.touches = {touch_of(0), touch_of(0)};
+  for (TouchRecord& touch : session.touches) {
+    const bool first = &touch == &session.touches.front();
+    const Nanoseconds shift = nanoseconds(first ? before : after) - touch.edge;
+    for (Nanoseconds* time : {&touch.edge, &touch.before.time, &touch.after.time}) *time += shift;
+    if (!first) touch.unix_ms += std::llround(1000 * wall);
+  }
+  return rows_of(rx90(), session, decoding_of(two_planes())).rows.time[1];
+}
+
+TEST(RowsOf, NoticeThatTheComputerWasOffThoughItsClockIsPastTheEdgeBefore) {
+  EXPECT_NEAR(apart(300, 320, 36'000), 36'000, 1e-3) << "ten hours off";
+  EXPECT_NEAR(apart(300, 320, 20), 20, 1e-3);
+  EXPECT_NEAR(apart(300, 320, 70), 20, 1e-3) << "less than a minute more";
+  EXPECT_NEAR(apart(7200, 7220, 3600), 20, 1e-3) << "up for longer: the wall clock stepped";
+  EXPECT_NEAR(apart(300, 320, -3600), 20, 1e-3);
 }
 
 TEST(RowsOf, MakesNoRowsOfNoTouches) {

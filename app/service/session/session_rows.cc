@@ -11,8 +11,9 @@
 namespace selfcal {
 namespace {
 
-constexpr int kRowsForResidual = 5;  // of one set, before its surface is known at all
-constexpr double kSpeedStep = 1e-3;  // s, over which a speed is taken
+constexpr int kRowsForResidual = 5;      // of one set, before its surface is known at all
+constexpr double kSpeedStep = 1e-3;      // s, over which a speed is taken
+constexpr double kStepOfWallClock = 60;  // s, more than what keeps it right makes of it
 
 int group_index(Set& set, const std::string& name) {
   if (name.empty()) return -1;
@@ -60,10 +61,15 @@ void size_rows(Observations& rows, Eigen::Index count, Eigen::Index joints) {
 Nanoseconds moment_of(const TouchRecord& touch) { return std::max(touch.edge, touch.before.time); }
 
 /// By the edges, which no step of the wall clock moves; by that clock where the computer has
-/// started anew in between.
+/// started anew in between, and the edges count from two starts. It has for sure where they run
+/// backwards, and as good as surely where the wall clock says more than a minute more and that the
+/// last start is since the first of them.
 double seconds_between(const TouchRecord& before, const TouchRecord& after) {
-  if (moment_of(after) >= moment_of(before)) return seconds(moment_of(after) - moment_of(before));
-  return std::max(0.0, static_cast<double>(after.unix_ms - before.unix_ms) / 1000);
+  const double edges = seconds(moment_of(after) - moment_of(before));
+  const double wall = static_cast<double>(after.unix_ms - before.unix_ms) / 1000;
+  const bool anew =
+      edges < 0 || (wall - edges > kStepOfWallClock && wall > seconds(moment_of(after)));
+  return anew ? std::max(0.0, wall) : edges;
 }
 
 /// Rows of one engagement of a lock; its edge is the engagement's.
