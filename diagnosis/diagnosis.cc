@@ -125,7 +125,7 @@ class Diagnostician {
     evaluator_ = std::make_unique<EvidenceEvaluator>(
         linearised_.whitened(),
         structures(data_.rows, rows, linearised_.ends(), size_of(linearised_.geometry()),
-                   linearised_.by_joint(),
+                   linearised_.reading_errors(),
                    comparable_readings(linearised_.geometry(), data_.rows.q),
                    noise_of_visits(data_.rows, rows, linearised_.left())),
         linearised_.candidates(), linearised_.parameters(), options_.search);
@@ -221,7 +221,14 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   if (!diagnosis.problem.empty()) return diagnosis;
   if (std::string nuisance = warning_of_own_effects(*robot); !nuisance.empty())
     diagnosis.warnings.push_back(std::move(nuisance));
-  if (diagnosis.validation_rows.empty()) cross_validate(robot, data, options, progress, diagnosis);
+  const bool kept_aside = std::ranges::count(data.rows.check, char{1}) > 0;
+  if (!kept_aside) cross_validate(robot, data, options, progress, diagnosis);
+  if (diagnosis.validation_rows.empty())
+    diagnosis.gap_unjudged =
+        std::ranges::none_of(data.sets, [](const Set& set) { return set.method->has_lengths(); })
+            ? "these rows measure no lengths, of which the gap is told"
+        : kept_aside ? "no row kept aside measures a length"
+                     : "too few rows to keep some aside";
   if (std::string warning = warning_of_gap(diagnosis); !warning.empty())
     diagnosis.warnings.push_back(std::move(warning));
   return diagnosis;

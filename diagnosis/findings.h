@@ -99,6 +99,7 @@ struct Diagnosis {
   std::string problem;
   bool converged = true;  ///< the fits that the gap is taken between
   Gap gap;
+  std::string gap_unjudged;                    ///< why the gap has no rows; empty where it has
   std::vector<ValidationRow> validation_rows;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
@@ -117,7 +118,7 @@ struct Diagnosis {
   Correction found;                    ///< the effects of `model`, in its order
   std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values
   Eigen::VectorXd values;
-  double noise = 0;                                                ///< m, 1 sigma of one scalar
+  double noise = 0;  ///< m, 1 sigma of one length; 0: none is measured
   double floor_freedom = std::numeric_limits<double>::infinity();  ///< that it is known by
 };
 

@@ -17,7 +17,8 @@ std::string millimetres(double metres) { return plain_figure(1e3 * metres, 4); }
 
 std::string gap_lines(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
-  if (gap.rows == 0) return "No rows are kept aside: how far the gap closes was not judged.\n";
+  if (gap.rows == 0)
+    return "How far the gap closes was not judged: " + diagnosis.gap_unjudged + ".\n";
   std::string text =
       printed("Gap: %s mm with the maker's figures, %s mm calibrated",
               millimetres(gap.rms_nominal).c_str(), millimetres(gap.rms_before).c_str());

@@ -78,10 +78,11 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
 }
 
 EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, const SearchRule& rule) const {
+  const Eigen::MatrixXd by_joint = rows.W(Eigen::all, reading_columns(*geometry_));
   return EvidenceEvaluator(
       whitened(rows),
       structures(both_.rows, rows, ends(*geometry_, both_.rows), size_of(*geometry_),
-                 rows.W(Eigen::all, reading_columns(*geometry_)),
+                 {by_joint, credible_steps(both_.rows.q, by_joint)},
                  comparable_readings(*geometry_, both_.rows.q)),
       changes_.candidates, changes_.parameters, rule);
 }

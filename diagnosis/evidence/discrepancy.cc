@@ -15,7 +15,6 @@
 #include <numbers>
 #include <span>
 
-#include "constraints/equations/resolution.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/visits.h"
 
@@ -25,13 +24,13 @@ namespace {
 class Kernel {
  public:
   Kernel(const Observations& data, const DenseEquations& rows,
-         const std::vector<Eigen::Isometry3d>& ends, double size, Eigen::MatrixXd by_joint,
+         const std::vector<Eigen::Isometry3d>& ends, double size, const ReadingErrors& readings,
          const Eigen::MatrixXd& alike)
       : data_(data),
         rows_(rows),
         ends_(ends),
         near_(kDiagnosis.structure.place * size),
-        by_joint_(std::move(by_joint)),
+        readings_(readings),
         alike_(alike),
         visit_(visits(data)) {
     std::vector<double> times;  // a row need not have one
@@ -49,7 +48,7 @@ class Kernel {
   /// Noise of one, of so much of the visits' own, of the readings' rounding, and of variance `same`
   /// that a configuration brings along.
   std::shared_ptr<const NoiseBlocks> noise(double of_visits, double same) const {
-    const Eigen::MatrixXd rounding = by_joint_ * (reading_steps(data_.q) / 2).asDiagonal();
+    const Eigen::MatrixXd rounding = readings_.by_joint * (readings_.steps / 2).asDiagonal();
     return std::make_shared<const NoiseBlocks>(blocks_, [&](int i, int j) {
       const double alone = i == j ? 1 : 0;
       const int a = rows_.row[i], b = rows_.row[j];
@@ -67,7 +66,7 @@ class Kernel {
   /// Of errors of one joint, times `size`, by the root of likeness().
   Eigen::MatrixXd root_of_joint(Eigen::Index joint, const Eigen::MatrixXd& alike,
                                 double size) const {
-    Eigen::VectorXd J = by_joint_.col(joint);
+    Eigen::VectorXd J = readings_.by_joint.col(joint);
     if (J.norm() > 0) J *= std::sqrt(size * static_cast<double>(J.size())) / J.norm();
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(J.size(), alike.cols());
     for (Eigen::Index i = 0; i < J.size(); ++i)
@@ -169,7 +168,7 @@ class Kernel {
   const DenseEquations& rows_;
   const std::vector<Eigen::Isometry3d>& ends_;
   const double near_;  ///< m, over which places are alike
-  const Eigen::MatrixXd by_joint_;
+  const ReadingErrors& readings_;
   const Eigen::MatrixXd& alike_;
   const std::vector<int> visit_;
   Eigen::MatrixXd direction_;
@@ -206,8 +205,8 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 }
 
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
-                                               const Eigen::MatrixXd& by_joint, double of_visits) {
-  const Kernel kernel(data, rows, {}, 1, by_joint, data.q);
+                                               const ReadingErrors& readings, double of_visits) {
+  const Kernel kernel(data, rows, {}, 1, readings, data.q);
   return {{.kappa = of_visits, .blocks = kernel.noise(of_visits, 0)}};
 }
 
@@ -263,12 +262,12 @@ void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
 
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              double size, const Eigen::MatrixXd& by_joint,
+                                              double size, const ReadingErrors& readings,
                                               const Eigen::MatrixXd& alike, double of_visits) {
-  const Kernel kernel(data, rows, ends, size, by_joint, alike);
+  const Kernel kernel(data, rows, ends, size, readings, alike);
   std::vector<DiscrepancyCovariance> list;
   add_noise(kernel, of_visits, list);
-  add_unknowns(kernel, of_visits, by_joint.cols(), list);
+  add_unknowns(kernel, of_visits, readings.by_joint.cols(), list);
   double unknown = 0;
   for (const DiscrepancyCovariance& each : list) unknown += each.kind > 0;
   for (DiscrepancyCovariance& each : list)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "constraints/equations/equations.h"
+#include "constraints/equations/resolution.h"
 #include "diagnosis/evidence/evidence_rows.h"
 #include "kinematics/robot.h"
 
@@ -24,13 +25,12 @@ std::string_view to_string(KernelDomain domain);
 /// Noise alone first (and noise that repeats share a part of), then every domain at several
 /// sizes over the noise. `of_visits` is the noise from visit to visit over that of immediate
 /// repeats, see noise_of_visits. `rows` are the equations that are weighed, `ends` the
-/// endpoint's pose by row of the data set, `size` the robot's (m, see size_of). `by_joint`
-/// (equations x joints) is what an error of each joint's reading moves an equation. That of half
-/// the reading's last digit is shared by rows of one reading, however often they are repeated.
+/// endpoint's pose by row of the data set, `size` the robot's (m, see size_of). The rounding
+/// of a reading is shared by rows of one reading, however often they are repeated.
 /// `alike` (rows x joints) are the readings as they are compared, see comparable_readings.
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              double size, const Eigen::MatrixXd& by_joint,
+                                              double size, const ReadingErrors& readings,
                                               const Eigen::MatrixXd& alike, double of_visits = 0);
 
 /// Readings `q` (rows x joints) as angles: of a joint that slides, half a turn for all that it
@@ -39,7 +39,6 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q);
 
 /// Only noise, its visits' own included.
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
-                                               const Eigen::MatrixXd& by_joint,
-                                               double of_visits = 0);
+                                               const ReadingErrors& readings, double of_visits = 0);
 
 }  // namespace selfcal

@@ -61,6 +61,7 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
   outlier_ = fitted.noise.outlier;
   left_ = all_.y;
   weigh(kDiagnosis.rows.most_weighed);
+  steps_ = credible_steps(data.rows.q, by_joint());
 
   nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
 }
@@ -75,7 +76,9 @@ void LinearisedModel::bound_noise() {
   double sum = 0, rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
     if (adjusted_.fitted.rows[s] == 0) continue;
-    sum += adjusted_.fitted.rows[s] * std::pow(declared[s].length / noise_[s].length, 2);
+    const double share = data_.sets[s].method->has_lengths() ? declared[s].length / noise_[s].length
+                                                             : declared[s].angle / noise_[s].angle;
+    sum += adjusted_.fitted.rows[s] * std::pow(share, 2);
     rows += adjusted_.fitted.rows[s];
   }
   least_ = rows > 0 ? sum / rows : 0;
@@ -137,8 +140,10 @@ std::vector<int> reading_columns(const Robot& robot) {
   return columns;
 }
 
+ReadingErrors LinearisedModel::reading_errors() const { return {by_joint() / scale_, steps_}; }
+
 Eigen::MatrixXd LinearisedModel::by_joint() const {
-  return all_.W(equations_of(all_, taking_part()), reading_columns(*geometry_)) / scale_;
+  return all_.W(equations_of(all_, taking_part()), reading_columns(*geometry_));
 }
 
 std::vector<Scale> LinearisedModel::noise_of_sets() const {
@@ -154,6 +159,7 @@ double LinearisedModel::noise() const {
   double squares = 0;
   int rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
+    if (!data_.sets[s].method->has_lengths()) continue;
     squares += adjusted_.fitted.rows[s] * std::pow(scale_ * noise_[s].length, 2);
     rows += adjusted_.fitted.rows[s];
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "constraints/equations/resolution.h"
 #include "constraints/estimation/adjustment.h"
 #include "diagnosis/evidence/candidates.h"
 #include "diagnosis/evidence/whitened.h"
@@ -46,9 +47,8 @@ class LinearisedModel {
   DenseEquations kept() const;
   std::vector<Eigen::Isometry3d> ends() const;
   Eigen::MatrixXd tips() const;
-  /// What an error of each joint's reading moves each equation of kept() (equations x joints, 1/rad
-  /// or 1/m); whitened.
-  Eigen::MatrixXd by_joint() const;
+  /// Of the equations of kept(); whitened.
+  ReadingErrors reading_errors() const;
   /// What the geometry alone leaves of `rows` (as whitened()).
   Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
   /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
@@ -59,7 +59,7 @@ class LinearisedModel {
   bool order_is_time() const { return data_.order_is_time; }
   /// As known so far, by set.
   std::vector<Scale> noise_of_sets() const;
-  /// 1 sigma of one scalar (m), pooled over the sets.
+  /// 1 sigma of one scalar (m), pooled over the sets that measure lengths; 0 without such.
   double noise() const;
   /// Sets whose rows the geometry meets better than their data sheet's noise allows, with no
   /// repeats that would tell it better.
@@ -83,6 +83,9 @@ class LinearisedModel {
  private:
   /// By row: weighed and that are no outliers.
   std::vector<char> taking_part() const;
+  /// What an error of each joint's reading moves each equation of kept() (equations x joints,
+  /// sigmas a rad or m), at a scale of one.
+  Eigen::MatrixXd by_joint() const;
   /// Those equations of all(), with these columns of the effects.
   Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.
@@ -102,6 +105,7 @@ class LinearisedModel {
   std::vector<Scale> noise_;   ///< by set, at a scale of one
   std::vector<char> weighed_;  ///< by row: takes part in choosing the causes
   std::vector<char> outlier_;  ///< by row of the data set
+  Eigen::VectorXd steps_;      ///< that each joint's readings are rounded to; 0: not known
   Eigen::VectorXd left_;       ///< by equation of all()
   double scale_ = 1;
   double least_ = 0;  ///< variance of the noise, at least, at a scale of one

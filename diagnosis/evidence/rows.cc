@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string_view>
 
 #include "constraints/statistics.h"
@@ -52,11 +53,17 @@ std::vector<Scale> declared_noise(const DataSet& data) {
   return declared;
 }
 
+/// Of each stretch of `step` configurations one, at a place within it that goes by the golden
+/// ratio: how a session alternates (approaches, surfaces, payloads) cannot keep step with that.
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most) {
   const double step = std::max(1.0, equations / most);
   std::vector<char> take(static_cast<size_t>(rows.rows()), 0);
   std::map<int, char> repeats;
-  double next = 0, configurations = 0;
+  double stretches = 0, configurations = 0;
+  const auto next = [&] {
+    const double within = stretches * std::numbers::phi;
+    return std::floor((stretches + within - std::floor(within)) * step);
+  };
   for (size_t row = 0; row < take.size(); ++row) {
     if (rows.check[row]) continue;
     const int repeat = rows.repeat.empty() ? -1 : rows.repeat[row];
@@ -64,8 +71,8 @@ std::vector<char> weighed_rows(const Observations& rows, double equations, doubl
       take[row] = repeats[repeat];
       continue;
     }
-    take[row] = configurations >= next;
-    if (take[row]) next += step;
+    take[row] = configurations >= next();
+    if (take[row]) stretches += 1;
     configurations += 1;
     if (repeat >= 0) repeats[repeat] = take[row];
   }

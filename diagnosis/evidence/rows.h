@@ -15,8 +15,8 @@ std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
 /// repeats of the rows tell what the noise really is.
 std::vector<Scale> declared_noise(const DataSet& data);
 
-/// By row, 1 where it takes part: of rows with more than `most` of `equations` every so many
-/// configurations, with all their repeats; none that are kept aside to judge.
+/// By row, 1 where it takes part: of rows with more than `most` of `equations` one of every so many
+/// configurations, with all its repeats; none that are kept aside to judge.
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most);
 
 /// Those of the rows that `take` (by row) holds, and those that no row carries.

@@ -46,15 +46,20 @@ std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis
 std::string beyond_sheet(const LinearisedModel& linearised, const DataSet& data) {
   const std::vector<Scale> noise = linearised.noise_of_sets();
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
-    const double declared = data.sets[s].noise, found = noise[s].length;
+    const Set& set = data.sets[s];
+    const bool lengths = set.method->has_lengths();
+    const double declared = lengths ? set.noise : set.noise_angle;
+    const double found = lengths ? noise[s].length : noise[s].angle;
     if (declared <= 0 || found <= kDiagnosis.report.beyond_sheet * declared) continue;
     const double repeats = repeat_sigma(data, static_cast<int>(s), linearised.residuals_of_rows(),
                                         linearised.outlier());
     if (repeats > kDiagnosis.report.confirmed * found) continue;
-    return "the rows of " + data.sets[s].name + " scatter by " + millimetres(found) +
-           " once the robot is calibrated, and their files state a noise of " +
-           millimetres(declared) +
-           (repeats > 0 ? ", and their repeats differ by " + millimetres(repeats) : "");
+    const auto figure = [&](double value) {
+      return lengths ? millimetres(value) : in_readable_unit(value, "rad");
+    };
+    return "the rows of " + set.name + " scatter by " + figure(found) +
+           " once the robot is calibrated, and their files state a noise of " + figure(declared) +
+           (repeats > 0 ? ", and their repeats differ by " + figure(repeats) : "");
   }
   return {};
 }

@@ -77,8 +77,9 @@ class CorrectionValidation {
       const DenseEquations rows = linearised_.kept();
       const double of_visits = noise_of_visits(data_.rows, rows, linearised_.left());
       const EvidenceEvaluator evaluator(
-          linearised_.whitened(), noise_alone(data_.rows, rows, linearised_.by_joint(), of_visits),
-          all, linearised_.parameters(), rule);
+          linearised_.whitened(),
+          noise_alone(data_.rows, rows, linearised_.reading_errors(), of_visits), all,
+          linearised_.parameters(), rule);
       best.structure = 0;
       // What is named is in the model, even where all the rest together makes up for it.
       best = with_named(evaluator.grow(best, kDiagnosis.validation.most_effects), result_.named,

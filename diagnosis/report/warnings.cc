@@ -77,8 +77,8 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
   if (diagnosis.verdict.effect == kNone) return {};
   if (gap.rows == 0)
-    return "too few rows to keep some aside: nothing confirms it, and how far the gap closes is "
-           "not known";
+    return diagnosis.gap_unjudged +
+           ": nothing confirms it, and how far the gap closes is not known";
   const bool named = diagnosis.verdict.effect != kUnknown || !diagnosis.named.empty();
   const bool worse = gap.rms_all > gap.rms_before;
   if (named && gap.rms_after >= gap.rms_before)

@@ -48,7 +48,7 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
   const Candidates all = with_profiles(linearised.candidates());
   const EvidenceEvaluator evaluator(
       linearised.whitened(),
-      noise_alone(data.rows, rows, linearised.by_joint(),
+      noise_alone(data.rows, rows, linearised.reading_errors(),
                   noise_of_visits(data.rows, rows, linearised.left())),
       all, linearised.parameters(), options.search);
   for (const std::string& each : asked) {

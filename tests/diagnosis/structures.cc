@@ -27,6 +27,20 @@ TEST(ReadingSteps, SaysNothingOfReadingsThatAreNotRounded) {
   EXPECT_EQ(reading_steps(Eigen::MatrixXd::Constant(3, 1, 0.12345678912345))[0], 0);
 }
 
+const ReadingErrors kNoErrors{Eigen::MatrixXd::Zero(3, 1), Eigen::VectorXd::Zero(1)};
+
+TEST(ReadingSteps, AreNotBelievedWhereTheyWouldMakeMoreThanAllThatIsLeft) {
+  Eigen::MatrixXd q(4, 3);
+  q << 0.15, 0.002, 0, -0.35, 0.013, 0, 1.05, -0.44, 0, 0.55, 0.871, 0;
+  // Half a step of the first joint, 0.05 rad, moves an equation by 25 sigma; of the second, 1 mrad,
+  // by 0.5; the third stands still.
+  const Eigen::MatrixXd by_joint = Eigen::MatrixXd::Constant(10, 3, 1000);
+  EXPECT_NEAR(reading_steps(q)[0], 0.05, 1e-12);
+  EXPECT_EQ(credible_steps(q, by_joint)[0], 0);
+  EXPECT_NEAR(credible_steps(q, by_joint)[1], 1e-3, 1e-12);
+  EXPECT_EQ(credible_steps(q, by_joint)[2], 0);
+}
+
 /// Three touches of one plane, the last two one configuration.
 struct Touches {
   Touches() {
@@ -47,7 +61,8 @@ struct Touches {
 TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
   const Touches t;
   // Readings are whole multiples of 0.05 rad: half of it moves every equation by 0.6 sigma.
-  const auto list = noise_alone(t.data, t.rows, Eigen::MatrixXd::Constant(3, 1, 24));
+  const auto list = noise_alone(
+      t.data, t.rows, {Eigen::MatrixXd::Constant(3, 1, 24), Eigen::VectorXd::Constant(1, 0.05)});
   const Eigen::MatrixXd S = list.front().matrix();
   EXPECT_NEAR(S(0, 0), 1.12, 1e-12);
   EXPECT_NEAR(S(1, 2), 0.12, 1e-12);
@@ -56,8 +71,7 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
 
 TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const Touches t;
-  const auto list =
-      structures(t.data, t.rows, t.ends, 4 / 3.0, Eigen::MatrixXd::Zero(3, 1), t.data.q);
+  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
   for (const DiscrepancyCovariance& each : list) {
@@ -78,8 +92,7 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   t.data.time << 0, 0, 1000;
   t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
   const auto of_time = [&] {
-    const auto list =
-        structures(t.data, t.rows, t.ends, 4 / 3.0, Eigen::MatrixXd::Zero(3, 1), t.data.q);
+    const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
     return found->matrix();
@@ -100,8 +113,8 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   rows.shift = Eigen::MatrixXd::Identity(2, 3);
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
-  const auto list =
-      structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), 1, by_joint, data.q);
+  const auto list = structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), 1,
+                               {by_joint, Eigen::VectorXd::Zero(2)}, data.q);
   const auto found =
       std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());

@@ -110,7 +110,8 @@ TEST(Visits, MakeCovariancesOfAllThatRowsMayShare) {
   int of_time = 0;
   for (const double of_visits : {0.0, 3.0})
     for (const DiscrepancyCovariance& each :
-         structures(session.data.rows, rows, ends, 4 / 3.0, Eigen::MatrixXd::Ones(n, 6),
+         structures(session.data.rows, rows, ends, 4 / 3.0,
+                    {Eigen::MatrixXd::Ones(n, 6), reading_steps(session.data.rows.q)},
                     session.data.rows.q, of_visits)) {
       const Eigen::MatrixXd S = each.matrix();
       EXPECT_TRUE(S.allFinite()) << to_string(static_cast<KernelDomain>(each.kind));

@@ -26,7 +26,7 @@ function in_words(sentence, effects) {
 
 function gap_of(data) {
   const gap = data.result.gap, words = data.words;
-  if (gap.rows === 0) return [paragraph("No rows are kept aside: how far the gap closes was not judged.")];
+  if (gap.rows === 0) return [paragraph("How far the gap closes was not judged; the warnings say why.")];
   const steps = [{label: ["maker's figures"], value: gap.rms_nominal, colour: "soft"},
                  {label: ["calibrated"], value: gap.rms_before, colour: "before"}];
   if (words.named) steps.push({label: ["with what is named"], tile: "with " + words.named, value: gap.rms_after, colour: "after"});
