@@ -110,7 +110,7 @@ struct DiagnosisConstants {
   struct Validation {
     int passes = 4;                 ///< of growth and noise; 1 to 10 [cost]
     std::size_t most_effects = 60;  ///< 20 to 100 [cost]
-    double most_grown = 2100;       ///< equations; 720 to 10000 [cost]
+    double most_grown = 2100;       ///< equations, that are linearised at all; 720 to 10000 [cost]
     double tried = 0.05;  ///< least probable cause that is tried alone; 0.01 to 0.5 [cost]
     int most_tried = 4;   ///< 0 to 10 [cost]
     /// Probability that noise stays below; 1 - 1e-4 to 1 - 1e-8 [habit]
@@ -144,9 +144,12 @@ struct DiagnosisConstants {
     int passes = 2;  ///< false rows are seen once the changes are known; 1 to 5 [cost]
     std::size_t most_together = 3;      ///< changes that the search puts together; 2 to 5 [cost]
     std::size_t most_differences = 60;  ///< 20 to 100 [cost]
-    double listed = 0.02;     ///< least probability of a change that is listed; 0 to 0.1 [habit]
-    double shown = 0.5;       ///< the same, of an effect that a simulator lacks; 0.5 to 0.9 [habit]
-    double unsure = 0.5;      ///< of structure that no difference explains; 0.3 to 0.9 [habit]
+    double listed = 0.02;  ///< least probability of a change that is listed; 0 to 0.1 [habit]
+    double shown = 0.5;    ///< the same, of an effect that a simulator lacks; 0.5 to 0.9 [habit]
+    double unsure = 0.5;   ///< of structure that no difference explains; 0.3 to 0.9 [habit]
+    /// Of the robot's size, or rad: a surface or instrument that stands so much elsewhere by the
+    /// two sessions' own fits has moved, too far to be linear in it; 0.005 to 0.05 [physics]
+    double elsewhere = 0.02;
     double apart = 3;         ///< sigmas of a figure that differs; 2 to 5 [habit]
     double alike = 1 - 1e-6;  ///< cosine of columns that no row tells apart [exact]
   };

@@ -116,6 +116,19 @@ void Problems::add(const Place& place, const std::string& what) {
   list.push_back(to_string(place) + ": " + what);
 }
 
+bool alike(const Node& a, const Node& b) {
+  if (a.kind != b.kind || a.items.size() != b.items.size()) return false;
+  if (a.kind == Node::Kind::map)
+    return std::ranges::all_of(a.keys, [&](const std::string& key) {
+      const Node* other = b.find(key);
+      return other != nullptr && alike(*a.find(key), *other);
+    });
+  if (a.kind == Node::Kind::list) return std::ranges::equal(a.items, b.items, alike);
+  if (a.text == b.text) return true;
+  const std::optional<double> one = number_of(&a), other = number_of(&b);
+  return one && other && *one == *other;
+}
+
 Fields::Fields(const Node& node, std::string what, Problems& problems)
     : node_(node), what_(std::move(what)), problems_(problems) {
   if (node_.kind != Node::Kind::map) {

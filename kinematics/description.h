@@ -47,6 +47,9 @@ struct Node {
   Node& set(std::string key, Node value);  ///< appends to a mapping; returns *this
 };
 
+/// That they say the same: numbers by value, the keys of a mapping in any order.
+bool alike(const Node& a, const Node& b);
+
 /// Mistakes found while reading; the first one is what the user is told.
 struct Problems {
   std::vector<std::string> list;

@@ -46,6 +46,8 @@ Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const R
   if (!other) return tl::unexpected(other.error());
   if (const std::string why = incomparable(*other->robot, robot); !why.empty())
     return bad_input(path + " " + why);
+  if (const std::string why = incomparable(other->data); !why.empty())
+    return bad_input(path + " " + why);
   print_notices(*other);
   return std::optional(*std::move(other));
 }

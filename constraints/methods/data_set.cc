@@ -124,6 +124,7 @@ Set make_set(const std::string& name, const Node& node, Problems& problems) {
     set.noise = 0;
   }
   fields.refuse_unknown();
+  set.options = node.without({"noise", "noise_angle", "noise_joints", "tolerance"});
   return set;
 }
 
@@ -159,7 +160,8 @@ std::string lacking_body(const Robot& robot, const std::vector<Set>& sets) {
 
 int same_set(const std::vector<Set>& sets, const Set& set) {
   const auto same = std::find_if(sets.begin(), sets.end(), [&](const Set& other) {
-    return other.name == set.name && other.method->name() == set.method->name();
+    return other.name == set.name && other.method->name() == set.method->name() &&
+           alike(other.options, set.options);
   });
   return same == sets.end() ? -1 : static_cast<int>(same - sets.begin());
 }
@@ -174,8 +176,12 @@ void adopt(DataSet& first, const std::vector<Set>& sets, Observations& rows) {
     const int same = same_set(nuisance, set);
     set_of.push_back(same >= 0 ? same : static_cast<int>(first.sets.size()));
     first_group.push_back(same >= 0 ? static_cast<int>(first.sets[same].groups.size()) : 0);
-    if (same < 0) first.sets.push_back(set);
-    if (same < 0) continue;
+    if (same < 0) {
+      first.sets.push_back(set);
+      std::string& name = first.sets.back().name;
+      while (std::ranges::find(nuisance, name, &Set::name) != nuisance.end()) name += "'";
+      continue;
+    }
     for (const std::string& group : set.groups) first.sets[same].groups.push_back(group + "'");
   }
   for (size_t s = nuisance.size(); s < first.sets.size(); ++s)

@@ -27,6 +27,7 @@ struct Set {
   double noise_angle = 0;  ///< the same for angles (rad); 0 unknown
   double noise_joints = 0;  ///< 1 sigma of a reading of every joint (rad or m); 0 without
   GivenTolerance given = {};
+  Node options;                     ///< its entry, without what is said of noise and tolerances
   int reference = -1;               ///< index of the set whose nuisance parameters it shares
   std::vector<std::string> groups;  ///< names, indexed by Observations::group
 };
@@ -53,11 +54,12 @@ std::vector<Set> read_sets(const Node& node, Problems& problems);
 /// it can.
 std::string lacking_body(const Robot& robot, const std::vector<Set>& sets);
 
-/// The set among `sets` of the same name and method as `set`; -1 without.
+/// The set among `sets` of the same name, method and options as `set`; -1 without.
 int same_set(const std::vector<Set>& sets, const Set& set);
 
-/// Rows of two sessions with one robot, the first ones first. Sets of one name and method become
-/// one, as `before` has it; groups and repeats stay apart, and the second begins when the first
+/// Rows of two sessions with one robot, the first ones first. Sets of one name, method and options
+/// become one, with the noise that `before` has for it, and of two of one name that differ the
+/// second is called NAME'; groups and repeats stay apart, and the second begins when the first
 /// ends.
 DataSet merged(const DataSet& before, const DataSet& after);
 

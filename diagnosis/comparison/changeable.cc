@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/identifiability/gauge.h"
 #include "diagnosis/constants.h"
 
 namespace selfcal {
@@ -37,7 +38,7 @@ class Builder {
       for (size_t k = 0; k < nuisance.size(); ++k)
         nuisance[k] = equations_.own_at(static_cast<int>(s)) + static_cast<int>(k);
       if (!nuisance.empty() && same_set(after.sets, before.sets[s]) >= 0)
-        add(placing("fixture_shift"), before.sets[s].name, nuisance);
+        add(fixture_moved(between_), before.sets[s].name, nuisance);
     }
   }
 
@@ -99,11 +100,16 @@ class Builder {
 
 }  // namespace
 
+std::string fixture_moved(Between between) {
+  return between == Between::machines ? "placed_elsewhere" : "fixture_shift";
+}
+
 Changeable changeable(const Equations& equations, const Eigen::MatrixXd& W, const DataSet& before,
                       const DataSet& after, Between between) {
   Builder builder(equations, W, between);
   builder.add_zeros();
-  builder.add_frames(Part::base, "base_moved", "base");
+  if (held_base(equations.robot(), equations).empty())
+    builder.add_frames(Part::base, "base_moved", "base");
   builder.add_frames(Part::tool, "probe_changed", "probe");
   builder.add_fixtures(before, after);
   if (between == Between::machines) builder.add_geometry();

@@ -16,6 +16,9 @@ struct Changeable {
   std::vector<EffectParameter> parameters;
 };
 
+/// What a surface or an instrument that stands elsewhere is called.
+std::string fixture_moved(Between between);
+
 /// `W` are the dense equations of `before` and `after`, one behind the other.
 Changeable changeable(const Equations& equations, const Eigen::MatrixXd& W, const DataSet& before,
                       const DataSet& after, Between between);

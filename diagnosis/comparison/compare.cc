@@ -7,6 +7,7 @@
 #include "diagnosis/comparison/pair.h"
 #include "diagnosis/constants.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -101,6 +102,81 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
   return best;
 }
 
+/// What changed while the sets of `after` that stand elsewhere have been parted from those of
+/// `before`.
+Comparison weighed(const std::shared_ptr<const Robot>& geometry, const Session& before,
+                   const Session& after, Between between, const DiagnosisOptions& options,
+                   const Progress& progress) {
+  const Pair pair(geometry, before, after, between, options, progress);
+  Comparison result;
+  std::vector<char> outlier = pair.outlier();
+  for (int pass = 0; pass < kDiagnosis.comparison.passes; ++pass) {
+    const DenseEquations rows = pair.weighed(outlier);
+    result = {};
+    const Hypothesis best = weigh(pair, rows, options.search, result);
+    std::vector<char> far = pair.outliers_among(rows, best);
+    if (far == outlier) break;
+    outlier = std::move(far);
+  }
+  return result;
+}
+
+/// How far the rows of each set of `after` are off where that set stands where `before` has it
+/// (rms; m, or rad of sets without lengths); 0 where it is not in both or has no place of its own.
+std::vector<double> moved(const Robot& geometry, const Session& before, const Session& after) {
+  const std::vector<Set>& sets = after.data.sets;
+  const Equations equations(geometry, after.data, Use::fit);
+  State state = after.fit.state;
+  std::vector<char> in_both(sets.size(), 0);
+  for (size_t s = 0; s < sets.size(); ++s) {
+    const int same = same_set(before.data.sets, sets[s]);
+    in_both[s] = same >= 0 && equations.tangent_dimension(static_cast<int>(s)) > 0 &&
+                 before.fit.rows[same] > 0 && after.fit.rows[s] > 0;
+    if (in_both[s]) state.nuisance[s] = before.fit.state.nuisance[same];
+  }
+  std::vector<double> squares(sets.size(), 0), count(sets.size(), 0);
+  for (const RowResidual& row : equations.residuals(state)) {
+    if (!in_both[row.set] || after.fit.noise.outlier[row.row]) continue;
+    squares[row.set] += std::pow(sets[row.set].method->has_lengths() ? row.length : row.angle, 2);
+    count[row.set] += 1;
+  }
+  for (size_t s = 0; s < squares.size(); ++s)
+    squares[s] = count[s] > 0 ? std::sqrt(squares[s] / count[s]) : 0;
+  return squares;
+}
+
+/// Surfaces and instruments that stand elsewhere, by so much that nothing else explains it.
+std::vector<Change> stand_elsewhere(const Robot& geometry, const Session& before,
+                                    const Session& after, Between between) {
+  std::vector<Change> list;
+  const std::vector<double> by = moved(geometry, before, after);
+  for (size_t s = 0; s < by.size(); ++s) {
+    const Set& set = after.data.sets[s];
+    const bool lengths = set.method->has_lengths();
+    const double limit = kDiagnosis.comparison.elsewhere * (lengths ? size_of(geometry) : 1);
+    if (by[s] <= limit) continue;
+    const Scale& noise = after.fit.noise.estimated[s];
+    const double sigma = (lengths ? noise.length : noise.angle) / std::sqrt(after.fit.rows[s]);
+    list.push_back({fixture_moved(between),
+                    set.name,
+                    1,
+                    {{"rows off by", lengths ? "m" : "rad", by[s], sigma, 5e-6, 5e-3}}});
+  }
+  return list;
+}
+
+/// Adds the changes that say so of a set; the values of base and tool are the robot's parameters.
+/// False where there is none.
+bool add_moved(const Robot& geometry, const Comparison& result, Between between,
+               std::vector<Change>& elsewhere) {
+  const size_t had = elsewhere.size();
+  for (const Change& each : result.changes)
+    if (each.effect == fixture_moved(between) && each.probability > 0.5 &&
+        find_parameter(geometry, each.values.front().name) < 0)
+      elsewhere.push_back(each);
+  return elsewhere.size() > had;
+}
+
 std::string changes_in_words(const Comparison& result) {
   std::string text;
   for (const Change& each : result.changes)
@@ -126,21 +202,34 @@ std::string incomparable(const Robot& one, const Robot& other) {
          "' with other frames or maker's figures: only data sets of one robot can be compared";
 }
 
+std::string incomparable(const DataSet& data) {
+  size_t equations = 0;
+  for (size_t row = 0; row < data.rows.check.size(); ++row)
+    if (!data.rows.check[row])
+      equations += data.sets[data.rows.set[row]].method->equations().size();
+  if (static_cast<double>(equations) >= kDiagnosis.rows.fewest_freedoms) return {};
+  return "has " + std::to_string(equations) +
+         " equations in rows that are not `part: check`: at least " +
+         format_number(kDiagnosis.rows.fewest_freedoms) + " are needed to compare with";
+}
+
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,
                    const DataSet& after, Between between, const DiagnosisOptions& options,
                    const Progress& progress) {
-  const Pair pair(geometry_of(robot), before, after, between, options, progress);
+  const std::shared_ptr<const Robot> geometry = geometry_of(robot);
+  const Session first(*geometry, before, options, progress);
+  const Session second(*geometry, after, options, progress);
   if (progress) progress("weighing what changed", 0.5);
+  std::vector<Change> elsewhere = stand_elsewhere(*geometry, first, second, between);
   Comparison result;
-  std::vector<char> outlier = pair.outlier();
-  for (int pass = 0; pass < kDiagnosis.comparison.passes; ++pass) {
-    const DenseEquations rows = pair.weighed(outlier);
-    result = {};
-    const Hypothesis best = weigh(pair, rows, options.search, result);
-    std::vector<char> far = pair.outliers_among(rows, best);
-    if (far == outlier) break;
-    outlier = std::move(far);
+  for (bool again = true; again;) {
+    std::vector<std::string> sets;
+    for (const Change& each : elsewhere) sets.push_back(each.where);
+    result = weighed(geometry, first, parted(second, sets), between, options, progress);
+    again = add_moved(*geometry, result, between, elsewhere);
   }
+  if (!elsewhere.empty()) result.none = 0;
+  result.changes.insert(result.changes.end(), elsewhere.begin(), elsewhere.end());
   std::ranges::stable_sort(result.changes, std::greater(), &Change::probability);
   result.why = changes_in_words(result);
   return result;

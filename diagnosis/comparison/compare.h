@@ -19,6 +19,10 @@ namespace selfcal {
 /// it can.
 std::string incomparable(const Robot& one, const Robot& other);
 
+/// Why nothing can be compared with a data set, to follow its name: too few of its rows are there
+/// to fit. Empty when it can.
+std::string incomparable(const DataSet& data);
+
 /// `before` and `after` are of one robot file (see incomparable). Sets of one name are one surface
 /// or instrument.
 Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& before,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/discrepancy.h"
@@ -11,36 +12,57 @@
 #include "kinematics/size.h"
 
 namespace selfcal {
-Pair::Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
+
+Session::Session(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
+                 const Progress& progress)
+    : data(std::move(rows)),
+      fit(adjust(Equations(geometry, data, Use::fit), geometry_options(options), progress).fitted) {
+}
+
+Session parted(Session session, const std::vector<std::string>& sets) {
+  std::vector<Set>& all = session.data.sets;
+  const auto asked = [&](const Set& set) { return std::ranges::count(sets, set.name) > 0; };
+  std::vector<char> apart;
+  for (const Set& set : all)
+    apart.push_back(asked(set) || (set.reference >= 0 && asked(all[set.reference])));
+  for (size_t s = 0; s < all.size(); ++s)
+    if (apart[s]) all[s].name += "' of its own";
+  return session;
+}
+
+Pair::Pair(std::shared_ptr<const Robot> geometry, const Session& before, const Session& after,
            Between between, const DiagnosisOptions& options, const Progress& progress)
     : geometry_(std::move(geometry)),
       most_outliers_(options.most_outliers),
-      first_rows_(before.rows.rows()),
-      both_(merged(before, after)),
+      first_rows_(before.data.rows.rows()),
+      both_(merged(before.data, after.data)),
       equations_(*geometry_, both_, Use::fit) {
   const Options free = geometry_options(options);
   noise_.assign(both_.sets.size(), {0, 0});
   rows_.assign(both_.sets.size(), 0);
-  fit_alone(before, free, progress);
-  fit_alone(after, free, progress);
+  add_noise_of(before);
+  add_noise_of(after);
   for (size_t s = 0; s < rows_.size(); ++s)
     noise_[s] = rows_[s] > 0 ? Scale{std::sqrt(noise_[s].length / rows_[s]),
                                      std::sqrt(noise_[s].angle / rows_[s])}
                              : Scale{};
   adjusted_ = adjust(equations_, free, progress);
   every_ = equations_.dense(adjusted_.fitted.state, noise_, std::vector<char>(outlier_.size(), 0));
-  changes_ = changeable(equations_, every_.W, before, after, between);
+  changes_ = changeable(equations_, every_.W, before.data, after.data, between);
 }
 
 /// Adds the squares of its noise to those of both's sets.
-void Pair::fit_alone(const DataSet& part, const Options& options, const Progress& progress) {
-  const Equations equations(*geometry_, part, Use::fit);
-  const Fit fit = adjust(equations, options, progress).fitted;
+void Pair::add_noise_of(const Session& part) {
+  const Fit& fit = part.fit;
+  const std::vector<Scale> noise = pooled_noise(part.data, fit);
+  const auto first = static_cast<int>(outlier_.size());
   outlier_.insert(outlier_.end(), fit.noise.outlier.begin(), fit.noise.outlier.end());
-  const std::vector<Scale> noise = pooled_noise(part, fit);
+  std::vector<int> set_of(part.data.sets.size(), -1);  // among both's
+  for (int row = 0; row < part.data.rows.rows(); ++row)
+    set_of[part.data.rows.set[row]] = both_.rows.set[first + row];
   for (size_t of = 0; of < fit.rows.size(); ++of) {
     if (fit.rows[of] == 0) continue;
-    const auto s = static_cast<size_t>(same_set(both_.sets, part.sets[of]));
+    const auto s = static_cast<size_t>(set_of[of]);
     noise_[s].length += fit.rows[of] * std::pow(noise[of].length, 2);
     noise_[s].angle += fit.rows[of] * std::pow(noise[of].angle, 2);
     rows_[s] += fit.rows[of];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "constraints/estimation/adjustment.h"
@@ -11,10 +12,22 @@
 
 namespace selfcal {
 
+/// One of the two fitted alone, which tells noise and false rows: a change is neither.
+struct Session {
+  Session(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
+          const Progress& progress);
+  DataSet data;
+  Fit fit;
+};
+
+/// `session` with these sets, and those that refer to them, under other names: they
+/// share nothing with those of another session.
+Session parted(Session session, const std::vector<std::string>& sets);
+
 class Pair {
  public:
-  /// Fits each alone, which tells noise and false rows (a change is neither), and both together.
-  Pair(std::shared_ptr<const Robot> geometry, const DataSet& before, const DataSet& after,
+  /// Fits both together.
+  Pair(std::shared_ptr<const Robot> geometry, const Session& before, const Session& after,
        Between between, const DiagnosisOptions& options, const Progress& progress);
   Pair(const Pair&) = delete;
 
@@ -28,7 +41,7 @@ class Pair {
   std::vector<char> outliers_among(const DenseEquations& rows, const Hypothesis& changes) const;
 
  private:
-  void fit_alone(const DataSet& part, const Options& options, const Progress& progress);
+  void add_noise_of(const Session& part);
   Whitened whitened(const DenseEquations& rows) const;
 
   std::shared_ptr<const Robot> geometry_;

@@ -65,8 +65,8 @@ class LinearisedModel {
   /// repeats that would tell it better.
   const std::vector<int>& quieter() const { return quieter_; }
 
-  /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of every
-  /// row, put aside or not, when fitted to the kept ones; whitened at the current scale.
+  /// What the geometry with the effects' parameters `effects` (prior sigma `prior`) leaves of
+  /// all(), put aside or not, when fitted to the kept ones; whitened at the current scale.
   Eigen::VectorXd residuals(const std::vector<int>& effects, const Eigen::VectorXd& prior) const;
   /// What the best explanation so far leaves, by equation of kept(); at first
   /// the geometry's fit.
@@ -74,7 +74,8 @@ class LinearisedModel {
   /// Takes the noise from the variance of the best explanation and puts aside the rows whose
   /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
   bool refine(const Eigen::VectorXd& residuals, double variance);
-  /// All rows, put aside or not, whitened at the current scale.
+  /// The rows that are held, put aside or not; of a large data set one of every so many
+  /// configurations. Whitened at a scale of one.
   const DenseEquations& all() const { return all_; }
 
   /// How many equations take part (a data set with more is thinned out).
@@ -103,6 +104,7 @@ class LinearisedModel {
   DenseEquations all_;
   std::vector<int> quieter_;
   std::vector<Scale> noise_;   ///< by set, at a scale of one
+  std::vector<int> held_;      ///< rows that all() is of
   std::vector<char> weighed_;  ///< by row: takes part in choosing the causes
   std::vector<char> outlier_;  ///< by row of the data set
   Eigen::VectorXd steps_;      ///< that each joint's readings are rounded to; 0: not known

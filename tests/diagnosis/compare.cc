@@ -1,6 +1,7 @@
 // What changed between two sessions of one robot.
 #include "diagnosis/comparison/compare.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,9 @@
 
 namespace selfcal {
 namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
 
 constexpr double kShift = 1e-3;  // rad: 0.5 mm at half a metre, 25 times the noise
 
@@ -100,6 +104,44 @@ TEST(Compare, WeighsOnlyAPartOfLargeSessions) {
               [&](std::string_view stage, double) { stages += std::string(stage) + "\n"; });
   expect_zero_of_j3(comparison);
   EXPECT_NE(stages.find("weighing what changed"), std::string::npos) << stages;
+}
+
+/// What an instrument reads that has been turned about the vertical by `angle` (rad) and moved by
+/// `by` (m).
+void stand_elsewhere(DataSet& session, double angle, const Eigen::Vector3d& by) {
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  Eigen::MatrixXd& p = session.rows.position;
+  p = ((p * R.transpose()).rowwise() + by.transpose()).eval();
+}
+
+std::vector<std::string> surely(const Comparison& comparison) {
+  std::vector<std::string> list;
+  for (const Change& each : comparison.changes)
+    if (each.probability > 0.5) list.push_back(each.effect + "@" + each.where);
+  return list;
+}
+
+TEST(Compare, SeesAZeroThatShiftedUnderATrackerThatStandsElsewhere) {
+  TwoSessions sessions;
+  sessions.after.rows.q.col(2).array() += kShift;
+  stand_elsewhere(sessions.after, 3, {5, -2, 0.3});
+  EXPECT_THAT(surely(compare(sessions.robot, sessions.before, sessions.after)),
+              UnorderedElementsAre("fixture_shift@tracker", "zero_shift@j3"));
+}
+
+TEST(Compare, SaysOfATrackerThatWasPushedThatItAndNothingElseMoved) {
+  TwoSessions sessions;
+  stand_elsewhere(sessions.after, 2e-3, {3e-3, -1e-3, 2e-3});
+  const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
+  EXPECT_THAT(surely(comparison), ElementsAre("fixture_shift@tracker"));
+  EXPECT_LT(comparison.none, 0.01);
+}
+
+TEST(Incomparable, IsADataSetWithoutRowsToFit) {
+  TwoSessions sessions;
+  EXPECT_EQ(incomparable(sessions.before), "");
+  sessions.before.rows.check.assign(sessions.before.rows.check.size(), 1);
+  EXPECT_THAT(incomparable(sessions.before), testing::HasSubstr("has 0 equations"));
 }
 
 TEST(Incomparable, AreDataSetsOfDifferentRobots) {
