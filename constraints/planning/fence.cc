@@ -8,14 +8,6 @@ namespace {
 
 constexpr int kGoldenSteps = 40;  // each leaves 0.62 of the stretch
 
-/// A capsule where its link is.
-struct PlacedCapsule {
-  Eigen::Vector3d a, b;
-  double radius;
-  int joint;  ///< that carries it; -1: none
-  const std::string* frame;
-};
-
 /// The last joint up to a link.
 int carrying_joint(const Mechanics& mechanics, int link) {
   for (int l = link; l >= 0; --l)
@@ -24,24 +16,27 @@ int carrying_joint(const Mechanics& mechanics, int link) {
   return -1;
 }
 
-std::vector<PlacedCapsule> placed(const Robot& robot, const Fence& fence,
-                                  const Eigen::VectorXd& q) {
-  std::vector<PlacedCapsule> list;
-  if (fence.capsules.empty() || !robot.statics()) return list;
-  const Mechanics& mechanics = robot.statics()->mechanics();
-  const std::vector<Eigen::Isometry3d> poses = robot.statics()->link_poses(q);
-  for (const Capsule& each : fence.capsules) {
-    const auto link = static_cast<std::size_t>(each.link);
-    list.push_back({poses[link] * each.a, poses[link] * each.b, each.radius,
-                    carrying_joint(mechanics, each.link), &mechanics.links[link].frame});
+/// Least of `f`, which is convex, on the segment from a to b.
+template <class Function>
+double least_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Function& f) {
+  if (a == b) return f(a);
+  const auto at = [&](double s) { return f(Eigen::Vector3d(a + s * (b - a))); };
+  constexpr double kGolden = 0.6180339887498949;
+  double low = 0, high = 1, x = 1 - kGolden, y = kGolden, fx = at(x), fy = at(y);
+  for (int i = 0; i < kGoldenSteps; ++i) {
+    if (fx <= fy) {
+      high = y;
+      y = x;
+      fy = fx;
+      fx = at(x = high - kGolden * (high - low));
+    } else {
+      low = x;
+      x = y;
+      fx = fy;
+      fy = at(y = low + kGolden * (high - low));
+    }
   }
-  return list;
-}
-
-bool behind_surface(const Obstacle& obstacle, const Eigen::Vector3d& p, double apart) {
-  const bool near = obstacle.within.radius <= 0 ||
-                    (p - obstacle.within.centre).norm() <= obstacle.within.radius + apart;
-  return near && obstacle.outward.dot(p - obstacle.point) < apart;
+  return std::min({fx, fy, f(a), f(b)});
 }
 
 }  // namespace
@@ -66,56 +61,81 @@ double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const KeepOut& keep) {
   if (!keep.box)
     return std::min(keep.outward.dot(a - keep.point), keep.outward.dot(b - keep.point));
-  // Convex along the segment.
-  const auto at = [&](double s) {
-    return keep.box->exteriorDistance(Eigen::Vector3d(a + s * (b - a)));
-  };
-  constexpr double kGolden = 0.6180339887498949;
-  double low = 0, high = 1, x = 1 - kGolden, y = kGolden, fx = at(x), fy = at(y);
-  for (int i = 0; i < kGoldenSteps; ++i) {
-    if (fx <= fy) {
-      high = y;
-      y = x;
-      fy = fx;
-      fx = at(x = high - kGolden * (high - low));
-    } else {
-      low = x;
-      x = y;
-      fx = fy;
-      fy = at(y = low + kGolden * (high - low));
-    }
+  return least_along(a, b, [&](const Eigen::Vector3d& p) {
+    const double within =
+        std::min((p - keep.box->min()).minCoeff(), (keep.box->max() - p).minCoeff());
+    return within > 0 ? -within : keep.box->exteriorDistance(p);
+  });
+}
+
+double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Obstacle& obstacle) {
+  return least_along(a, b, [&](const Eigen::Vector3d& p) {
+    const double off = obstacle.outward.dot(p - obstacle.point);
+    if (obstacle.within.radius <= 0) return off;
+    return std::max(off, (p - obstacle.within.centre).norm() - obstacle.within.radius);
+  });
+}
+
+std::vector<PlacedCapsule> placed_capsules(const Robot& robot, const Fence& fence,
+                                           const Eigen::VectorXd& q) {
+  std::vector<PlacedCapsule> list;
+  if (fence.capsules.empty() || !robot.statics()) return list;
+  const Mechanics& mechanics = robot.statics()->mechanics();
+  const std::vector<Eigen::Isometry3d> poses = robot.statics()->link_poses(q);
+  for (const Capsule& each : fence.capsules) {
+    const auto link = static_cast<std::size_t>(each.link);
+    list.push_back({poses[link] * each.a, poses[link] * each.b, each.radius,
+                    carrying_joint(mechanics, each.link), &mechanics.links[link].frame});
   }
-  return std::min({fx, fy, at(0), at(1)});
+  return list;
+}
+
+Room room_of(const Robot& robot, const Fence& fence, const std::vector<Obstacle>& obstacles,
+             const std::vector<PlacedCapsule>& capsules, const Eigen::Vector3d& p, double apart,
+             int touched) {
+  Room room;
+  // True, with the reason, where there is none.
+  const auto blocks = [&](double distance, const auto&... why) {
+    room.least = std::min(room.least, distance);
+    if (distance < 0) ((room.in_the_way += why), ...);
+    return distance < 0;
+  };
+  for (std::size_t o = 0; o < obstacles.size(); ++o)
+    if (static_cast<int>(o) != touched && blocks(distance_between(p, p, obstacles[o]) - apart,
+                                                 "the endpoint is behind a surface or too near"))
+      return room;
+  for (const KeepOut& each : fence.keep_outs)
+    if (blocks(distance_between(p, p, each) - apart, "the endpoint is where nothing may be"))
+      return room;
+  const int last = static_cast<int>(robot.joints().size()) - 1;
+  for (std::size_t i = 0; i < capsules.size(); ++i) {
+    const PlacedCapsule& one = capsules[i];
+    for (const KeepOut& each : fence.keep_outs)
+      if (blocks(distance_between(one.a, one.b, each) - one.radius - apart, "link ", *one.frame,
+                 " is where nothing may be"))
+        return room;
+    for (std::size_t o = 0; o < obstacles.size(); ++o)
+      if (!(static_cast<int>(o) == touched && one.joint == last) &&
+          blocks(distance_between(one.a, one.b, obstacles[o]) - one.radius, "link ", *one.frame,
+                 " is behind a surface"))
+        return room;
+    // Neighbours meet at the joint between them. Both of two may move.
+    for (std::size_t k = 0; k < i; ++k)
+      if (const PlacedCapsule& other = capsules[k];
+          std::abs(one.joint - other.joint) > 1 &&
+          blocks((distance_between(one.a, one.b, other.a, other.b) - one.radius - other.radius) / 2,
+                 "links ", *other.frame, " and ", *one.frame, " meet"))
+        return room;
+  }
+  return room;
 }
 
 std::string in_the_way(const Robot& robot, const Fence& fence,
                        const std::vector<Obstacle>& obstacles, const Eigen::VectorXd& q,
                        const Eigen::Vector3d& p, double apart, int touched) {
-  for (std::size_t o = 0; o < obstacles.size(); ++o)
-    if (static_cast<int>(o) != touched && behind_surface(obstacles[o], p, apart))
-      return "the endpoint is behind a surface or too near";
-  for (const KeepOut& each : fence.keep_outs)
-    if (distance_between(p, p, each) < apart) return "the endpoint is where nothing may be";
-  const std::vector<PlacedCapsule> capsules = placed(robot, fence, q);
-  const int last = static_cast<int>(robot.joints().size()) - 1;
-  for (std::size_t i = 0; i < capsules.size(); ++i) {
-    const PlacedCapsule& one = capsules[i];
-    for (const KeepOut& each : fence.keep_outs)
-      if (distance_between(one.a, one.b, each) < one.radius + apart)
-        return "link " + *one.frame + " is where nothing may be";
-    for (std::size_t o = 0; o < obstacles.size(); ++o)
-      if (!(static_cast<int>(o) == touched && one.joint == last) &&
-          (behind_surface(obstacles[o], one.a, one.radius) ||
-           behind_surface(obstacles[o], one.b, one.radius)))
-        return "link " + *one.frame + " is behind a surface";
-    // Neighbours meet at the joint between them.
-    for (std::size_t k = 0; k < i; ++k)
-      if (std::abs(one.joint - capsules[k].joint) > 1 &&
-          distance_between(one.a, one.b, capsules[k].a, capsules[k].b) <
-              one.radius + capsules[k].radius)
-        return "links " + *capsules[k].frame + " and " + *one.frame + " meet";
-  }
-  return {};
+  return room_of(robot, fence, obstacles, placed_capsules(robot, fence, q), p, apart, touched)
+      .in_the_way;
 }
 
 }  // namespace selfcal

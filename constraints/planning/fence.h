@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,15 +42,44 @@ struct Fence {
   std::vector<Capsule> capsules;  ///< none of a robot without statics
 };
 
-/// Least distance between the segments a b and c d, that of a b from a keep-out (negative behind a
-/// half-space, zero within a box).
+/// Least distance between the segments a b and c d, that of a b from a keep-out (negative where it
+/// is in it).
 double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                         const Eigen::Vector3d& c, const Eigen::Vector3d& d);
 double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const KeepOut& keep);
 
-/// Why the robot, its endpoint at `p` with readings `q`, is not free by `apart` (m): what it is too
-/// near to; empty where it is. `touched` is the obstacle that the endpoint touches (-1: none), off
-/// which the links behind the last joint need not keep.
+/// Least distance of the segment a b from the half ball behind a surface (m), a lower bound that is
+/// negative only where the segment is in it.
+double distance_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Obstacle& obstacle);
+
+/// A capsule where its link is.
+struct PlacedCapsule {
+  Eigen::Vector3d a, b;  ///< m, world
+  double radius = 0;
+  int joint = -1;  ///< that carries it; -1: none
+  const std::string* frame = nullptr;
+};
+
+/// Those of the fence at readings `q`; the robot outlives them.
+std::vector<PlacedCapsule> placed_capsules(const Robot& robot, const Fence& fence,
+                                           const Eigen::VectorXd& q);
+
+/// How far the robot is from what it must keep off.
+struct Room {
+  /// m: so far every point of it may move before it is too near to anything; a lower bound.
+  double least = std::numeric_limits<double>::infinity();
+  std::string in_the_way;  ///< what it is too near to already; empty where it is free
+};
+
+/// Of a robot with its endpoint at `p`, free where nothing is nearer than `apart` (m). `touched` is
+/// the obstacle that the endpoint touches (-1: none), off which the links behind the last joint
+/// need not keep.
+Room room_of(const Robot& robot, const Fence& fence, const std::vector<Obstacle>& obstacles,
+             const std::vector<PlacedCapsule>& capsules, const Eigen::Vector3d& p, double apart,
+             int touched);
+
+/// What a robot with readings `q` and its endpoint at `p` is too near to; empty where it is free.
 std::string in_the_way(const Robot& robot, const Fence& fence,
                        const std::vector<Obstacle>& obstacles, const Eigen::VectorXd& q,
                        const Eigen::Vector3d& p, double apart, int touched);

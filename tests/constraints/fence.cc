@@ -33,10 +33,24 @@ TEST(Distance, OfASegmentFromABoxAndAHalfSpace) {
   const KeepOut box = box_of({0, 0, 0}, {1, 1, 1});
   EXPECT_NEAR(distance_between({2, 0.5, 0.5}, {2, 5, 0.5}, box), 1, 1e-9);
   EXPECT_NEAR(distance_between({-1, 2, 0.5}, {2, 2, 0.5}, box), 1, 1e-9) << "beside its middle";
-  EXPECT_NEAR(distance_between({-1, 0.5, 0.5}, {2, 0.5, 0.5}, box), 0, 1e-9) << "through it";
+  EXPECT_NEAR(distance_between({-1, 0.5, 0.5}, {2, 0.5, 0.5}, box), -0.5, 1e-8) << "through it";
   EXPECT_NEAR(distance_between({4, 5, 0.5}, {9, 9, 0.5}, box), 5, 1e-9) << "a corner";
   KeepOut floor;
   EXPECT_NEAR(distance_between({0, 0, 2}, {0, 0, -0.5}, floor), -0.5, 1e-15);
+}
+
+TEST(Distance, OfASegmentFromASurfaceIsThatOfItsNearestPoint) {
+  const Obstacle patch{Vector3d::Zero(), Vector3d::UnitZ(), {Vector3d::Zero(), 0.1}};
+  const Obstacle endless{Vector3d::Zero(), Vector3d::UnitZ(), {}};
+  // Both ends are beside the half ball, and the middle is 3 cm behind the surface.
+  EXPECT_NEAR(distance_between({-0.25, 0, -0.03}, {0.25, 0, -0.03}, patch), -0.03, 1e-9);
+  EXPECT_NEAR(distance_between({-0.25, 0, 0.03}, {0.25, 0, 0.03}, patch), 0.03, 1e-9);
+  EXPECT_NEAR(distance_between({-0.5, 0, 0.2}, {0.5, 0, -0.3}, patch), -0.05, 1e-8)
+      << "through its middle, below which the surface is 5 cm away";
+  EXPECT_NEAR(distance_between({0.2, -1, -0.03}, {0.2, 1, -0.03}, patch),
+              std::hypot(0.2, 0.03) - 0.1, 1e-9)
+      << "past the patch";
+  EXPECT_NEAR(distance_between({0.2, -1, -0.03}, {0.2, 1, 0.5}, endless), -0.03, 1e-15);
 }
 
 TEST(Fence, KeepsTheEndpointAndThickLinksOut) {
@@ -52,6 +66,10 @@ TEST(Fence, KeepsTheEndpointAndThickLinksOut) {
   EXPECT_EQ(why(fence), "the endpoint is where nothing may be") << "1 cm away, 2 are kept";
   fence.keep_outs = {box_of(p + Vector3d(0.03, -1, -1), p + Vector3d(1, 1, 1))};
   EXPECT_EQ(why(fence), "");
+  fence.keep_outs = {box_of(p - Vector3d(0.1, 0.1, 0.1), p + Vector3d(0.1, 0.1, 0.1))};
+  EXPECT_EQ(in_the_way(rx90(), fence, {}, q, p, 0, -1), "the endpoint is where nothing may be")
+      << "within the box, and nothing more is kept apart";
+  fence.keep_outs = {box_of(p + Vector3d(0.03, -1, -1), p + Vector3d(1, 1, 1))};
   // The last frame, 5 cm thick, reaches into it.
   const auto& links = rx90().statics()->mechanics().links;
   const int last = static_cast<int>(links.size()) - 1;
@@ -73,6 +91,18 @@ TEST(Fence, KeepsLinksOffSurfacesAndOffEachOtherButForNeighbours) {
   const std::vector<Obstacle> table = {{X.p - Vector3d(0, 0, 0.03), Vector3d::UnitZ(), {X.p, 0.3}}};
   EXPECT_THAT(why(fence, table, -1), testing::HasSubstr("behind a surface"));
   EXPECT_EQ(why(fence, table, 0), "") << "the tool touches it";
+  // Half a metre of the last link through the half ball, both ends beside it.
+  const Vector3d along = poses.back().linear() * Vector3d(0.25, 0, 0);
+  const Vector3d outward = along.unitOrthogonal();
+  fence.capsules = {{last, {-0.25, 0, 0}, {0.25, 0, 0}, 0.05}};
+  const auto beside = [&](double height) {
+    const Vector3d point = X.p - height * outward;
+    return why(fence, {{point, outward, {point, 0.1}}}, -1);
+  };
+  EXPECT_THAT(beside(0.02), testing::HasSubstr("behind a surface"));
+  EXPECT_THAT(beside(-0.08), testing::HasSubstr("behind a surface"));
+  EXPECT_EQ(beside(0.06), "");
+  fence.capsules = {{last, Vector3d::Zero(), Vector3d::Zero(), 0.05}};
   // A second link that reaches from its own frame to the tool.
   const int elbow = rx90().statics()->mechanics().link_of(2);
   const Vector3d there = poses[static_cast<std::size_t>(elbow)].inverse() * X.p;
