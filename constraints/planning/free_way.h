@@ -14,7 +14,8 @@
 namespace selfcal {
 
 /// True when the robot is free by `apart` (m) of every obstacle but `touched` (-1 for none) and of
-/// the fence on the straight joint path from `from` to `to`.
+/// the fence at all looked-at places of the straight joint path from `from` to `to`, and by at
+/// least half of it, or less 2.5 mm, between them.
 bool path_is_free(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const std::vector<Obstacle>& obstacles, double apart,
                   int touched = -1, const Fence& fence = {});

@@ -139,5 +139,38 @@ TEST(PathIsFree, SeesWhatLiesBetweenTheEnds) {
   EXPECT_TRUE(path_is_free(rx90(), values(rx90()), from, to, {}, 0.01));
 }
 
+/// Of sheets across the whole cell, which nothing can go round, those that the path is said to be
+/// free of.
+int sheets_passed(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double apart,
+                  const std::vector<Capsule>& capsules, double thick) {
+  constexpr int kSheets = 60;
+  int passed = 0;
+  for (int i = 0; i < kSheets; ++i) {
+    const double y = -0.3 + 0.6 * i / kSheets;
+    KeepOut sheet;
+    sheet.box = Eigen::AlignedBox3d(Eigen::Vector3d(-3, y, -3), Eigen::Vector3d(3, y + thick, 3));
+    passed += path_is_free(rx90(), values(rx90()), from, to, {}, apart, -1, {{sheet}, capsules});
+  }
+  return passed;
+}
+
+TEST(PathIsFree, LetsNoThinSheetFitBetweenTwoPlaces) {
+  Eigen::VectorXd from(6), to(6);
+  from << -2.7, 0.1, 0.1, -4, 0.2, -4;
+  to << 2.7, 0.1, 0.1, 4, 0.2, 4;
+  EXPECT_EQ(sheets_passed(from, to, 0.004, {}, 1e-3), 0);
+  EXPECT_EQ(sheets_passed(from, to, 0, {}, 6e-3), 0) << "where nothing more is kept apart";
+}
+
+TEST(PathIsFree, LetsNoThinSheetFitBetweenTwoPlacesOfACapsule) {
+  Eigen::VectorXd from = Eigen::VectorXd::Zero(6), to = from;
+  from[0] = -2.7;
+  to[0] = 2.7;
+  // A thin rod a metre beside the first joint's axis.
+  const int first = rx90().statics()->mechanics().link_of(0);
+  const std::vector<Capsule> rod = {{first, {1, 0, 0}, {1, 0, 0.1}, 1e-3}};
+  EXPECT_EQ(sheets_passed(from, to, 0.002, rod, 1e-3), 0);
+}
+
 }  // namespace
 }  // namespace selfcal
