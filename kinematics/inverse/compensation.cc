@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "kinematics/corrected_robot.h"
@@ -126,23 +127,54 @@ std::vector<ReachedPose> Compensation::nominal_solutions(const Location& wanted,
 }
 
 Command Compensation::corrected(const Location& wanted, const ReachedPose& nominal) const {
-  Eigen::VectorXd start = nominal.q;
+  Command command = corrected_from(wanted, nominal.q, nominal.there);
+  if (command.status != Reach::limit) return command;
+  // What the nominal robot has within the limits the corrections may bring beyond one.
+  const Eigen::VectorXd turned = turned_within(command.q);
+  command.q.resize(0);
+  if (!within_limits(*nominal_, turned)) return command;
+  Command other = corrected_from(wanted, turned, nominal.there);
+  other.iterations += command.iterations;
+  return other.status == Reach::reached ? other : command;
+}
+
+/// Readings `q` with every joint that turns and is beyond its limit a whole turn back.
+Eigen::VectorXd Compensation::turned_within(const Eigen::VectorXd& q) const {
+  PsiBlock psi;
+  Locations X;
+  Eigen::MatrixXd J;
+  calibrated_->locate(block_of(q), xi_calibrated_, Body::endpoint, X, &psi);
+  calibrated_->joint_jacobian(block_of(q), xi_calibrated_, Body::endpoint, psi, J);
+  Eigen::VectorXd turned = q;
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Joint& joint = nominal_->joints()[static_cast<std::size_t>(j)];
+    const double turn_of_reading = J.col(j).tail<3>().norm();
+    if (joint.quantity != Quantity::angle || joint.allows(q[j]) || !(turn_of_reading > 0)) continue;
+    const double turn = 2 * std::numbers::pi / turn_of_reading;
+    turned[j] += q[j] > joint.upper ? -turn : turn;
+  }
+  return turned;
+}
+
+/// From readings `near`, where the nominal robot may be `there`; with its readings beyond a limit,
+/// too.
+Command Compensation::corrected_from(const Location& wanted, const Eigen::VectorXd& near,
+                                     bool there) const {
+  Eigen::VectorXd start = near;
   if (exact_calibrated_)
-    for (const Eigen::VectorXd& q : exact_calibrated_(wanted, nominal.q)) start = q;
+    for (const Eigen::VectorXd& q : exact_calibrated_(wanted, near)) start = q;
   const ReachedPose found =
       reach_pose(*calibrated_, xi_calibrated_, wanted, start.transpose(), at_).front();
   Command command;
   command.iterations = found.steps;
   command.error = found.error;
   command.error_angle = found.error_angle;
-  if (!found.there || apart(*nominal_, found.q, nominal.q) > kFarFromNominal) {
-    command.status = nominal.there ? Reach::singular : Reach::out_of_reach;
-  } else if (!within_limits(*nominal_, found.q)) {
-    command.status = Reach::limit;
-  } else {
-    command.status = Reach::reached;
-    command.q = found.q;
+  if (!found.there || apart(*nominal_, found.q, near) > kFarFromNominal) {
+    command.status = there ? Reach::singular : Reach::out_of_reach;
+    return command;
   }
+  command.status = within_limits(*nominal_, found.q) ? Reach::reached : Reach::limit;
+  command.q = found.q;
   return command;
 }
 

@@ -50,6 +50,8 @@ class Compensation {
   std::vector<ReachedPose> searched(const Location& wanted, const Eigen::VectorXd& near,
                                     bool all) const;
   Command corrected(const Location& wanted, const ReachedPose& nominal) const;
+  Command corrected_from(const Location& wanted, const Eigen::VectorXd& near, bool there) const;
+  Eigen::VectorXd turned_within(const Eigen::VectorXd& q) const;
 
   std::shared_ptr<const Robot> nominal_, calibrated_;
   OperatingPoint at_;

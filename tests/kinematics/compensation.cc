@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <numbers>
+#include <random>
 
 #include "constraints/sampling/random_poses.h"
 #include "io/files/robot_file.h"
@@ -175,6 +177,23 @@ TEST(Compensation, GivesEverySolutionWithinTheLimitsNearestFirst) {
     before = apart;
   }
   EXPECT_EQ(all.front().q, compensation.command(wanted, near).q);
+}
+
+TEST(Compensation, TurnsAJointRoundThatACorrectionBringsBeyondItsLimit) {
+  const std::string text = shipped("rx90");
+  const std::shared_ptr<const Robot> nominal = robot_of(text);
+  Eigen::VectorXd xi = values(*nominal);
+  xi[find_parameter(*nominal, "j4.theta")] -= 2e-3;
+  const std::shared_ptr<const Robot> calibrated = robot_of(robot_text(*nominal, xi));
+  const Compensation compensation(nominal, calibrated);
+  // Within the limit of joint 4, 4.71 rad, by less than it is off.
+  const Eigen::VectorXd near = (Eigen::VectorXd(6) << 0.3, -0.5, 0.8, 4.7095, 1.95, 0.4).finished();
+  const Location wanted = locate(*nominal, values(*nominal), near);
+  const Command command = compensation.command(wanted, near);
+  ASSERT_EQ(command.status, Reach::reached);
+  EXPECT_NEAR(command.q[3], near[3] + 2e-3 - 2 * std::numbers::pi, 1e-6);
+  EXPECT_TRUE(within_limits(*nominal, command.q));
+  EXPECT_LT((locate(*calibrated, values(*calibrated), command.q).p - wanted.p).norm(), 1e-8);
 }
 
 TEST(Compensation, ReadsAParallelRobotOffItsIdentifiedChains) {
