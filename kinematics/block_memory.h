@@ -27,6 +27,10 @@ inline std::string block_key(const ConfigurationBlock& block, Body body) {
   for (const Eigen::MatrixXd* each : {&c.wrench, &c.velocity, &c.normal}) add_all(*each);
   for (const Eigen::VectorXd* each : {&c.temperature, &c.time}) add_all(*each);
   add_all(c.set);
+  if (block.start) {  // where the loops are closed from, and so whether they close
+    add_all(block.start->R);
+    add_all(block.start->p);
+  }
   return key;
 }
 

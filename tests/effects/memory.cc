@@ -1,6 +1,7 @@
 // A corrected robot keeps what its effects do to a block: it answers as if it were asked for the
 // first time.
 #include "tests/effects/by_hand.h"
+#include "tests/kinematics/kind_examples.h"
 
 namespace selfcal {
 namespace {
@@ -27,6 +28,33 @@ TEST(CorrectedRobot, AnswersAsIfAskedForTheFirstTimeWhateverAnotherBlockCarries)
         for (const Body body : {Body::endpoint, Body::last_link})
           EXPECT_EQ(tip(*asked, q, force, body), tip(*soft(), q, force, body));
   EXPECT_NEAR((tip(*asked, 0, 100, Body::endpoint) - idle).z(), -100e-6, kSecondOrder);
+}
+
+TEST(CorrectedRobot, DoesNotTakeWhatItSawWhereTheLoopsDidNotClose) {
+  const std::string machine =
+      kind_examples().at("gough-stewart") + kind_masses().at("gough-stewart");
+  const std::shared_ptr<const Robot> geometry = robot_of(machine);
+  const auto soft = [&] {
+    Problems problems;
+    const Node list = parsed("effects: [{effect: leg_compliance, at: leg1, c: 1.0e-5}]");
+    return correct(geometry, list.items[0].items, {}, problems);
+  };
+  ConfigurationBlock block = block_of(Eigen::VectorXd::Constant(6, 0.85));
+  const auto tip = [&](const Robot& robot) {
+    Locations X;
+    EXPECT_TRUE(robot.locate(block, values(robot), Body::endpoint, X, nullptr).closes());
+    return X.p(0);
+  };
+  const auto asked = soft();
+  // From below its base it is another machine.
+  Location below = *geometry->home();
+  below.p.z() = -below.p.z();
+  block.start = below;
+  Locations X;
+  ASSERT_FALSE(asked->locate(block, values(*asked), Body::endpoint, X, nullptr).closes());
+  block.start.reset();
+  EXPECT_EQ(tip(*asked), tip(*soft()));
+  EXPECT_GT((tip(*asked) - tip(*geometry)).norm(), 1e-5) << "the leg gives way";
 }
 
 }  // namespace
