@@ -1,7 +1,8 @@
 // A body stands where the calibration has its last joint, by the same step as a URDF's link:
 //   X'_WB = X'_WJ X_WJ^-1 X_WB
-// Its joints stay where they are in it. Springs, play and what follows another joint are copies of
-// the joint behind it; a link that bends gets two bodies between its own and the next one.
+// Its joints stay where they are in it. X_WB has all joints at zero, the file each at its `ref`:
+// what is written is X'_PB X_BF. Springs, play and what follows another joint are copies of the
+// joint behind it; a link that bends gets two bodies between its own and the next one.
 #include "io/models/mjcf_like.h"
 
 #include <tinyxml.h>
@@ -100,13 +101,18 @@ class MendedModel {
                                   ", which it carries at one place");
       const Isometry3d X = moved * body.X_WB;
       const Isometry3d in_parent = parent.inverse() * X;
-      if (!same_pose(in_parent, parent_before.inverse() * body.X_WB))
-        place_element(*elements_[b], in_parent);
+      if (!same_pose(in_parent, parent_before.inverse() * body.X_WB)) place_body(b, in_parent);
       carriers_.push_back(parent);
       placed_.push_back(X);
       parent = X;
       parent_before = body.X_WB;
     }
+  }
+
+  void place_body(std::size_t b, const Isometry3d& in_parent) {
+    const Isometry3d& X_BF = read_.bodies[b].X_BF;
+    const bool stays = same_pose(X_BF, Isometry3d::Identity());
+    place_element(*elements_[b], stays ? in_parent : in_parent * X_BF);
   }
 
   void place_tool() {
@@ -117,8 +123,8 @@ class MendedModel {
         read_.tool_is_site ? named_child(*elements_.back(), "site", read_.tool) : nullptr;
     if (site) return place_element(*site, X);
     if (read_.bodies.back().joints.empty() && elements_.size() > 1)
-      return place_element(*elements_.back(),
-                           placed_[placed_.size() - 2].inverse() * corrected_.chain.X_WT);
+      return place_body(elements_.size() - 1,
+                        placed_[placed_.size() - 2].inverse() * corrected_.chain.X_WT);
     out_.left_out.push_back("the tool's correction, for " + read_.tool +
                             " is what the last joint moves: put a site at the tool");
   }
@@ -278,7 +284,7 @@ class MendedModel {
               : Eigen::Vector3d(Eigen::Vector3d::Zero());
     const std::vector<SprungBody> bodies =
         along ? bending_bodies(spring, next) : std::vector<SprungBody>{mounting_body(spring)};
-    TiXmlElement kept = *elements_[b + 1];
+    const TiXmlElement kept = *elements_[b + 1];
     TiXmlElement* parent = elements_[b + 1]->Parent()->ToElement();
     parent->RemoveChild(elements_[b + 1]);
     for (const SprungBody& each : bodies) {
@@ -288,8 +294,8 @@ class MendedModel {
       parent = parent->InsertEndChild(made)->ToElement();
       carriers_[b + 1] = X;
     }
-    place_element(kept, carriers_[b + 1].inverse() * placed_[b + 1]);
     relocate(b + 1, *parent->InsertEndChild(kept)->ToElement());
+    place_body(b + 1, carriers_[b + 1].inverse() * placed_[b + 1]);
   }
 
   /// The elements of the bodies from `b` on, the first of which is now `element`.

@@ -24,7 +24,9 @@ struct MujocoBody {
   int place = 0;  ///< in the order in which the model's file has its bodies, from 0
   std::string name;
   Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();  ///< with all joints at zero
-  std::vector<int> joints = {};                            ///< of the chain, that it has
+  /// The body as its file has it, its joints at their `ref`, seen from where X_WB has it.
+  Eigen::Isometry3d X_BF = Eigen::Isometry3d::Identity();
+  std::vector<int> joints = {};  ///< of the chain, that it has
 };
 
 struct MujocoChain {

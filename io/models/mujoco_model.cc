@@ -99,7 +99,12 @@ std::vector<MujocoBody> MujocoModel::bodies() const {
   std::vector<MujocoBody> list;
   for (int id = tool_.body; id > 0; id = model_->body_parentid[id]) {
     const char* name = mj_id2name(model_.get(), mjOBJ_BODY, id);
-    MujocoBody body{id - 1, name ? name : "", pose_at(data_->xpos + 3 * id, data_->xmat + 9 * id)};
+    const auto standing = [&](int b) { return pose_at(data_->xpos + 3 * b, data_->xmat + 9 * b); };
+    MujocoBody body{id - 1, name ? name : "", standing(id)};
+    std::array<mjtNum, 9> R{};
+    mju_quat2Mat(R.data(), model_->body_quat + 4 * id);
+    body.X_BF = body.X_WB.inverse() * standing(model_->body_parentid[id]) *
+                pose_at(model_->body_pos + 3 * id, R.data());
     for (std::size_t j = 0; j < joints_.size(); ++j)
       if (model_->jnt_bodyid[joints_[j].id] == id) body.joints.push_back(static_cast<int>(j));
     list.push_back(std::move(body));

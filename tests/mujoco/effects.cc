@@ -158,10 +158,11 @@ struct Mended {
   std::unique_ptr<Robot> robot;
 };
 
-/// kOwn mended by its robot, every parameter moved by up to 2 mm or mrad, with `effects`.
-Mended mended_by(const std::string& effects) {
+/// kOwn, or another, mended by its robot, every parameter moved by up to 2 mm or mrad, with
+/// `effects`.
+Mended mended_by(const std::string& effects, const std::string& own = kOwn) {
   const Scratch scratch;
-  const auto file = scratch.write("own.xml", kOwn);
+  const auto file = scratch.write("own.xml", own);
   const auto read = read_mujoco(file, "");
   EXPECT_TRUE(read) << read.error().what;
   const auto nominal = robot_of(write_yaml(serial::write(frames_of(read->chain))), "own.yaml");
@@ -177,7 +178,7 @@ Mended mended_by(const std::string& effects) {
   const serial::Model model = serial::read(node.without({"effects"}), problems);
   const CorrectedChain chain = corrected_chain(read->chain, model);
   EXPECT_EQ(chain.problem, "");
-  const auto made = mjcf_like(kOwn, "own.xml", *read, chain, model, mjcf_effects(node, model));
+  const auto made = mjcf_like(own, "own.xml", *read, chain, model, mjcf_effects(node, model));
   EXPECT_TRUE(made) << made.error().what;
   auto calibrated = robot_of(robot, "own.yaml");
   EXPECT_TRUE(calibrated) << calibrated.error().what;
@@ -207,6 +208,19 @@ TEST(MendedModel, OfTheUsersPutsTheToolWhereTheCalibratedRobotHasIt) {
   EXPECT_THAT(mended.text, HasSubstr("name=\"kept\""));
   // The spring behind j3 is one of 1e-12 rad/(N m): nothing beside a nanometre.
   EXPECT_LT(most_apart(mended), 1e-9);
+}
+
+TEST(MendedModel, OfTheUsersWhoseJointsAreDrawnElsewhereThanAtZeroPutsTheToolThere) {
+  std::string own = kOwn;
+  replace(own, "name=\"j1\"", "name=\"j1\" ref=\"-40\"");
+  replace(own, "name=\"j2\"", "name=\"j2\" ref=\"30\"");
+  replace(own, "name=\"j3\"", "name=\"j3\" ref=\"50\"");
+  EXPECT_LT(most_apart(mended_by("{effect: joint_compliance, at: j3, c: 1.0e-12}", own)), 1e-9);
+  // The third body stands behind two that bend, by what bends in them.
+  EXPECT_LT(most_apart(mended_by("{effect: link_compliance, at: j2, bend_x: 1.0e-12, bend_y: "
+                                 "1.0e-12, twist: 1.0e-12}",
+                                 own)),
+            1e-9);
 }
 
 TEST(MendedModel, OfTheUsersGivesWayAsTheRobotDoes) {
