@@ -144,9 +144,12 @@ struct EndpointSigma {
   std::vector<double> by_pose = {};  ///< m, in the order of the poses
 };
 
+/// Poses below which an rms over them says little: of 20 it is uncertain by a sixth of itself.
+inline constexpr int kFewestPoses = 20;
+
 /// The end position is known, to the target (m).
 inline bool known_to(const EndpointSigma& sigma, double target) {
-  return sigma.poses > 0 && sigma.rms <= target;
+  return sigma.poses >= kFewestPoses && sigma.rms <= target;
 }
 
 /// A length that the entry of a set gives and that the robot's scale stands on (m).

@@ -193,10 +193,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         "Measure the length given once more, or give another one: on a wrong one the whole robot "
         "is "
         "too large or too small.");
-  else if (solution.workspace.poses == 0)
-    steps.push_back(
-        "The robot as it is does not reach the workspace that the data set gives: check its box "
-        "and cone.");
+  else if (solution.workspace.poses < kFewestPoses)
+    steps.push_back(std::string("The robot as it is ") +
+                    (solution.workspace.poses == 0 ? "does not reach" : "hardly reaches") +
+                    " the workspace that the data set gives: check its box and cone.");
   else if (solution.workspace.rms > data.target)
     steps.push_back(
         with_figures("The end position is known to %.3g mm only. ", 1e3 * solution.workspace.rms) +

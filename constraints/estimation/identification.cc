@@ -23,6 +23,7 @@
 #include "constraints/sampling/workspace_poses.h"
 #include "constraints/statistics.h"
 #include "kinematics/expects.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -64,6 +65,20 @@ void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution
         "the figures before are of a nominal robot not placed to the end: " +
         adjusted.before.stop_reason);
   add_set_warnings(equations, adjusted.fitted, solution);
+}
+
+/// The box is reached by fewer configurations than are looked for, so that it, its frame or its
+/// cone may be wrong; empty where it is not.
+std::string hardly_reached(const Workspace& workspace, Eigen::Index poses) {
+  if (!workspace.box || poses >= kPoses) return {};
+  const auto corner = [](const Eigen::Vector3d& p) {
+    return with_figures("[%.3g, %.3g, %.3g]", p.x(), p.y(), p.z());
+  };
+  return "workspace: " + (poses > 0 ? "only " + std::to_string(poses) : "none") +
+         " of the configurations tried reach its box " + corner(workspace.box->min()) + " to " +
+         corner(workspace.box->max()) + " m within the joint limits" +
+         (workspace.cone ? " and its cone" : "") +
+         ": see that it is where the robot works, in the world of the robot file";
 }
 
 /// The rows say something of the robot, but nothing against its maker's figures: the moves stay
@@ -169,6 +184,9 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   std::ranges::copy(turned, std::back_inserter(solution.warnings));
   std::ranges::transform(solution.slips, std::back_inserter(solution.warnings), slip_words);
   std::ranges::transform(solution.frame_steps, std::back_inserter(solution.warnings), step_words);
+  if (std::string what = hardly_reached(data.workspace, where_it_counts.poses.rows());
+      !what.empty())
+    solution.warnings.push_back(std::move(what));
   if (progress) progress("done", 1);
   if (nothing) {  // certain of what was given, not of what is true
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";

@@ -277,6 +277,10 @@ bool angles_rise(const Judged& before, const Judged& after) {
 std::string certainty(const Grounds& grounds) {
   if (grounds.workspace.poses == 0)
     return "no configuration within the joint limits reaches the workspace";
+  if (grounds.workspace.poses < kFewestPoses)
+    return "only " + std::to_string(grounds.workspace.poses) +
+           " of the configurations tried reach the workspace within the joint limits, " +
+           std::to_string(kFewestPoses) + " are needed to say how well the end position is known";
   std::string text =
       with_figures("end position in the workspace known to %.3g mm", 1e3 * grounds.workspace.rms);
   if (grounds.orientation_seen)
@@ -330,7 +334,8 @@ Verdict verdict(const Judged& before, const Judged& after, const Residuals& resi
     v.answer = better ? Answer::improved : Answer::not_improved;
     if (worse_turned) v.why += "; the angles are met worse than before";
   } else {
-    v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
+    if (grounds.workspace.poses >= kFewestPoses)
+      v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
     if (better || !grounds.nominal_explains) return v;
     v.answer = Answer::not_improved;
     v.why += "; the rows ask for no other robot than the maker's";

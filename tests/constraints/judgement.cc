@@ -49,7 +49,7 @@ struct Rows {
   Verdict judged(std::vector<std::string> contradictions = {}) const {
     Grounds grounds;
     grounds.workspace.rms = kMicrometre;
-    grounds.workspace.poses = 1;
+    grounds.workspace.poses = poses;
     grounds.target = 1e-3;
     grounds.converged = true;
     grounds.contradictions = std::move(contradictions);
@@ -63,7 +63,17 @@ struct Rows {
 
   DataSet data;
   Judged nominal, calibrated;
+  int poses = kFewestPoses;  // of the workspace
 };
+
+TEST(Verdict, IsNotDeterminedWhereTheRobotHardlyReachesTheWorkspace) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  EXPECT_EQ(rows.answer(), Answer::improved);
+  rows.poses = 2;
+  EXPECT_EQ(rows.answer(), Answer::not_determined);
+  EXPECT_THAT(rows.judged().why, testing::HasSubstr("only 2 of the configurations tried reach"));
+}
 
 TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
   Rows rows;

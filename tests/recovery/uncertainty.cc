@@ -41,6 +41,25 @@ double budget(const Solution& solution, const std::string& source) {
   return -1;
 }
 
+TEST(Uncertainty, SaysThatAWorkspaceIsHardlyReached) {
+  const auto robot = robot_of(kRx90);
+  Random random(4);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  Session session = make_session(*robot, truth, tracked(90), 20e-6, random);
+  EXPECT_EQ(identify(*robot, session.data).verdict.answer, Answer::improved);
+  // A room in whose corner alone the robot works.
+  session.data.workspace.box =
+      Eigen::AlignedBox3d(Eigen::Vector3d(0.4, -9, 0.2), Eigen::Vector3d(30, 9, 30));
+  const Solution solution = identify(*robot, session.data);
+  EXPECT_GT(solution.workspace.poses, 0);
+  EXPECT_LT(solution.workspace.poses, kFewestPoses);
+  EXPECT_LT(solution.workspace.rms, session.data.target);
+  EXPECT_EQ(solution.verdict.answer, Answer::not_determined);
+  EXPECT_TRUE(std::ranges::any_of(solution.warnings, [&](const std::string& each) {
+    return each.starts_with("workspace: only " + std::to_string(solution.workspace.poses));
+  }));
+}
+
 TEST(Uncertainty, HasABudgetThatAddsUpAndResidualsThatAreNoise) {
   const auto robot = robot_of(kRx90);
   Random random(4);

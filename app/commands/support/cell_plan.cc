@@ -28,7 +28,10 @@ SetCount count_of(const TouchPlan& plan, int set) {
 /// What is lacking; empty where the plan is whole.
 std::string lacking(const CellPlan& cell) {
   if (!cell.plan.unreached.empty()) return cell.plan.unreached;
-  return cell.expected.workspace.poses == 0 ? "the robot does not reach the workspace" : "";
+  const int poses = cell.expected.workspace.poses;
+  if (poses == 0) return "the robot does not reach the workspace";
+  return poses < kFewestPoses ? "the robot hardly reaches the workspace: check its box and cone"
+                              : "";
 }
 
 }  // namespace
