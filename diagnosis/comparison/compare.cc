@@ -104,8 +104,8 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
 
 /// What changed while the sets of `after` that stand elsewhere have been parted from those of
 /// `before`.
-Comparison weighed(const std::shared_ptr<const Robot>& geometry, const Session& before,
-                   const Session& after, Between between, const DiagnosisOptions& options,
+Comparison weighed(const std::shared_ptr<const Robot>& geometry, const FittedSession& before,
+                   const FittedSession& after, Between between, const DiagnosisOptions& options,
                    const Progress& progress) {
   const Pair pair(geometry, before, after, between, options, progress);
   Comparison result;
@@ -123,7 +123,8 @@ Comparison weighed(const std::shared_ptr<const Robot>& geometry, const Session& 
 
 /// How far the rows of each set of `after` are off where that set stands where `before` has it
 /// (rms; m, or rad of sets without lengths); 0 where it is not in both or has no place of its own.
-std::vector<double> moved(const Robot& geometry, const Session& before, const Session& after) {
+std::vector<double> moved(const Robot& geometry, const FittedSession& before,
+                          const FittedSession& after) {
   const std::vector<Set>& sets = after.data.sets;
   const Equations equations(geometry, after.data, Use::fit);
   State state = after.fit.state;
@@ -146,8 +147,8 @@ std::vector<double> moved(const Robot& geometry, const Session& before, const Se
 }
 
 /// Surfaces and instruments that stand elsewhere, by so much that nothing else explains it.
-std::vector<Change> stand_elsewhere(const Robot& geometry, const Session& before,
-                                    const Session& after, Between between) {
+std::vector<Change> stand_elsewhere(const Robot& geometry, const FittedSession& before,
+                                    const FittedSession& after, Between between) {
   std::vector<Change> list;
   const std::vector<double> by = moved(geometry, before, after);
   for (size_t s = 0; s < by.size(); ++s) {
@@ -217,8 +218,8 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
                    const DataSet& after, Between between, const DiagnosisOptions& options,
                    const Progress& progress) {
   const std::shared_ptr<const Robot> geometry = geometry_of(robot);
-  const Session first(*geometry, before, options, progress);
-  const Session second(*geometry, after, options, progress);
+  const FittedSession first(*geometry, before, options, progress);
+  const FittedSession second(*geometry, after, options, progress);
   if (progress) progress("weighing what changed", 0.5);
   std::vector<Change> elsewhere = stand_elsewhere(*geometry, first, second, between);
   Comparison result;

@@ -13,13 +13,13 @@
 
 namespace selfcal {
 
-Session::Session(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
-                 const Progress& progress)
+FittedSession::FittedSession(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
+                             const Progress& progress)
     : data(std::move(rows)),
       fit(adjust(Equations(geometry, data, Use::fit), geometry_options(options), progress).fitted) {
 }
 
-Session parted(Session session, const std::vector<std::string>& sets) {
+FittedSession parted(FittedSession session, const std::vector<std::string>& sets) {
   std::vector<Set>& all = session.data.sets;
   const auto asked = [&](const Set& set) { return std::ranges::count(sets, set.name) > 0; };
   std::vector<char> apart;
@@ -30,8 +30,9 @@ Session parted(Session session, const std::vector<std::string>& sets) {
   return session;
 }
 
-Pair::Pair(std::shared_ptr<const Robot> geometry, const Session& before, const Session& after,
-           Between between, const DiagnosisOptions& options, const Progress& progress)
+Pair::Pair(std::shared_ptr<const Robot> geometry, const FittedSession& before,
+           const FittedSession& after, Between between, const DiagnosisOptions& options,
+           const Progress& progress)
     : geometry_(std::move(geometry)),
       most_outliers_(options.most_outliers),
       first_rows_(before.data.rows.rows()),
@@ -52,7 +53,7 @@ Pair::Pair(std::shared_ptr<const Robot> geometry, const Session& before, const S
 }
 
 /// Adds the squares of its noise to those of both's sets.
-void Pair::add_noise_of(const Session& part) {
+void Pair::add_noise_of(const FittedSession& part) {
   const Fit& fit = part.fit;
   const std::vector<Scale> noise = pooled_noise(part.data, fit);
   const auto first = static_cast<int>(outlier_.size());

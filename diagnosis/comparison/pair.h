@@ -13,22 +13,23 @@
 namespace selfcal {
 
 /// One of the two fitted alone, which tells noise and false rows: a change is neither.
-struct Session {
-  Session(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
-          const Progress& progress);
+struct FittedSession {
+  FittedSession(const Robot& geometry, DataSet rows, const DiagnosisOptions& options,
+                const Progress& progress);
   DataSet data;
   Fit fit;
 };
 
 /// `session` with these sets, and those that refer to them, under other names: they
 /// share nothing with those of another session.
-Session parted(Session session, const std::vector<std::string>& sets);
+FittedSession parted(FittedSession session, const std::vector<std::string>& sets);
 
 class Pair {
  public:
   /// Fits both together.
-  Pair(std::shared_ptr<const Robot> geometry, const Session& before, const Session& after,
-       Between between, const DiagnosisOptions& options, const Progress& progress);
+  Pair(std::shared_ptr<const Robot> geometry, const FittedSession& before,
+       const FittedSession& after, Between between, const DiagnosisOptions& options,
+       const Progress& progress);
   Pair(const Pair&) = delete;
 
   const Changeable& changes() const { return changes_; }
@@ -41,7 +42,7 @@ class Pair {
   std::vector<char> outliers_among(const DenseEquations& rows, const Hypothesis& changes) const;
 
  private:
-  void add_noise_of(const Session& part);
+  void add_noise_of(const FittedSession& part);
   Whitened whitened(const DenseEquations& rows) const;
 
   std::shared_ptr<const Robot> geometry_;
