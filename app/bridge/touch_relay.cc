@@ -26,18 +26,20 @@ Result<void> TouchRelay::turn(Nanoseconds now) {
   Result<void> sent;
   const auto taken = reader_.take([&](const dds::Bool& message, const dds_sample_info_t& info) {
     if (!sent || !writer_.believes(info.publication_handle, reader_)) return;
-    if (level_ == message.data_) return;
-    level_ = message.data_;
+    const bool repeated = level_.level() == message.data_;
+    level_.hear(message.data_, info.publication_handle, now);
+    if (repeated) return;
     changed_ = info.source_timestamp;
     repeated_ = now;
-    sent = trigger_->send(changed_, *level_);
+    sent = trigger_->send(changed_, message.data_);
   });
   if (!taken) return taken;
   if (!sent) return sent;
-  if (reader_.matched() == 0) level_.reset();
-  if (!level_ || now - repeated_ < kRepeatLevel) return {};
+  if (reader_.matched() == 0) level_.forget();
+  const auto level = level_.level();
+  if (!level || level_.has_ceased(now) || now - repeated_ < kRepeatLevel) return {};
   repeated_ = now;
-  return trigger_->send(changed_, *level_);
+  return trigger_->send(changed_, *level);
 }
 
 }  // namespace selfcal

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "io/dds/sole_writer.h"
+#include "io/repeated_level.h"
 #include "io/transport.h"
 
 namespace selfcal {
@@ -21,19 +21,21 @@ class TouchRelay {
                                                   std::unique_ptr<TriggerSender> trigger,
                                                   Wakeup& wakeup);
   /// Passes on what has come, and repeats the level ten times a second for as long as its publisher
-  /// is there.
+  /// is there, but not where that has repeated it and is silent: it has hung then.
   Result<void> turn(Nanoseconds now);
   int publishers() const { return reader_.matched(); }
   std::uint64_t strange() const { return writer_.strange(); }  ///< of others than the first
 
  private:
+  static constexpr Nanoseconds kSilence = kSecond / 2;
+
   TouchRelay(DdsReader<dds::Bool> reader, std::unique_ptr<TriggerSender> trigger)
       : reader_(std::move(reader)), trigger_(std::move(trigger)) {}
 
   DdsReader<dds::Bool> reader_;
   SoleWriter writer_;
   std::unique_ptr<TriggerSender> trigger_;
-  std::optional<bool> level_;
+  RepeatedLevel level_{kSilence};
   Nanoseconds changed_ = 0, repeated_ = 0;
 };
 

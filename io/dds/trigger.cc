@@ -21,20 +21,16 @@ Result<std::unique_ptr<DdsTrigger>> DdsTrigger::open(const DdsParticipant& parti
 }
 
 std::optional<bool> DdsTrigger::closed() {
-  if (!receive() || reader_.matched() == 0 || has_ceased()) return std::nullopt;
-  return level_;
-}
-
-// Beyond the usual gaps: of a robot that is gone the joint states are missed first.
-bool DdsTrigger::has_ceased() const {
-  return repeats_ && monotonic_now() - heard_ > silence_ + 2 * longest_;
+  if (!receive() || reader_.matched() == 0 || level_.has_ceased(monotonic_now()))
+    return std::nullopt;
+  return level_.level();
 }
 
 std::string DdsTrigger::trouble() const {
-  if (!has_ceased()) return {};
+  if (!level_.has_ceased(monotonic_now())) return {};
   char text[80];
   std::snprintf(text, sizeof text, "its level, repeated before, has not come for %.2g s",
-                seconds(silence_));
+                seconds(level_.silence()));
   return text;
 }
 
@@ -53,8 +49,8 @@ Result<void> DdsTrigger::receive() {
   writer_.look(reader_);
   auto taken = reader_.take([&](const dds::StampedBool& message, dds_instance_handle_t writer) {
     if (!writer_.believes(writer, reader_)) return;
-    const bool changed = level_ && *level_ != message.data_;
-    note_level(message.data_, writer);
+    const bool changed = level_.level() && level_.level() != message.data_;
+    level_.hear(message.data_, writer, monotonic_now());
     if (!changed) return;
     if (waiting_.size() == kMostEdges) {
       waiting_.pop_front();
@@ -63,24 +59,8 @@ Result<void> DdsTrigger::receive() {
     waiting_.push_back({.time = nanoseconds(message.header_.stamp_), .closed = message.data_});
   });
   // Who comes back may have another level: its first message is no edge.
-  if (reader_.matched() == 0) level_.reset();
+  if (reader_.matched() == 0) level_.forget();
   return taken;
-}
-
-void DdsTrigger::note_level(bool closed, dds_instance_handle_t publisher) {
-  const Nanoseconds now = monotonic_now();
-  if (publisher != publisher_) {
-    repeats_ = false;
-    longest_ = 0;
-  }
-  if (publisher != publisher_ || closed != level_ || now - heard_ > silence_)
-    same_since_ = now;
-  else
-    longest_ = std::max(longest_, now - heard_);
-  repeats_ = repeats_ || now - same_since_ > silence_;
-  publisher_ = publisher;
-  heard_ = now;
-  level_ = closed;
 }
 
 }  // namespace selfcal

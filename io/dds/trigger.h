@@ -8,6 +8,7 @@
 #include "io/dds/sole_writer.h"
 #include "io/dds/time_mapping.h"
 #include "io/ports.h"
+#include "io/repeated_level.h"
 
 namespace selfcal {
 
@@ -39,22 +40,14 @@ class DdsTrigger : public TouchTrigger {
  private:
   DdsTrigger(std::shared_ptr<TimeMapping> mapping, DdsReader<dds::StampedBool> reader,
              Nanoseconds silence)
-      : mapping_(std::move(mapping)), reader_(std::move(reader)), silence_(silence) {}
+      : mapping_(std::move(mapping)), reader_(std::move(reader)), level_(silence) {}
   Result<void> receive();
-  void note_level(bool closed, dds_instance_handle_t publisher);
-  bool has_ceased() const;
 
   std::shared_ptr<TimeMapping> mapping_;
   DdsReader<dds::StampedBool> reader_;
   SoleWriter writer_;
-  Nanoseconds silence_;
-  std::optional<bool> level_;
-  dds_instance_handle_t publisher_ = 0;  ///< who told the last level
-  Nanoseconds heard_ = 0;                ///< our time of it
-  Nanoseconds same_since_ = 0;           ///< of the first of the same ones before it without a gap
-  Nanoseconds longest_ = 0;              ///< of the gaps between the same ones
-  bool repeats_ = false;                 ///< the publisher has repeated its level for `silence`
-  std::deque<Edge> waiting_;             ///< not taken yet, with the sender's stamps
+  RepeatedLevel level_;
+  std::deque<Edge> waiting_;  ///< not taken yet, with the sender's stamps
   std::uint64_t overflowed_ = 0;
 };
 

@@ -288,5 +288,41 @@ TEST_F(Touched, BecomesTheTriggerWithTheMomentAtWhichItWasWritten) {
   EXPECT_LE(heard.size(), 1) << "nobody knows the level any more";
 }
 
+TEST_F(Touched, IsNotRepeatedForADriverThatRepeatedItsLevelAndIsSilentNow) {
+  auto relay = must(TouchRelay::open(
+      participant, "/touch", must(DdsTriggerSender::open(participant, "trigger", wakeup)), wakeup));
+  auto levels =
+      must(DdsReader<dds::StampedBool>::open(participant, ros_topic("trigger"), kExchange));
+  auto touch = must(DdsWriter<dds::Bool>::open(participant, ros_topic("touch"), {}, &wakeup));
+  ASSERT_TRUE(eventually(
+      [&] { return levels.matched() == 1 && relay->publishers() == 1 && touch.matched() == 1; }));
+  Nanoseconds now = 100 * kSecond;
+  int heard = 0;
+  const auto turn = [&] {
+    now += kSecond / 10;
+    must(relay->turn(now));
+    must(levels.take([&](const dds::StampedBool&) { ++heard; }));
+  };
+  const dds::Bool open{false};
+  for (int i = 0; i < 10; ++i) {
+    must(touch.write(open));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    turn();
+  }
+  EXPECT_TRUE(eventually([&] {
+    turn();
+    return heard >= 5;
+  }));
+  now += kSecond;
+  for (int i = 0; i < 3; ++i) turn();
+  heard = 0;
+  for (int i = 0; i < 10; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    turn();
+  }
+  EXPECT_EQ(relay->publishers(), 1);
+  EXPECT_EQ(heard, 0);
+}
+
 }  // namespace
 }  // namespace selfcal
