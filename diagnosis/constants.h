@@ -170,6 +170,10 @@ struct DiagnosisConstants {
     double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
     /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
     double confirmed = 0.3;
+    /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
+    /// farther are no noise, if there are as many as told; 1.4 to 2, 5 to 30 [trials]
+    double beyond_noise = 1.6;
+    int fewest_beyond_noise = 10;
     /// Of what calibration leaves is still there: little gain; 0.5 to 0.95 [habit]
     double hardly_closes = 0.8;
     /// Of what is left with the forces: less without them is a slip; 0.8 to 1 [habit]

@@ -92,6 +92,20 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
   return why;
 }
 
+/// Noise is said to be all, and the rows that nothing was chosen by say otherwise: they err by it
+/// and by what the geometry is in doubt, which for rows alike is the others' leverage.
+std::string beyond_noise(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (diagnosis.verdict.effect != kNone || gap.rows < kDiagnosis.report.fewest_beyond_noise)
+    return {};
+  const double leverage = 1 - linearised.geometry_leaves(linearised.whitened_geometry()).mean();
+  const double explained = gap.noise_floor * std::sqrt(1 + leverage);
+  if (gap.rms_before <= kDiagnosis.report.beyond_noise * explained) return {};
+  return "calibration leaves " + millimetres(gap.rms_before) +
+         " of the rows kept aside, where noise explains " + millimetres(explained) +
+         ": what is there the other rows do not tell";
+}
+
 /// What calibration with all that was found leaves of the rows.
 double left_of(const LinearisedModel& linearised, const DataSet& data, const Correction& found) {
   Problems problems;
@@ -158,6 +172,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
+  if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = forces_that_never_were(linearised, data, diagnosis); !why.empty())
     return why;
   const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();

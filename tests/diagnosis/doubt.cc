@@ -53,6 +53,24 @@ TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {
   EXPECT_THAT(diagnosis.why, HasSubstr("state a noise of 0.02 mm"));
 }
 
+TEST(Doubt, DoesNotCallNoiseWhatRowsKeptAsideAreFarBeyond) {
+  const Rows rows;
+  const DiagnosisOptions options = quick();
+  const LinearisedModel linearised(rows.robot, rows.data, options, {});
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = kNone;
+  diagnosis.gap.rows = 30;
+  diagnosis.gap.noise_floor = 35e-6;
+  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 100e-6;
+  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis), HasSubstr("calibration leaves 0.1 mm"));
+  // The geometry of 60 rows is in doubt, too.
+  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 50e-6;
+  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
+  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 100e-6;
+  diagnosis.gap.rows = 5;
+  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
+}
+
 TEST(Doubt, NamesNothingThatHardlyClosesWhatSoMuchNoiseLeaves) {
   Rows rows;
   rows.disturb(50 * kTrackerNoise);
