@@ -104,9 +104,9 @@ Hypothesis weigh(const Pair& pair, const DenseEquations& rows, SearchRule rule,
 
 /// What changed while the sets of `after` that stand elsewhere have been parted from those of
 /// `before`.
-Comparison weighed(const std::shared_ptr<const Robot>& geometry, const FittedSession& before,
-                   const FittedSession& after, Between between, const DiagnosisOptions& options,
-                   const Progress& progress) {
+Comparison compared(const std::shared_ptr<const Robot>& geometry, const FittedSession& before,
+                    const FittedSession& after, Between between, const DiagnosisOptions& options,
+                    const Progress& progress) {
   const Pair pair(geometry, before, after, between, options, progress);
   Comparison result;
   std::vector<char> outlier = pair.outlier();
@@ -135,15 +135,15 @@ std::vector<double> moved(const Robot& geometry, const FittedSession& before,
                  before.fit.rows[same] > 0 && after.fit.rows[s] > 0;
     if (in_both[s]) state.nuisance[s] = before.fit.state.nuisance[same];
   }
-  std::vector<double> squares(sets.size(), 0), count(sets.size(), 0);
+  std::vector<double> squares(sets.size(), 0), count(sets.size(), 0), rms(sets.size(), 0);
   for (const RowResidual& row : equations.residuals(state)) {
     if (!in_both[row.set] || after.fit.noise.outlier[row.row]) continue;
     squares[row.set] += std::pow(sets[row.set].method->has_lengths() ? row.length : row.angle, 2);
     count[row.set] += 1;
   }
-  for (size_t s = 0; s < squares.size(); ++s)
-    squares[s] = count[s] > 0 ? std::sqrt(squares[s] / count[s]) : 0;
-  return squares;
+  for (size_t s = 0; s < rms.size(); ++s)
+    if (count[s] > 0) rms[s] = std::sqrt(squares[s] / count[s]);
+  return rms;
 }
 
 /// Surfaces and instruments that stand elsewhere, by so much that nothing else explains it.
@@ -226,7 +226,7 @@ Comparison compare(const std::shared_ptr<const Robot>& robot, const DataSet& bef
   for (bool again = true; again;) {
     std::vector<std::string> sets;
     for (const Change& each : elsewhere) sets.push_back(each.where);
-    result = weighed(geometry, first, parted(second, sets), between, options, progress);
+    result = compared(geometry, first, parted(second, sets), between, options, progress);
     again = add_moved(*geometry, result, between, elsewhere);
   }
   if (!elsewhere.empty()) result.none = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "constraints/measurement_context.h"
@@ -55,13 +56,10 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
   const Fit& fitted = adjusted_.fitted;
   noise_ = pooled_noise(data, fitted);
   bound_noise();
-  const std::vector<char> held = weighed_rows(data.rows, static_cast<double>(fitted.at.equations),
-                                              kDiagnosis.validation.most_grown);
-  std::vector<char> left_out(held.size());
-  for (size_t row = 0; row < held.size(); ++row) {
-    left_out[row] = !held[row];
-    if (held[row]) held_.push_back(static_cast<int>(row));
-  }
+  held_ = weighed_rows(data.rows, static_cast<double>(fitted.at.equations),
+                       kDiagnosis.validation.most_grown);
+  std::vector<char> left_out(held_.size());
+  std::ranges::transform(held_, left_out.begin(), std::logical_not());
   all_ = all_equations_->dense(
       extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
       left_out);
@@ -92,10 +90,13 @@ void LinearisedModel::bound_noise() {
 }
 
 void LinearisedModel::weigh(double most) {
-  const std::vector<char> of_held =
-      weighed_rows(taken(data_.rows, held_), static_cast<double>(all_.row.size()), most);
-  weighed_.assign(static_cast<size_t>(data_.rows.rows()), 0);
-  for (size_t i = 0; i < held_.size(); ++i) weighed_[held_[i]] = of_held[i];
+  std::vector<int> rows;
+  for (size_t row = 0; row < held_.size(); ++row)
+    if (held_[row]) rows.push_back(static_cast<int>(row));
+  const std::vector<char> take =
+      weighed_rows(taken(data_.rows, rows), static_cast<double>(all_.row.size()), most);
+  weighed_.assign(held_.size(), 0);
+  for (size_t i = 0; i < rows.size(); ++i) weighed_[rows[i]] = take[i];
 }
 
 std::vector<char> LinearisedModel::taking_part() const {
@@ -205,10 +206,8 @@ bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) 
   std::vector<char> outlier =
       outliers_among(all_, residuals, static_cast<double>(nuisance_.columns.size()),
                      outlier_.size(), most_outliers_);
-  std::vector<char> held(outlier_.size(), 0);
-  for (const int row : held_) held[row] = 1;
-  for (size_t row = 0; row < held.size(); ++row)
-    if (!held[row]) outlier[row] = outlier_[row];
+  for (size_t row = 0; row < held_.size(); ++row)
+    if (!held_[row]) outlier[row] = outlier_[row];
   if (outlier == outlier_ && std::abs(variance - 1) < 0.1) return false;
   outlier_ = std::move(outlier);
   left_ = residuals;

@@ -104,7 +104,7 @@ class LinearisedModel {
   DenseEquations all_;
   std::vector<int> quieter_;
   std::vector<Scale> noise_;   ///< by set, at a scale of one
-  std::vector<int> held_;      ///< rows that all() is of
+  std::vector<char> held_;     ///< by row: all() is of it
   std::vector<char> weighed_;  ///< by row: takes part in choosing the causes
   std::vector<char> outlier_;  ///< by row of the data set
   Eigen::VectorXd steps_;      ///< that each joint's readings are rounded to; 0: not known
