@@ -188,6 +188,15 @@ TEST_F(Loop, BeginsNothingByItselfWhileTheRobotIsAtOtherWork) {
   robot.working = true;
   turn_for(20 * kSecond);
   EXPECT_EQ(state().state, ServiceState::idle) << state().why;
+  const auto said_to_wait = [&] {
+    const std::vector<EventRecord> events = must(store->events(20));
+    return std::ranges::count_if(events, [](const EventRecord& event) {
+      return event.text.find("waits until the robot has stood for 5 s") != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(turning([&] { return said_to_wait() == 1; }));
+  turn_for(20 * kSecond);
+  EXPECT_EQ(said_to_wait(), 1) << "once, and not every second";
 
   robot.working = false;
   turn_for(4 * kSecond);

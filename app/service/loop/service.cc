@@ -122,11 +122,22 @@ void Service::check_self() {
 
 /// The robot may be at other work, which nothing that begins by itself disturbs.
 void Service::check_schedule() {
-  if (c_.extended_state.state != ServiceState::idle || c_.now - moved_ < kStands) return;
-  if (c_.now - last_due_ < kSecond) return;
+  const ExtendedState& s = c_.extended_state;
+  if (s.state != ServiceState::idle || c_.now - last_due_ < kSecond) return;
   last_due_ = c_.now;
-  if (c_.extended_state.postponed) return put_due({c_.extended_state.kind, "the robot stands"});
-  if (!c_.config.schedule.any()) return;
+  if (!c_.config.schedule.any() && !s.postponed) return;
+  const std::optional<Due> next = s.postponed ? Due{s.kind, "the robot stands"} : scheduled();
+  const bool stands = c_.now - moved_ >= kStands;
+  if (next && stands) put_due(*next);
+  const bool waits = next && !stands && !s.held && !s.postponed;  // of a postponed one it was told
+  if (waits && !waits_)
+    c_.tell("info", "a session is due (" + next->why +
+                        ") and waits until the robot has stood for " +
+                        format_number(seconds(kStands)) + " s");
+  waits_ = waits;
+}
+
+std::optional<Due> Service::scheduled() {
   const std::int64_t unix_ms = c_.unix_ms();
   Since& last = c_.use.since;
   // Before the first session, and after the clock was set back, the interval begins now.
@@ -134,9 +145,8 @@ void Service::check_schedule() {
   Since since = last;
   since.motion_hours = c_.use.motion_hours - last.motion_hours;
   since.calibrated = analyst_.can_check();
-  const auto next = due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(),
-                        utc_offset(unix_ms));
-  if (next) put_due(*next);
+  return due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(),
+             utc_offset(unix_ms));
 }
 
 void Service::put_due(const Due& next) {

@@ -34,6 +34,7 @@ class Service {
   void begin_test();
   void check_self();
   void check_schedule();
+  std::optional<Due> scheduled();  ///< what the schedule asks for now
   void put_due(const Due& next);
   void remember();
   void recall();
@@ -67,6 +68,7 @@ class Service {
   Nanoseconds test_began_ = 0;
   bool testing_ = false;
   Nanoseconds moved_ = 0;  ///< when the robot was last seen not to stand
+  bool waits_ = false;     ///< what is due waits until it stands, and that was told
   Nanoseconds last_turn_ = 0, last_remembered_ = 0, last_due_ = 0;
 
   /// Commands that were refused, which are told once a second and not one by one.
