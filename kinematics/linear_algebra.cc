@@ -5,6 +5,7 @@
 #include <cblas.h>
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -22,6 +23,13 @@ extern "C" void dgeqrf_(const int* rows, const int* columns, double* A, const in
 extern "C" void dsyevd_(const char* vectors, const char* triangle, const int* n, double* A,
                         const int* stride, double* values, double* work, const int* work_size,
                         int* integers, const int* integers_size, int* info);
+
+extern "C" void zgeev_(const char* left, const char* right, const int* n, std::complex<double>* A,
+                       const int* stride, std::complex<double>* values,
+                       std::complex<double>* left_vectors, const int* left_stride,
+                       std::complex<double>* right_vectors, const int* right_stride,
+                       std::complex<double>* work, const int* work_size, double* real_work,
+                       int* info);
 
 namespace selfcal {
 namespace {
@@ -235,6 +243,21 @@ Symmetric symmetric_eigen(const Eigen::MatrixXd& A) {
   if (A.rows() >= kLarge) return large_symmetric_eigen(A);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXcd A) {
+  expects(A.rows() == A.cols(), "a square matrix");
+  Eigen::VectorXcd values(A.rows());
+  if (values.size() == 0) return values;
+  const int n = width(A.rows()), none = 1, work_size = 4 * n;
+  Eigen::VectorXcd work(work_size);
+  Eigen::VectorXd real_work(2 * n);
+  int info = 0;
+  const auto turn = turn_of_one();
+  zgeev_("N", "N", &n, A.data(), &n, values.data(), nullptr, &none, nullptr, &none, work.data(),
+         &work_size, real_work.data(), &info);
+  expects(info == 0, "the eigenvalues of a finite matrix are found");
+  return values;
 }
 
 }  // namespace selfcal

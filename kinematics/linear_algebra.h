@@ -61,5 +61,7 @@ struct Symmetric {
 };
 /// Eigenvalues and vectors of a symmetric matrix.
 Symmetric symmetric_eigen(const Eigen::MatrixXd& A);
+/// Eigenvalues of a finite square matrix, in no order.
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXcd A);
 
 }  // namespace selfcal

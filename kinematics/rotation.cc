@@ -34,6 +34,26 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() - 0.5 * S + c * S * S;
 }
 
+Eigen::Matrix3d turn_onto(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double cosine = a.dot(b);
+  Eigen::Vector3d n = a.cross(b);
+  if (cosine < 0) {  // a half turn about the same axis, and from there back
+    constexpr double kNoAxis = 1e-12;
+    if (n.norm() < kNoAxis) n = a.cross(Eigen::Vector3d::Unit(std::abs(a.y()) < 0.9 ? 1 : 0));
+    n = (n - a.dot(n) * a).normalized();
+    const Eigen::Matrix3d half = 2 * n * n.transpose() - Eigen::Matrix3d::Identity();
+    return turn_onto(-a, b) * half;
+  }
+  const Eigen::Matrix3d K = skew(n);
+  return Eigen::Matrix3d::Identity() + K + K * K / (1 + cosine);
+}
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
 Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy) {
   return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
           Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *

@@ -15,6 +15,11 @@ Eigen::Matrix3d exp_rotation(const Eigen::Vector3d& phi);
 Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R);
 /// Inverse of the left Jacobian of SO(3) at phi, |phi| < 2 pi.
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
+/// The least turn that brings the direction `a` onto the direction `b`, both of length one.
+Eigen::Matrix3d turn_onto(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+/// The rotation R for which trace(R^T M) is greatest: of M = sum of b a^T the one that brings the
+/// vectors a nearest to the vectors b (Kabsch).
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
 
 /// Rot(z, yaw) Rot(y, pitch) Rot(x, roll) of [roll, pitch, yaw], in URDF's order.
 Eigen::Matrix3d rpy_rotation(const Eigen::Vector3d& rpy);

@@ -172,10 +172,7 @@ double off_circles(const Turning& turning, const TurnAxis& axis) {
 }  // namespace
 
 Matrix3d rotation_onto(const Matrix3Xd& from, const Matrix3Xd& to) {
-  const Eigen::JacobiSVD<Matrix3d> svd(to * from.transpose(),
-                                       Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation(to * from.transpose());
 }
 
 TurnAxis turn_axis(const Turning& turning) {

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "constraints/equations/equations_inner.h"
+#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 
@@ -47,7 +48,7 @@ Eigen::Vector3d shortest_way(const MethodOutput& out, const std::vector<Quantity
     const Eigen::Matrix3d A = G.topRows<3>();
     if ((A * A.transpose()).isIdentity(1e-12)) return -A.transpose() * r.head<3>();
   }
-  return -Eigen::MatrixXd(G.topRows(count)).completeOrthogonalDecomposition().solve(r.head(count));
+  return -least_squares(G.topRows(count), r.head(count));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "kinematics/linear_algebra.h"
 #include "kinematics/readable.h"
 #include "kinematics/rotation.h"
 #include "kinematics/size.h"
@@ -142,7 +143,8 @@ class SetSteps {
     const auto left = [&](const Eigen::MatrixXd& columns) {
       Eigen::MatrixXd all(ways.size(), 6 + 2 * columns.cols());
       all << rigid, columns, after.asDiagonal() * columns;
-      return (ways - all * all.completeOrthogonalDecomposition().solve(ways)).squaredNorm();
+      const Eigen::VectorXd by = least_squares(all, ways);
+      return (ways - all * by).squaredNorm();
     };
     double least = left(turn);
     for (Eigen::Index j = 0; j < joints; ++j)

@@ -13,6 +13,7 @@
 #include "constraints/methods/maker.h"
 #include "constraints/methods/shared/seen_point.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/rotation.h"
 
 namespace selfcal {
 namespace {
@@ -66,10 +67,7 @@ Eigen::VectorXd resection(const Eigen::MatrixXd& P, const Eigen::MatrixXd& d) {
   for (int k = 0; k < axes; ++k) A.col(k) = x.segment<3>(3 * k);
   const double scale = A.leftCols(axes).norm() / std::sqrt(static_cast<double>(axes));
   if (flat) A.col(2) = A.col(0).cross(A.col(1)) / std::max(scale, 1e-12);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  const Eigen::Matrix3d to_device = turn * basis.transpose();
+  const Eigen::Matrix3d to_device = nearest_rotation(A) * basis.transpose();
   const Eigen::Vector3d b = x.tail<3>() * size / std::max(scale, 1e-12);
   return to_values({to_device.transpose(), mean.transpose() - to_device.transpose() * b});
 }

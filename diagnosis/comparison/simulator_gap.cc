@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/linear_algebra.h"
+
 namespace selfcal {
 namespace {
 
@@ -79,7 +81,7 @@ Eigen::VectorXd fitted(const DataSet& data, const Method& method, const std::vec
   if (method.tangent_dimension() == 0) return own;
   for (int i = 0; i < kMostFits; ++i) {
     const ToolResiduals at = residuals_of(data, method, rows, tool, own);
-    const Eigen::VectorXd step = -at.D.completeOrthogonalDecomposition().solve(at.r);
+    const Eigen::VectorXd step = -least_squares(at.D, at.r);
     method.retract(own, step);
     if ((at.D * step).cwiseAbs().maxCoeff() < kFitted * reach) break;
   }

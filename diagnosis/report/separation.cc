@@ -4,6 +4,7 @@
 
 #include "kinematics/corrected_robot.h"
 #include "kinematics/expects.h"
+#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
@@ -75,12 +76,10 @@ void Separation::add(const Eigen::MatrixXd& X, const Eigen::VectorXd& t) {
   const Eigen::Index n = R_.cols(), more = X.rows();
   Eigen::MatrixXd all(n + more, n + 1);
   all << R_, z_, X, t;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
-  const Eigen::MatrixXd whole =
-      qr.matrixQR().topRows(std::min(n + 1, n + more)).triangularView<Eigen::Upper>();
-  R_ = whole.topLeftCorner(n, n);
-  z_ = whole.topRightCorner(n, 1);
-  if (whole.rows() > n) left_ += whole(n, n) * whole(n, n);
+  triangularise(all);
+  R_ = all.topLeftCorner(n, n);
+  z_ = all.topRightCorner(n, 1);
+  if (more > 0) left_ += all(n, n) * all(n, n);
 }
 
 double Separation::gain(int row) const {

@@ -182,10 +182,7 @@ Frame frame_at(const Station& here, const Stand& at, const Isometry3d& F, const 
 
 Isometry3d axis_frame(const ChainJoint& joint) {
   Isometry3d X = joint.X_WJ;
-  if (joint.axis.z() > -1 + 1e-12)
-    X.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), joint.axis));
-  else
-    X.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()));
+  X.rotate(turn_onto(Vector3d::UnitZ(), joint.axis));
   return X;
 }
 

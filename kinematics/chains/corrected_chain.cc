@@ -64,8 +64,7 @@ Isometry3d on_axis(const Isometry3d& F, const ChainJoint& joint, const Isometry3
   Isometry3d G = F.inverse() * X_WJ;
   const Vector3d axis = G.linear() * joint.axis;
   off = std::acos(std::clamp(axis.z(), -1.0, 1.0));
-  const Eigen::Quaterniond onto = Eigen::Quaterniond::FromTwoVectors(axis, Vector3d::UnitZ());
-  G.linear() = onto * G.linear();
+  G.linear() = turn_onto(axis, Vector3d::UnitZ()) * G.linear();
   if (joint.motion == serial::Motion::revolute) {
     off = std::max(off, G.translation().head<2>().norm());
     G.translation().head<2>().setZero();

@@ -1,9 +1,10 @@
 #include "kinematics/inverse/trigonometric_roots.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 #include <numbers>
+
+#include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
@@ -80,9 +81,9 @@ class PairList {
 bool free_of_second(const Both& M, Eigen::Vector3d& c) {
   Eigen::Matrix<double, 2, 6> parts;
   for (int k = 0; k < 2; ++k) parts.row(k) = M[k].rightCols<2>().reshaped().transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(parts, Eigen::ComputeFullU);
-  if (svd.singularValues()[1] > kNoPart) return false;
-  const Eigen::Vector2d by = svd.matrixU().col(1);
+  const SingularValues svd = singular_values(parts.transpose());
+  if (svd.values[1] > kNoPart) return false;
+  const Eigen::Vector2d by = svd.directions.col(1);
   c = by[0] * M[0].col(0) + by[1] * M[1].col(0);
   return true;
 }
@@ -115,9 +116,8 @@ std::vector<double> roots_of_resultant(const Both& M) {
     companion(k, degree - 1) = -c[drop + k] / c[drop + degree];
     if (k > 0) companion(k, k - 1) = 1;
   }
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> eigen(companion, false);
   std::vector<double> list;
-  for (const Complex& z : eigen.eigenvalues())
+  for (const Complex& z : eigenvalues(companion))
     if (std::abs(std::abs(z) - 1) < kOffCircle) list.push_back(std::arg(z));
   return list;
 }

@@ -134,12 +134,8 @@ Location pose_between(const Chains& chains, double side) {
   const Eigen::Vector3d below = chains.carrier.rowwise().mean(),
                         above = chains.joint.rowwise().mean();
   const Centres c = chains.carrier.colwise() - below, b = chains.joint.colwise() - above;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(c * b.transpose(),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d UV = svd.matrixU() * svd.matrixV().transpose();
   Location X;
-  X.R = svd.matrixU() * Eigen::Vector3d(1, 1, UV.determinant()).asDiagonal() *
-        svd.matrixV().transpose();
+  X.R = nearest_rotation(c * b.transpose());
   const double across = (c - X.R * b).colwise().squaredNorm().mean();
   const double up = std::sqrt(
       std::max(chains.length.squaredNorm() / kChains - across, 0.01 * std::max(across, 1e-12)));

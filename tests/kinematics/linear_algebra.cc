@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <complex>
 #include <cstdlib>
 #include <random>
 #include <thread>
@@ -179,6 +180,19 @@ TEST(SymmetricEigen, AscendsAndRebuildsTheMatrix) {
   EXPECT_LT((found.vectors * found.values.asDiagonal() * found.vectors.transpose() - A).norm(),
             kMatrixRounding);
   for (int i = 1; i < 4; ++i) EXPECT_LE(found.values[i - 1], found.values[i]);
+}
+
+TEST(Eigenvalues, AreTheRootsOfTheCompanionsPolynomial) {
+  // (z - 2)(z - i)(z + 3i) = z^3 + (2i - 2) z^2 + (3 - 4i) z - 6
+  using namespace std::complex_literals;
+  Eigen::Matrix3cd companion = Eigen::Matrix3cd::Zero();
+  companion(1, 0) = companion(2, 1) = 1;
+  companion.col(2) << 6, 4i - 3.0, 2.0 - 2i;
+  const Eigen::VectorXcd found = eigenvalues(companion);
+  ASSERT_EQ(found.size(), 3);
+  for (const std::complex<double> root : {2.0 + 0i, 1i, -3i})
+    EXPECT_LT((found.array() - root).abs().minCoeff(), kMatrixRounding) << root;
+  EXPECT_EQ(eigenvalues(Eigen::MatrixXcd()).size(), 0);
 }
 
 TEST(Triangles, AreSolvedAlikeOnBothSidesOfTheSizeFromWhichALibraryDoes) {

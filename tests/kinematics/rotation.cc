@@ -96,6 +96,41 @@ TEST(LeftJacobianInverse, IsExactAtHalfATurnAndBeyond) {
   EXPECT_LT((left_jacobian_inverse(phi) * phi - phi).norm(), 1e-13);
 }
 
+TEST(TurnOnto, IsTheLeastTurnFromOneDirectionToAnother) {
+  std::mt19937_64 random(36);
+  for (const double angle : {0.0, 1e-12, 1e-5, 0.5, 2.0, 3.1, std::numbers::pi - 1e-5,
+                             std::numbers::pi - 1e-10, std::numbers::pi})
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d a = direction(random);
+      const Eigen::Vector3d n = a.cross(direction(random)).normalized();
+      const Eigen::Vector3d b = exp_rotation(angle * n) * a;
+      const Eigen::Matrix3d R = turn_onto(a, b);
+      EXPECT_LT((R * a - b).norm(), 10 * kRotationRounding) << angle;
+      EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 10 * kRotationRounding);
+      EXPECT_GT(R.determinant(), 0);
+      EXPECT_NEAR(log_rotation(R).norm(), angle, 1e-7) << "rounding of a cosine near -1";
+    }
+}
+
+TEST(TurnOnto, TurnsAboutXFromZToItsOpposite) {
+  const Eigen::Matrix3d R = turn_onto(Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix3d half = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  EXPECT_LT((R - half).norm(), kRotationRounding);
+}
+
+TEST(NearestRotation, BringsVectorsOntoTheirTurnedOnes) {
+  std::mt19937_64 random(37);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Matrix3d R = exp_rotation(2.5 * direction(random));
+    Eigen::Matrix3Xd from(3, 5);
+    for (Eigen::Index k = 0; k < 5; ++k) from.col(k) = direction(random);
+    EXPECT_LT((nearest_rotation(R * from * from.transpose()) - R).norm(), 1e-13);
+    // Of vectors in a plane a mirror would do as well.
+    from.row(2).setZero();
+    EXPECT_LT((nearest_rotation(R * from * from.transpose()) - R).norm(), 1e-13);
+  }
+}
+
 TEST(RollPitchYaw, ComeBackFromTheirRotationAtEveryPitch) {
   std::mt19937_64 random(35);
   std::uniform_real_distribution<double> turn(-3.1, 3.1);

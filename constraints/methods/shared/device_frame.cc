@@ -53,10 +53,8 @@ Eigen::VectorXd DeviceFrame::register_points(const std::vector<Eigen::Vector3d>&
   }
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   for (size_t i = 0; i < device.size(); ++i) H += (world[i] - b) * (device[i] - a).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
   Location X;
-  X.R = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  X.R = nearest_rotation(H);
   X.p = b - X.R * a;
   return to_values(X);
 }
