@@ -19,6 +19,10 @@ namespace {
 constexpr int kTouchSweeps = 1;    // a session waits for its plan
 constexpr int kJudgedPoses = 300;  // at which the end position is judged
 constexpr unsigned long long kJudgedSeed = 1;
+/// Of the variance of what touches of the surfaces themselves would read, beside that of the end
+/// position. Rows kept aside judge there: where a surface is known along a line alone they judge
+/// nothing, and a hundredth of that is enough to take another touch.
+constexpr double kSurfacesCount = 0.01;
 
 /// Poses where the end position counts: in the workspace's box, else over all that the joints can
 /// do, for the region of the touches is what is chosen.
@@ -87,14 +91,27 @@ class TouchDesigns {
     for (const Eigen::MatrixXd& W : rows(known.made)) objective_.prior += W.transpose() * W;
   }
 
+  /// Counts what the candidates, of rows `W`, would read of each surface or socket as well.
+  void count_surfaces(const std::vector<PossibleTouch>& candidates,
+                      const std::vector<Eigen::MatrixXd>& W, const Kinds& kinds) {
+    std::vector<double> each(kinds.set.size(), 0);
+    for (const int kind : kinds.of) ++each[static_cast<std::size_t>(kind)];
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(objective_.weight.rows(), objective_.weight.cols());
+    for (std::size_t i = 0; i < W.size(); ++i) {
+      const double noise = touch_noise(sets_[static_cast<std::size_t>(candidates[i].set)]);
+      sum += noise * noise / each[static_cast<std::size_t>(kinds.of[i])] * W[i].transpose() * W[i];
+    }
+    objective_.weight += kSurfacesCount / static_cast<double>(each.size()) * sum;
+  }
+
   /// Rows of touches of surfaces and sockets that the candidates have.
   std::vector<Eigen::MatrixXd> rows(const std::vector<PossibleTouch>& touches) {
     std::vector<Eigen::MatrixXd> rows = touch_rows(robot_, xi_, sets_, touches, columns_);
     for (Eigen::MatrixXd& each : rows) each = each(Eigen::all, open_).eval();
     return rows;
   }
-  Design of(const std::vector<PossibleTouch>& touches, std::vector<int> kinds) {
-    return {rows(touches), objective_, std::move(kinds)};
+  Design of(const std::vector<Eigen::MatrixXd>& rows, std::vector<int> kinds) const {
+    return {rows, objective_, std::move(kinds)};
   }
 
  private:
@@ -133,7 +150,7 @@ void move_touches(const Robot& robot, const std::vector<PossibleTouch>& candidat
                   const Progress& progress) {
   std::vector<PossibleTouch> touches;
   for (const int i : fit) touches.push_back(candidates[i]);
-  Design design = designs.of(touches, {});
+  Design design = designs.of(designs.rows(touches), {});
   std::vector<int> all(fit.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);
@@ -192,7 +209,9 @@ TouchChoice choose_touches(const Robot& robot, const Eigen::VectorXd& xi,
   const Kinds kinds = kinds_of(candidates, counts.fit);
   TouchDesigns designs(robot, xi, sets, candidates, known,
                        weight_of(robot, xi, sets, candidates, workspace), Given::exact);
-  Design design = designs.of(candidates, kinds.of);
+  const std::vector<Eigen::MatrixXd> W = designs.rows(candidates);
+  designs.count_surfaces(candidates, W, kinds);
+  Design design = designs.of(W, kinds.of);
   std::vector<int> wanted = counts.fit;
   choose_one_by_one(design, kinds, wanted, kinds.share);
   // What a socket out of reach leaves goes to the others.
@@ -219,8 +238,8 @@ std::vector<double> sigma_by_count(const Robot& robot, const Eigen::VectorXd& xi
                                    const std::vector<PossibleTouch>& touches,
                                    const Eigen::MatrixXd& weight, const Progress& progress,
                                    const Eigen::MatrixXd& prior) {
-  Design design =
-      TouchDesigns(robot, xi, sets, touches, {prior, {}}, weight, Given::doubted).of(touches, {});
+  TouchDesigns designs(robot, xi, sets, touches, {prior, {}}, weight, Given::doubted);
+  Design design = designs.of(designs.rows(touches), {});
   std::vector<int> all(touches.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);

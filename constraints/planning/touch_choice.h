@@ -3,9 +3,10 @@
 //
 // The choice is a Design (design.h): from the best one after the other, the best touch of a set is
 // taken in and the worst of the same set left out, then the best pair exchanged, as long as the
-// expected variance of the end position falls (detmax.h); those chosen are moved along their
-// surfaces until nothing near is better (better_places.h). The touches that judge are drawn from
-// the rest by chance, so that they are as any touch of the cell is.
+// expected variance of the end position falls (detmax.h), and a little for that of touches of the
+// surfaces themselves; those chosen are moved along their surfaces until nothing near is better
+// (better_places.h). The touches that judge are drawn from the rest by chance, so that they are as
+// any touch of the cell is.
 #pragma once
 
 #include <functional>

@@ -93,6 +93,36 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
   EXPECT_LT(sigma_after(cell, planned, std::vector<int>(planned.size())), best_by_chance);
 }
 
+TEST(TouchPlan, IdentifiesASurfaceWhereverItsOtherTouchesJudge) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    PlannedCell cell;
+    cell.options.seed = seed;
+    cell.options.check = 0.33;
+    cell.plane({0.75, 0, 0.15}, {0, 0, 1}, 0.25, 9).plane({0, 0.9, 0.7}, {0.1, -1, 0}, 0.25, 9);
+    cell.plane({0.9, 0.5, 0.4}, {-1, -0.4, 0.3}, 0.2, 9);
+    const TouchPlan plan = cell.plan();
+    for (int set = 0; set < 3; ++set) {
+      std::vector<Eigen::Vector3d> points;
+      Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+      for (const PlannedTouch& each : plan.touches)
+        if (each.set == set && !each.check) {
+          points.push_back(located(each.touch).p);
+          middle += points.back();
+        }
+      const auto count = static_cast<double>(points.size());
+      ASSERT_GE(count, 6);
+      Eigen::MatrixXd off(static_cast<Eigen::Index>(points.size()), 3);
+      for (Eigen::Index i = 0; i < off.rows(); ++i)
+        off.row(i) = (points[static_cast<std::size_t>(i)] - middle / count).transpose();
+      const Eigen::VectorXd spread = singular_values(off).values;
+      std::printf("seed %u, surface %d: touches spread by %.0f and %.0f mm\n", seed, set,
+                  1e3 * spread[0] / std::sqrt(count), 1e3 * spread[1] / std::sqrt(count));
+      // Off a line by less than this a touch elsewhere would judge the surface, not the robot.
+      EXPECT_GT(spread[1], 0.1 * spread[0]);
+    }
+  }
+}
+
 TEST(TouchPlan, ExpectsOfOppositeFacesWhatTheEquationsFind) {
   PlannedCell cell;
   const Eigen::Vector3d normal(0, 1, 0);
