@@ -79,7 +79,20 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   return words;
 }
 
+/// Causes that are more probable than none, though noise may have made them: "backlash at j1 0.41".
+std::string likelier_than_none(const Diagnosis& diagnosis) {
+  std::string words;
+  for (const CauseResult& each : diagnosis.candidates)
+    if (names_effect(each.effect) && each.probability > diagnosis.verdict.probability)
+      words += (words.empty() ? "" : ", ") + with_places(each) + phrase(" %.2f", each.probability);
+  return words;
+}
+
 std::string no_cause(const Diagnosis& diagnosis) {
+  if (const std::string likelier = likelier_than_none(diagnosis); !likelier.empty())
+    return "no cause is named: these rows do not settle it (" + likelier +
+           phrase(", none %.2f; as much is found in %.2g of resampled rows)",
+                  diagnosis.verdict.probability, diagnosis.p_value);
   if (diagnosis.p_value > DiagnosisOptions{}.name_below_p)
     return phrase(
         "no cause is named: noise alone explains what calibration leaves (as much is found in %.2g "

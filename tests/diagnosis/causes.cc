@@ -124,6 +124,17 @@ TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
             "some configurations to be sure of the noise");
 }
 
+TEST(VerdictInWords, SaysThatTheRowsDoNotSettleItWhereACauseIsLikelierThanNone) {
+  Diagnosis diagnosis = with({.effect = kNone, .probability = 0.24});
+  diagnosis.p_value = 0.04;
+  diagnosis.candidates = {{.effect = "fixture_shift", .where = {"plane2"}, .probability = 0.41},
+                          {.effect = kNone, .probability = 0.24},
+                          {.effect = "backlash", .where = {"j1"}, .probability = 0.2}};
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "no cause is named: these rows do not settle it (fixture_shift at plane2 0.41, none "
+            "0.24; as much is found in 0.04 of resampled rows)");
+}
+
 TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
   Diagnosis diagnosis = with({.effect = "backlash", .where = {"j1"}, .probability = 0.97});
   diagnosis.named.front().closes_alone = 0.4;
