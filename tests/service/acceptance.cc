@@ -120,6 +120,22 @@ TEST(AcceptanceDecision, ComparesTheSameRowsBeforeAndAfter) {
   EXPECT_DOUBLE_EQ(decided.check_after, 1e-4);
 }
 
+TEST(AcceptanceDecision, IsAsSureAsTheRowsAreThatTheActiveParametersAreWorse) {
+  Case one;  // sure that the maker's figures are worse, which nobody uses any more
+  one.unchanged.residual.check_rows.clear();
+  one.candidate.residual.check_rows.clear();
+  for (int row = 0; row < 10; ++row) {
+    one.unchanged.residual.check_rows.push_back({row % 2 == 0 ? 4e-4 : 1e-4, false, row});
+    one.candidate.residual.check_rows.push_back({2e-4, false, row});
+  }
+  EXPECT_TRUE(one.rule().acceptable);
+  EXPECT_GT(one.rule().p_value, 0.05) << "half of them gain, half of them lose";
+  for (int row = 0; row < 10; ++row) one.unchanged.residual.check_rows[row].residual = 4e-4;
+  EXPECT_LT(one.rule().p_value, 0.01);
+  for (int row = 0; row < 10; ++row) one.candidate.residual.check_rows[row].configuration = 0;
+  EXPECT_DOUBLE_EQ(one.rule().p_value, 0.5) << "ten repeats are one configuration";
+}
+
 TEST(AcceptanceDecision, HasALimitOfItsOwnForEachPartOfTheMachine) {
   const ByPart limits{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
   const std::tuple<Part, Quantity, double> each[] = {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <tuple>
+#include <map>
 #include <utility>
 
 #include "constraints/statistics.h"
@@ -54,18 +54,29 @@ std::pair<ParameterChange, ParameterChange> largest_changes(const ByPart& limits
   return {against_limit, against_sigma};
 }
 
-/// Rms of the check rows before and after, on the same rows: those that neither rejects.
-std::pair<double, double> rms_before_and_after(const std::vector<CheckRow>& before,
-                                               const std::vector<CheckRow>& after) {
+/// The check rows before and after, on the same rows: those that neither rejects.
+struct BeforeAndAfter {
+  double before = 0, after = 0;  ///< rms
+  double p_value = 1;            ///< of the paired test that after is better
+};
+
+BeforeAndAfter compare(const std::vector<CheckRow>& before, const std::vector<CheckRow>& after) {
   double squares_before = 0, squares_after = 0, rows = 0;
+  // Repeats share more than their noise, so that one of them says as much as many.
+  std::map<int, std::pair<double, double>> gain_and_rows;  // by configuration
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
     if (before[i].outlier || after[i].outlier) continue;
     squares_before += before[i].residual * before[i].residual;
     squares_after += after[i].residual * after[i].residual;
     ++rows;
+    auto& [gain, count] = gain_and_rows[after[i].configuration];
+    gain += before[i].residual - after[i].residual;
+    ++count;
   }
-  if (rows == 0) return {0, 0};
-  return {std::sqrt(squares_before / rows), std::sqrt(squares_after / rows)};
+  if (rows == 0) return {};
+  std::vector<double> gains;
+  for (const auto& [configuration, sum] : gain_and_rows) gains.push_back(sum.first / sum.second);
+  return {std::sqrt(squares_before / rows), std::sqrt(squares_after / rows), signed_rank_p(gains)};
 }
 
 }  // namespace
@@ -74,12 +85,14 @@ AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& activ
                                     const Solution& candidate, const Solution& unchanged) {
   AcceptanceDecision decided;
   decided.answer = candidate.verdict.answer;
-  decided.p_value = candidate.verdict.p_value;
   decided.endpoint_sigma = candidate.workspace.rms;
   decided.outliers = count_outliers(candidate);
   decided.identified = parameters_identified(candidate);
-  std::tie(decided.check_before, decided.check_after) =
-      rms_before_and_after(unchanged.residual.check_rows, candidate.residual.check_rows);
+  const BeforeAndAfter compared =
+      compare(unchanged.residual.check_rows, candidate.residual.check_rows);
+  decided.check_before = compared.before;
+  decided.check_after = compared.after;
+  decided.p_value = compared.p_value;
   if (candidate.verdict.answer != Answer::improved) {
     decided.why = candidate.verdict.why;
     return decided;
