@@ -47,6 +47,7 @@ struct SetResult {
   double noise_sigma = 0;        ///< m, one scalar residual; 0 when the method has no lengths
   double noise_angle_sigma = 0;  ///< rad; 0 when the method has no angles
   double repeat_sigma = -1;      ///< m, from immediate repeats alone; negative without
+  bool unexplained = false;      ///< scatters more than its data sheet or its repeats say
   std::vector<NuisanceResult> nuisance;
 };
 
@@ -236,6 +237,7 @@ struct Observability {
 
 struct Note {
   std::string parameter, text;
+  std::string joint = {};  ///< whose further movement would help, where one's would
 };
 
 struct Solution {

@@ -6,6 +6,7 @@
 #include "app/commands/subcommand.h"
 #include "app/commands/support/signals.h"
 #include "app/commands/support/simulated_robot.h"
+#include "app/report/format.h"
 #include "io/files/data_set_writer.h"
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
@@ -76,8 +77,9 @@ int simulate_command(const SimulateArguments& arguments) {
     return tell(done.error());
   int check = 0;
   for (const char each : made.data.rows.check) check += each;
-  std::printf("%s: %d rows in %zu sets, %d of them to check\n", arguments.out.c_str(),
-              made.data.rows.rows(), made.data.sets.size(), check);
+  std::printf("%s: %s in %s, %d of them to check\n", arguments.out.c_str(),
+              counted(made.data.rows.rows(), "row").c_str(),
+              counted(static_cast<std::int64_t>(made.data.sets.size()), "set").c_str(), check);
   return kDone;
 }
 

@@ -87,6 +87,10 @@ std::string mm(double metres) {
   return printed("%.*f", std::clamp(2 - whole, 0, 6), value);
 }
 
+std::string counted(std::int64_t count, std::string_view one) {
+  return std::to_string(count) + " " + std::string(one) + (count == 1 ? "" : "s");
+}
+
 std::string one_line(std::string_view text) {
   std::string line(text);
   for (char& c : line)

@@ -23,6 +23,9 @@ std::string duration(double seconds);
 /// Millimetres with three significant digits of a length in m; "-" for NaN.
 std::string mm(double metres);
 
+/// "1 row", "12 rows".
+std::string counted(std::int64_t count, std::string_view one);
+
 /// The text without control characters, which come as blanks: what others send must not steer a
 /// terminal.
 std::string one_line(std::string_view text);

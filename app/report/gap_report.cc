@@ -55,7 +55,7 @@ std::string found_in_words(const Diagnosis& diagnosis) {
   const std::string which = unnamed == 0              ? "all named"
                             : unnamed == found.size() ? "none named"
                                                       : printed("%zu of them not named", unnamed);
-  return printed("everything found (%zu effect%s, ", found.size(), found.size() == 1 ? "" : "s") +
+  return "everything found (" + counted(static_cast<std::int64_t>(found.size()), "effect") + ", " +
          which + ")";
 }
 

@@ -14,13 +14,13 @@ constexpr size_t kMostListedItems = 12;
 constexpr double kToldShare = 0.1;  ///< of the end position's doubt: less is not told
 constexpr double kAlone = 0.9;      ///< share of the scale that one length carries alone
 
-/// "touches" when every row that identifies is one, else "rows".
+/// "touch" when every row that identifies is one, else "row".
 const char* noun(const DataSet& data, const Solution& solution) {
   for (size_t s = 0; s < data.sets.size(); ++s)
     if (solution.sets.size() > s && solution.sets[s].identifies &&
         data.sets[s].method->touches() == TouchedSurface::none)
-      return "rows";
-  return "touches";
+      return "row";
+  return "touch";
 }
 
 std::string carried(const ParameterResult& p) {
@@ -36,8 +36,10 @@ std::string first_line(const DataSet& data, const Solution& solution) {
   int rows = 0;
   for (const SetResult& set : solution.sets)
     if (set.identifies) rows += set.rows;
-  std::string text = printed("%d parameters identified from %d %s", static_cast<int>(count), rows,
-                             noun(data, solution));
+  const std::string of = noun(data, solution);
+  std::string text =
+      counted(count, "parameter") + " identified from " +
+      (of == "touch" && rows != 1 ? std::to_string(rows) + " touches" : counted(rows, of));
   size_t told = 0;
   const std::vector<Note>& held = solution.gauge;
   for (size_t i = 0; i < held.size() && told < 2; ++i) {
@@ -132,7 +134,8 @@ std::string set_line(const SetResult& set) {
   else
     text += printed("%d of %d rows used", set.used, set.rows);
   if (set.noise_sigma > 0) text += ", noise " + small_length(set.noise_sigma);
-  if (set.noise_angle_sigma > 0) text += " and " + small_angle(set.noise_angle_sigma);
+  if (set.noise_angle_sigma > 0)
+    text += (set.noise_sigma > 0 ? " and " : ", noise ") + small_angle(set.noise_angle_sigma);
   if (set.repeat_sigma >= 0) text += ", of repeats alone " + small_length(set.repeat_sigma);
   return text;
 }
@@ -155,9 +158,23 @@ double doubt_from(const Solution& solution, std::string_view source) {
   return found == budget.end() ? 0 : found->sigma;
 }
 
-/// Rows near each other err alike, more than by chance.
+/// Rows near each other err alike, more than by chance, or scatter more than they should.
 bool structured(const Solution& solution) {
-  return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows);
+  return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows) ||
+         std::ranges::any_of(solution.sets, &SetResult::unexplained);
+}
+
+/// "Add rows that move j1, j2 and j4 further", of all whose further movement would help.
+std::string rows_to_add(const std::vector<Note>& unexcited) {
+  std::vector<std::string> joints;
+  for (const Note& each : unexcited)
+    if (!each.joint.empty() && std::ranges::find(joints, each.joint) == joints.end())
+      joints.push_back(each.joint);
+  if (joints.empty()) return "Add rows in other postures";
+  std::string text = "Add rows that move ";
+  for (size_t i = 0; i < joints.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == joints.size() ? " and " : ", ") + joints[i];
+  return text + " further";
 }
 
 /// Against the largest part of the end position's doubt.
@@ -168,9 +185,8 @@ std::string what_helps(const Solution& solution) {
   if (shared > 0 && of_rows)
     return "Most of that comes of what the geometry does not explain; more rows like these do not "
            "help.";
-  const std::string rows = solution.unexcited.empty() ? "Add rows in other postures"
-                                                      : "Add rows that move the joints named above";
-  return rows + (solution.gauge.empty() ? "." : ", and a known length for the scale.");
+  return rows_to_add(solution.unexcited) +
+         (solution.gauge.empty() ? "." : ", and a known length for the scale.");
 }
 
 }  // namespace
@@ -223,9 +239,10 @@ std::string headline(const Solution& solution) {
   const std::string what = check.angle_alone ? "directions are met" : "the tool is met";
   std::string figures;
   if (check.rows > 0)
-    figures = what + printed(" to %s %s instead of %s %s on %d rows kept aside",
-                             plain_figure(1e3 * check.rms_after).c_str(), unit,
-                             plain_figure(1e3 * check.rms_before).c_str(), unit, check.rows);
+    figures = what +
+              printed(" to %s %s instead of %s %s on ", plain_figure(1e3 * check.rms_after).c_str(),
+                      unit, plain_figure(1e3 * check.rms_before).c_str(), unit) +
+              counted(check.rows, "row") + " kept aside";
   // False rows among those kept aside count; say what is left without them.
   if (check.rows > 0 && check.rms_without_outliers < 0.9 * check.rms_after)
     figures +=

@@ -160,7 +160,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
   const DataSet& data = equations.data();
   const bool redundant = fit.at.equations > kRedundant * unknowns(fit, solution);
   for (size_t s = 0; s < data.sets.size(); ++s) {
-    const SetResult& set = solution.sets[s];
+    SetResult& set = solution.sets[s];
     const double stated = equations.stated(static_cast<int>(s)).length;
     if (!set.identifies) continue;
     if (fit.noise.at_bound[s])
@@ -171,7 +171,10 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
       solution.warnings.push_back("set " + set.name +
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
-    if (stated > 0 && set.noise_sigma > kMisstated * stated)
+    const bool beyond_sheet = stated > 0 && set.noise_sigma > kMisstated * stated;
+    const bool beyond_repeats = set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma;
+    set.unexplained = beyond_sheet || beyond_repeats;
+    if (beyond_sheet)
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, stated) +
           " times as much as its data sheet says: the geometry does not " + "explain them all");
@@ -179,7 +182,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
       solution.warnings.push_back(
           "set " + set.name + ": its data sheet's noise is " + ratio(stated, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
-    if (set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma)
+    if (beyond_repeats)
       solution.warnings.push_back(
           "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, set.repeat_sigma) +
           " times as much as immediate repeats: the geometry does not " + "explain them all");

@@ -14,7 +14,9 @@
 namespace selfcal {
 namespace {
 
-constexpr int kRows = 80;  ///< random ones of a set that tell what such rows can
+constexpr int kRows = 80;        ///< random ones of a set that tell what such rows can
+constexpr double kHardly = 0.1;  ///< of a joint's range: it hardly moved
+constexpr double kMostly = 0.8;  ///< of a joint's range: little of it is left to move through
 
 /// Range of joint j over the rows that identify, and over what it could do.
 struct Movement {
@@ -48,24 +50,25 @@ size_t missing_joint(const Robot& robot, const DataSet& data, const Parameter& p
   return best;
 }
 
-std::string what_is_missing(const Robot& robot, const DataSet& data, const Parameter& p,
-                            const std::vector<Carrier>& carriers) {
+Note what_is_missing(const Robot& robot, const DataSet& data, const Parameter& p,
+                     const std::vector<Carrier>& carriers) {
   const size_t j = missing_joint(robot, data, p);
   const Joint& joint = robot.joints()[j];
   const Movement m = movement(robot, data, j);
   char text[200];
-  if (m.share() < 0.1) {
+  if (m.share() < kHardly) {
     std::snprintf(text, sizeof text, "%s moved through %.3g %s only", joint.name.c_str(),
                   1e3 * m.moved, joint.quantity == Quantity::angle ? "mrad" : "mm");
-    return text;
+    return {p.name, text, joint.name};
   }
   std::string names;
   for (size_t i = 0; i < carriers.size() && i < 3; ++i) names += (i ? ", " : "") + carriers[i].name;
+  const std::string seen = names.empty() ? std::string("hardly seen by these rows; ")
+                                         : "not told from " + names + " by these rows; ";
+  if (m.share() > kMostly) return {p.name, seen + "more rows in other postures would help"};
   std::snprintf(text, sizeof text, "more movement of %s (%.0f %% of its range so far)",
                 joint.name.c_str(), 100 * m.share());
-  return (names.empty() ? std::string("hardly seen by these rows; ")
-                        : "not told from " + names + " by these rows; ") +
-         text + " would help";
+  return {p.name, seen + text + " would help", joint.name};
 }
 
 /// By set, so many random rows that they tell all that such sets can: of sets alike, many together
@@ -167,8 +170,7 @@ std::vector<Note> unexcited(const Robot& robot, const DataSet& data, const Ident
   for (size_t i = 0; i < robot.parameters().size(); ++i)
     if (possible.status[i] == Status::identified &&
         (rank.status[i] == Status::grouped || rank.status[i] == Status::no_effect))
-      notes.push_back({robot.parameters()[i].name,
-                       what_is_missing(robot, data, robot.parameters()[i], rank.grouped_with[i])});
+      notes.push_back(what_is_missing(robot, data, robot.parameters()[i], rank.grouped_with[i]));
   return notes;
 }
 

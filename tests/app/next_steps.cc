@@ -26,7 +26,7 @@ Solution known_to(double sigma, double noise, double shared) {
   solution.workspace.rms = sigma;
   solution.uncertainty.budget = {{std::string(kNoiseOfRows), noise},
                                  {std::string(kSharedErrors), shared}};
-  solution.unexcited = {{"theta2", "hardly seen by these rows"}};
+  solution.unexcited = {{"theta2", "hardly seen by these rows", "j2"}};
   return solution;
 }
 
@@ -38,12 +38,20 @@ std::vector<std::string> steps_of(const Solution& solution) {
 
 TEST(NextSteps, AskForRowsWhereNoiseIsTheLargestDoubt) {
   const std::vector<std::string> steps = steps_of(known_to(2e-3, 1.9e-3, 0.6e-3));
-  EXPECT_THAT(steps, Contains(HasSubstr("2 mm only. Add rows that move the joints named above.")));
+  EXPECT_THAT(steps, Contains(HasSubstr("2 mm only. Add rows that move j2 further.")));
   EXPECT_THAT(steps, Each(Not(HasSubstr("diagnose"))));
 }
 
-TEST(NextSteps, NameNoJointsWhereNoneAreListed) {
+TEST(NextSteps, NameEachJointOnceWhoseMovementWouldHelp) {
   Solution solution = known_to(2e-3, 1.9e-3, 0.6e-3);
+  solution.unexcited = {{"theta2", "", "j2"}, {"r3", "", ""}, {"d3", "", "j3"}, {"r2", "", "j2"}};
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Add rows that move j2 and j3 further.")));
+}
+
+TEST(NextSteps, NameNoJointsWhereNoMovementWouldHelp) {
+  Solution solution = known_to(2e-3, 1.9e-3, 0.6e-3);
+  solution.unexcited = {{"theta2", "more rows in other postures would help"}};
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Add rows in other postures.")));
   solution.unexcited.clear();
   EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Add rows in other postures.")));
 }
@@ -54,11 +62,35 @@ TEST(NextSteps, SendToTheDiagnosisWhereTheGeometryDoesNotExplainTheRows) {
                     Contains(HasSubstr("selfcal diagnose"))));
 }
 
+TEST(NextSteps, SendRowsThatScatterMoreThanTheyShouldToTheDiagnosis) {
+  Solution solution = known_to(0.5e-3, 0.4e-3, 0);
+  solution.verdict.answer = Answer::improved;
+  solution.sets.resize(1);
+  EXPECT_THAT(steps_of(solution), Each(Not(HasSubstr("diagnose"))));
+  solution.sets[0].unexplained = true;
+  EXPECT_THAT(steps_of(solution), AllOf(Contains(HasSubstr("The result is a candidate")),
+                                        Contains(HasSubstr("selfcal diagnose"))));
+}
+
 TEST(NextSteps, SendACandidateToTheDiagnosisAsWell) {
   Solution solution = known_to(0.5e-3, 0.2e-3, 0.4e-3);
   solution.verdict.answer = Answer::improved;
   EXPECT_THAT(steps_of(solution), AllOf(Contains(HasSubstr("The result is a candidate")),
                                         Contains(HasSubstr("selfcal diagnose"))));
+}
+
+TEST(Summary, CountsOneRowAndGivesANoiseOfAnglesAlone) {
+  Solution solution = known_to(0.5e-3, 0.4e-3, 0);
+  solution.residual.check.rows = 1;
+  EXPECT_THAT(headline(solution), HasSubstr("on 1 row kept aside"));
+  solution.sets.resize(1);
+  SetResult& set = solution.sets[0];
+  set.name = "one";
+  set.method = "bearing";
+  set.rows = set.used = 80;
+  set.identifies = true;
+  set.noise_angle_sigma = 20e-6;
+  EXPECT_THAT(summary({}, solution), HasSubstr("one (bearing): 80 of 80 rows used, noise 20 urad"));
 }
 
 }  // namespace

@@ -89,17 +89,20 @@ TEST(NoiseFactor, IsTakenOffWhatRepeatsDifferBy) {
 
 TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
   const Simulated simulated = touches();
-  const auto told_with = [&](double stated) {
+  const auto found_with = [&](double stated) {
     DataSet data = simulated.data;
     for (Set& set : data.sets) set.noise = stated;
-    return identify(rx90(), data, {}, {}).warnings;
+    return identify(rx90(), data, {}, {});
   };
+  const auto told_with = [&](double stated) { return found_with(stated).warnings; };
   using testing::Contains;
   using testing::HasSubstr;
   EXPECT_THAT(told_with(2e-5), testing::Not(Contains(HasSubstr("data sheet"))));
   EXPECT_THAT(told_with(2e-3),
               Contains(HasSubstr("times what its rows scatter by: is `noise` in metres")));
   EXPECT_THAT(told_with(2e-6), Contains(HasSubstr("times as much as its data sheet says")));
+  EXPECT_TRUE(found_with(2e-6).sets[0].unexplained);
+  EXPECT_FALSE(found_with(2e-5).sets[0].unexplained);
 }
 
 }  // namespace

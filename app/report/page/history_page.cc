@@ -124,8 +124,8 @@ std::string history_sentence(const Json& data, std::size_t calibrations) {
     return printed("At this rate %s leaves its limit in %.0f days.", what.c_str(), soonest);
   if (data["sessions"].empty()) return "No session yet.";
   if (calibrations < 3)
-    return printed("%zu accepted calibration%s so far; three tell how fast the robot drifts.",
-                   calibrations, calibrations == 1 ? "" : "s");
+    return counted(static_cast<std::int64_t>(calibrations), "accepted calibration") +
+           " so far; three tell how fast the robot drifts.";
   return "Nothing drifts towards a limit faster than its uncertainty.";
 }
 
