@@ -17,6 +17,13 @@ std::string size_of_misfit(const FirstLook& look, double left) {
 }
 
 int print_first_look(const FirstLook& look) {
+  if (look.found.empty() && !std::isinf(look.left) && look.equations <= look.taken) {
+    std::printf(
+        "too few rows to tell whether anything is wrong: they give %d equations, and placing base, "
+        "tool and surfaces takes %d\n",
+        look.equations, look.taken);
+    return kAnswerIsNo;
+  }
   if (std::isinf(look.left)) {
     std::printf("no row is one that the robot of its file can take\n");
   } else {

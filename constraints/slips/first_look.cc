@@ -40,6 +40,7 @@ struct Moves {
 
 struct Misfit {
   double left = 0, tool_moved = 0;
+  int equations = 0, unknowns = 0;
   double zero_moved = 0;  ///< rad or m, of the joint that was asked for
   bool lengths = true, any = false;
   std::vector<double> by_set = {};       ///< as `left`, of each set; 0 where it has no lengths
@@ -72,6 +73,9 @@ Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
   FitRule rule;
   rule.most_iterations = kFitSteps;
   const Fit placed = fit(equations, start, prior, rule);
+  result.equations = placed.at.equations;
+  result.unknowns =
+      static_cast<int>(std::ranges::count(prior.free, char{1})) + equations.nuisance_dimensions();
   const Judged judged = judge(robot, data, equations, placed);
   std::vector<double> lengths, angles;
   for (const RowResidual& row : judged.fit)
@@ -210,6 +214,8 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   if (!given.any) return where_no_row_has_a_place(*robot, data, others);
   look.lengths = given.lengths;
   look.left = given.left;
+  look.equations = given.equations;
+  look.taken = given.unknowns;
   look.tool_moved = given.tool_moved;
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;

@@ -23,6 +23,8 @@ struct FirstLook {
   bool lengths = true;    ///< residuals are lengths, not angles
   double left = 0;        ///< median of the rows' residuals, as given; infinite where none has one
   double expected = 0;    ///< what the maker's tolerances leave, 1 sigma
+  int equations = 0;      ///< of the rows that identify
+  int taken = 0;          ///< of them by placing base, tool and surfaces: no more tell nothing
   double tool_held = 0;   ///< what is left with the tool as its file says
   double tool_moved = 0;  ///< m, how far the rows put the tool from where its file has it
   std::vector<TriedSlip> tried;  ///< best first

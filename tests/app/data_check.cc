@@ -201,6 +201,14 @@ sets:
   }
 }
 
+TEST_F(DataCheck, SaysThatTooFewRowsTellNothing) {
+  simulate_sets(kErrors + "  tracker: {method: position, noise: 2.0e-5, rows: 4}\n");
+  const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+  EXPECT_EQ(ran.status, 1) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("too few rows to tell whether anything is wrong"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("nothing is likely wrong")));
+}
+
 TEST_F(DataCheck, SaysWhichReadingsAreTwiceWhatTheJointMoves) {
   change_rows({"q4"}, [](auto& q) { q[0] *= 2; });
   free_of_limits();
