@@ -12,6 +12,7 @@ namespace selfcal {
 namespace {
 
 constexpr size_t kMostListedCauses = 6;
+constexpr double kNothing = 0.01;  ///< of its sigma, below which a value's digits say nothing
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres, 4); }
 
@@ -50,7 +51,8 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
          p < each.parameters.size() && each.of_its_kind() > 0.5 && p < kMostListedCauses; ++p) {
       const NamedValue& v = each.parameters[p];
       const ReadableUnit unit = readable_unit(v.unit, std::max(std::abs(v.value), v.sigma));
-      text += "                 " + v.name + " = " + plain_figure(unit.factor * v.value) + " ± " +
+      const double value = std::abs(v.value) < kNothing * v.sigma ? 0 : v.value;
+      text += "                 " + v.name + " = " + plain_figure(unit.factor * value) + " ± " +
               plain_figure(unit.factor * v.sigma, 2) + " " + unit.name + " (usual " +
               plain_figure(unit.factor * v.usual_least, 1) + " to " +
               plain_figure(unit.factor * v.usual_most, 1) + ")\n";
@@ -78,7 +80,7 @@ std::string summary(const Diagnosis& diagnosis) {
   if (!diagnosis.next.empty()) text += "\nNext:\n";
   for (const NextStep& step : diagnosis.next) text += "  " + step.what + next_in_words(step) + "\n";
   if (!diagnosis.next_why.empty())
-    text += (diagnosis.next.empty() ? "\nNext: nothing; " : "  ") + diagnosis.next_why + "\n";
+    text += (diagnosis.next.empty() ? "\nNext: nothing: " : "  ") + diagnosis.next_why + "\n";
   if (!diagnosis.outliers.empty())
     text += printed("\n%d rows put aside as false (diagnosis.json names them)\n",
                     static_cast<int>(diagnosis.outliers.size()));

@@ -70,9 +70,16 @@ std::vector<Question> questions(const Diagnosis& diagnosis) {
   return list;
 }
 
-/// The structure may be anything: the answer, or what these rows cannot tell from it.
+/// The structure may be anything: the answer, what these rows cannot tell from it, or what is left
+/// beside it.
 bool unknown_at_issue(const Diagnosis& diagnosis) {
   return diagnosis.verdict.effect == kUnknown ||
+         (names_effect(diagnosis.verdict.effect) &&
+          std::ranges::any_of(diagnosis.candidates,
+                              [](const CauseResult& each) {
+                                return each.effect == kUnknown &&
+                                       each.probability > kDiagnosis.report.beside;
+                              })) ||
          std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
            return std::ranges::count(each.confounded_with, kUnknown) > 0;
          });
@@ -180,7 +187,7 @@ class Planner {
   }
 
   std::string why_nothing() const {
-    if (names_effect(diagnosis_.verdict.effect)) return "nothing looks like what is named";
+    if (names_effect(diagnosis_.verdict.effect)) return "no other cause looks like what is named";
     return "no cause is as probable as 5 %: more of the same rows would only lower that";
   }
 
@@ -220,7 +227,8 @@ class Planner {
   void look_closer() {
     size_t told = 0;
     for (const CandidateRows& each : further_)
-      if (!each.tells.empty() && told++ < kDiagnosis.report.most_for_unknown)
+      if (!each.tells.empty() && told++ < kDiagnosis.report.most_for_unknown &&
+          std::ranges::find(next_.steps, each.what, &NextStep::what) == next_.steps.end())
         next_.steps.push_back({each.what,
                                {kUnknown, each.tells},
                                std::numeric_limits<double>::quiet_NaN(),

@@ -1,5 +1,6 @@
 #include "diagnosis/report/verdict.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -19,11 +20,11 @@ namespace {
   return text;
 }
 
-/// "backlash at j1 and j2".
+/// "backlash at j1, j2 and j3".
 std::string with_places(const CauseResult& cause) {
   std::string words = cause.effect;
   for (size_t i = 0; i < cause.where.size(); ++i)
-    words += (i == 0 ? " at " : " and ") + cause.where[i];
+    words += (i == 0 ? " at " : i + 1 == cause.where.size() ? " and " : ", ") + cause.where[i];
   return words;
 }
 
@@ -41,8 +42,9 @@ std::string with_shape(const CauseResult& cause) {
 }
 
 std::string one_cause(const CauseResult& verdict, double p) {
-  std::string words = with_shape(verdict) + look_alikes(verdict) +
-                      phrase(", causes the gap (probability %.2f", verdict.probability);
+  const std::string alike = look_alikes(verdict);
+  std::string words = with_shape(verdict) + alike + (alike.empty() ? "" : ",") +
+                      phrase(" causes the gap (probability %.2f", verdict.probability);
   if (!verdict.confounded_with.empty()) words += phrase(", with these %.2f", verdict.together);
   return words + phrase(", p %.2g)", p);
 }
@@ -66,6 +68,17 @@ std::string several_causes(const std::vector<CauseResult>& named, double p) {
     words += ")";
   }
   return words + phrase(" cause the gap together (p %.2g)", p);
+}
+
+/// ", beside structure that …" where there is that as well; empty where what is named may be it.
+std::string beside_the_unknown(const Diagnosis& diagnosis) {
+  for (const CauseResult& each : diagnosis.named)
+    if (std::ranges::count(each.confounded_with, kUnknown) > 0) return {};
+  for (const CauseResult& each : diagnosis.candidates)
+    if (each.effect == kUnknown && each.probability > kDiagnosis.report.beside)
+      return phrase(", beside structure that no known effect explains (probability %.2f)",
+                    each.probability);
+  return {};
 }
 
 std::string unusual_sizes(const std::vector<CauseResult>& named) {
@@ -113,7 +126,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis.named, diagnosis.p_value)
                                        : one_cause(verdict, diagnosis.p_value)) +
-           unusual_sizes(diagnosis.named);
+           beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
     if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)

@@ -110,6 +110,14 @@ TEST(DiagnosisSummary, SaysHowManyRowsAreLeftOutAndWhatItIsWithThem) {
   EXPECT_EQ(to_json(diagnosis)["gap"]["with_false_rows"]["rms_all"], 2.25e-3);
 }
 
+TEST(DiagnosisSummary, GivesNoDigitsOfWhatIsNothingBesideItsSigma) {
+  Diagnosis diagnosis;
+  diagnosis.candidates = {
+      {.effect = "link_compliance", .where = {"j1"}, .probability = 0.9, .p_value = 0.01}};
+  diagnosis.candidates[0].parameters = {{"j1.twist", "rad/(N m)", -6e-12, 2.3e-6, 1e-8, 2e-5}};
+  EXPECT_THAT(summary(diagnosis), HasSubstr("j1.twist = 0 ± 2.3 urad/(N m)"));
+}
+
 TEST(DiagnosisSummary, SaysWhatToMeasureNextOrWhyNothing) {
   Diagnosis diagnosis = named({true});
   diagnosis.next = {{"repeat 12 rows", {"backlash@j1", "none"}, 0.9, {}},
@@ -118,11 +126,12 @@ TEST(DiagnosisSummary, SaysWhatToMeasureNextOrWhyNothing) {
               HasSubstr("repeat 12 rows (then 90 % sure, of backlash@j1 or none)"));
   EXPECT_THAT(summary(diagnosis), HasSubstr("repeat 24 rows (tells how much is noise)"));
   diagnosis.next.clear();
-  diagnosis.next_why = "nothing looks like what is named";
-  EXPECT_THAT(summary(diagnosis), HasSubstr("Next: nothing; nothing looks like what is named"));
+  diagnosis.next_why = "no other cause looks like what is named";
+  EXPECT_THAT(summary(diagnosis),
+              HasSubstr("Next: nothing: no other cause looks like what is named"));
   const auto file = next_json(diagnosis, {});
   EXPECT_TRUE(file["steps"].empty());
-  EXPECT_EQ(file["why"], "nothing looks like what is named");
+  EXPECT_EQ(file["why"], "no other cause looks like what is named");
 }
 
 TEST(DiagnosisSummary, GivesNoIntervalSoNearTheNoise) {

@@ -310,14 +310,18 @@ TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const std::string rows = (folder_ / "rows.csv").string();
   const Ran ran = run_selfcal("plan --separate " + file + " --out " + rows, true);
   EXPECT_EQ(ran.status, 0) << ran.out;
-  EXPECT_EQ(ran.out,
-            "1  repeat 2 rows twice at once: tells backlash@j1 from none, which is then sure to "
-            "0.93\n");
+  EXPECT_EQ(
+      ran.out,
+      "1  repeat 2 rows twice at once: tells backlash@j1 from none, which is then 93 % sure\n");
   const std::string text = text_of(rows);
   EXPECT_EQ(text.substr(0, text.find('\n')), "set,repeat,q1,q2,dq1,dq2");
   EXPECT_NE(text.find("t,0,0,1,,\nt,0,0,1,,\n"), std::string::npos) << text;
   EXPECT_NE(text.find("t,,0.5,,1,-1\n"), std::string::npos) << text;
   EXPECT_EQ(run_selfcal("plan --separate " + file + " --step 2").status, 2);
+  std::ofstream(file) << R"({"next": [{"what": "repeat 2 rows twice at once", "rows": [],
+    "separates": ["unknown", "how much is noise"], "probability_after": null}], "next_why": ""})";
+  EXPECT_EQ(run_selfcal("plan --separate " + file, true).out,
+            "1  repeat 2 rows twice at once: tells how much is noise\n");
   std::ofstream(file) << R"({"next": [], "next_why": "nothing looks like what is named"})";
   const Ran nothing = run_selfcal("plan --separate " + file, true);
   EXPECT_EQ(nothing.status, 1);

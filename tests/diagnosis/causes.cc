@@ -99,7 +99,8 @@ Diagnosis with(CauseResult verdict) {
   diagnosis.p_value = 0.005;
   diagnosis.verdict = std::move(verdict);
   if (names_effect(diagnosis.verdict.effect)) diagnosis.named = {diagnosis.verdict};
-  diagnosis.candidates = {{.effect = kUnknown, .probability = 0.99},
+  const bool unknown = diagnosis.verdict.effect == kUnknown;
+  diagnosis.candidates = {{.effect = kUnknown, .probability = unknown ? 0.99 : 0.01},
                           {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9},
                           {.effect = "base_drift", .where = {"base"}, .probability = 0.8},
                           {.effect = "backlash", .where = {"j1"}, .probability = 0.2}};
@@ -115,6 +116,21 @@ TEST(VerdictInWords, TellsOfLookAlikesWithTheProbabilityOfAllOfThem) {
   EXPECT_EQ(verdict_in_words(with(cause)),
             "joint_compliance at j2 and j3, or what these rows cannot tell from it "
             "(link_compliance@j1), causes the gap (probability 0.65, with these 0.99, p 0.005)");
+}
+
+TEST(VerdictInWords, TellsWhatIsLeftBesideWhatIsNamed) {
+  Diagnosis diagnosis =
+      with({.effect = "backlash", .where = {"j1", "j2", "j3"}, .probability = 0.97});
+  diagnosis.candidates.front().probability = 0.2;
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "backlash at j1, j2 and j3 causes the gap (probability 0.97, p 0.005)");
+  diagnosis.candidates.front().probability = 0.9;
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "backlash at j1, j2 and j3 causes the gap (probability 0.97, p 0.005), beside "
+            "structure that no known effect explains (probability 0.90)");
+  diagnosis.named.front().confounded_with = {std::string(kUnknown)};
+  EXPECT_EQ(verdict_in_words(diagnosis).find("beside structure"), std::string::npos)
+      << "what is named may be it";
 }
 
 TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {

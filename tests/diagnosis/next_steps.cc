@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/diagnosis/two_sessions.h"
@@ -94,6 +95,26 @@ TEST_F(NextStepsOfAnArm, LookCloserAtTheUnknown) {
   EXPECT_THAT(all, HasSubstr("payload"));
 }
 
+TEST_F(NextStepsOfAnArm, LookCloserAtWhatIsLeftBesideWhatIsNamed) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = backlash(0.99);
+  diagnosis.named = {diagnosis.verdict};
+  diagnosis.candidates = {{.effect = kUnknown, .probability = 0.9}, diagnosis.verdict};
+  const NextSteps next = of(diagnosis);
+  ASSERT_FALSE(next.steps.empty());
+  for (const NextStep& each : next.steps) EXPECT_EQ(each.separates.front(), kUnknown);
+}
+
+TEST_F(NextStepsOfAnArm, AskForTheSameRowsOnce) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = kUnknown, .probability = 0.9};
+  diagnosis.candidates = {{.effect = kUnknown, .probability = 0.9}, coupling(0.3)};
+  std::vector<std::string> all;
+  for (const NextStep& each : of(diagnosis).steps) all.push_back(each.what);
+  std::ranges::sort(all);
+  EXPECT_EQ(std::ranges::adjacent_find(all), all.end()) << testing::PrintToString(all);
+}
+
 TEST_F(NextStepsOfAnArm, SayWhyThereAreNone) {
   Diagnosis diagnosis;
   diagnosis.verdict = {.effect = kNone, .probability = 0.99};
@@ -103,7 +124,7 @@ TEST_F(NextStepsOfAnArm, SayWhyThereAreNone) {
   diagnosis.verdict = backlash(0.99);
   diagnosis.named = {diagnosis.verdict};
   EXPECT_TRUE(of(diagnosis).steps.empty());
-  EXPECT_THAT(of(diagnosis).why, HasSubstr("nothing looks like what is named"));
+  EXPECT_THAT(of(diagnosis).why, HasSubstr("no other cause looks like what is named"));
 }
 
 // ----------------------------------------------------------- of rows that a cell can take

@@ -6,6 +6,7 @@
 
 #include "app/report/format.h"
 #include "constraints/planning/tour.h"
+#include "diagnosis/evidence/hypothesis.h"
 #include "io/files/file.h"
 
 namespace selfcal {
@@ -117,12 +118,12 @@ std::string separating_report(const SeparatingRows& rows) {
   std::string text;
   for (std::size_t i = 0; i < rows.steps.size(); ++i) {
     const SeparatingStep& step = rows.steps[i];
+    const bool closer = std::isnan(step.probability_after);  // at what no known effect explains
     std::string names;
-    for (const std::string& each : step.separates) names += (names.empty() ? "" : " from ") + each;
+    for (const std::string& each : step.separates)
+      if (!closer || each != kUnknown) names += (names.empty() ? "" : " from ") + each;
     text += printed("%zu  %s: tells %s", i + 1, step.what.c_str(), names.c_str());
-    text += std::isnan(step.probability_after)
-                ? "\n"
-                : printed(", which is then sure to %.2f\n", step.probability_after);
+    text += closer ? "\n" : printed(", which is then %.0f %% sure\n", 100 * step.probability_after);
   }
   if (!rows.why.empty())
     text += (rows.steps.empty() ? "nothing to measure: " : "") + rows.why + "\n";

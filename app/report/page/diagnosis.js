@@ -11,7 +11,7 @@ function cause_words(cause) {
 
 function value_words(value) {
   const [factor, unit] = shown(value.unit, Math.max(Math.abs(value.value), value.sigma));
-  return figure(factor * value.value) + " ± " + figure(factor * value.sigma, 2) + " " + unit;
+  return value_figure(factor * value.value, factor * value.sigma) + " ± " + figure(factor * value.sigma, 2) + " " + unit;
 }
 
 function values_words(values) {
@@ -63,7 +63,7 @@ function causes_of(data) {
     table([{title: "cause"}, {title: "probability", number: true}, {title: "size, times the noise", number: true},
            {title: "closes alone", number: true}, {title: "adds to the others", number: true},
            {title: "these rows cannot tell it from"}],
-      likely.map(each => [cause_words(each) + (each.shape ? ", " + each.shape : ""), figure(each.probability, 2),
+      likely.map(each => [cause_words(each) + (each.shape ? ", " + each.shape : ""), chance(each.probability),
         each.visible > 0 ? figure(each.visible, 2) : "", share(closes(each).closes_alone),
         share(closes(each).closes_beside), each.confounded_with.map(effect_words).join(", ")])),
   ];
@@ -88,9 +88,10 @@ function sizes_of(candidates, named) {
 }
 
 function next_of(result) {
-  const rows = result.next.map(step => [step.what, step.separates.map(effect_words).join(" or "),
+  const told = step => known(step.probability_after) ? step.separates : step.separates.filter(each => each !== "unknown");
+  const rows = result.next.map(step => [step.what, told(step).map(effect_words).join(" or "),
     known(step.probability_after) ? Math.round(100 * step.probability_after) + " %" : ""]);
-  return [table([{title: "measure"}, {title: "tells apart"}, {title: "then sure to", number: true}], rows),
+  return [table([{title: "measure"}, {title: "tells"}, {title: "then sure to", number: true}], rows),
           result.next.length ? paragraph(result.next_why, "soft") : null];
 }
 
@@ -131,21 +132,21 @@ function limits_of(result) {
 
 function changes_table(changes) {
   return table([{title: "change"}, {title: "probability", number: true}, {title: "size", number: true}],
-    changes.map(each => [cause_words(each), figure(each.probability, 2), values_words(each.values)]));
+    changes.map(each => [cause_words(each), chance(each.probability), values_words(each.values)]));
 }
 
 function shown_causes(title, causes) {
   return causes.length ? [element("h3", {}, title),
     table([{title: "cause"}, {title: "probability", number: true}, {title: "size", number: true},
            {title: "cannot be told from"}],
-      causes.map(each => [cause_words(each), figure(each.probability, 2), values_words(each.parameters),
+      causes.map(each => [cause_words(each), chance(each.probability), values_words(each.parameters),
                           each.confounded_with.map(effect_words).join(", ")]))] : [];
 }
 
 function simulation_of(sim, sentences) {
   const shared = sim.both.flatMap(cause => cause.parameters.map(p => {
     const [factor, unit] = shown(p.unit, Math.max(Math.abs(p.robot), p.robot_sigma));
-    const side = (value, sigma) => figure(factor * value) + " ± " + figure(factor * sigma, 2) + " " + unit;
+    const side = (value, sigma) => value_figure(factor * value, factor * sigma) + " ± " + figure(factor * sigma, 2) + " " + unit;
     return [cause_words(cause) + ": " + p.name, side(p.robot, p.robot_sigma), side(p.simulation, p.simulation_sigma),
             figure(p.sigmas, 2) + " sigma"];
   }));

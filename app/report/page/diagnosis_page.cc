@@ -35,7 +35,7 @@ Json validation_json(const std::vector<ValidationRow>& rows) {
 std::vector<std::string> next_sentences(const Diagnosis& diagnosis) {
   std::vector<std::string> list;
   for (const NextStep& step : diagnosis.next) list.push_back(step.what + next_in_words(step));
-  if (list.empty() && !diagnosis.next_why.empty()) list.push_back("nothing; " + diagnosis.next_why);
+  if (list.empty() && !diagnosis.next_why.empty()) list.push_back("nothing: " + diagnosis.next_why);
   return list;
 }
 

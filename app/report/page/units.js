@@ -23,6 +23,9 @@ function figure(number, digits = 3) {
   return text.replace("-", "−");
 }
 
+// A value beside its sigma: of one that is next to nothing of that, the digits say nothing.
+function value_figure(value, sigma) { return figure(Math.abs(value) < 0.01 * sigma ? 0 : value); }
+
 function mm(metres, digits = 3) { return figure(known(metres) ? 1e3 * metres : null, digits); }
 
 // A number with as many decimals as its uncertainty is worth: two digits of that.
@@ -34,5 +37,7 @@ function fixed(number, places) { return known(number) ? number.toFixed(places).r
 function percent(share) { return figure(100 * share, share < 0.995 ? 2 : 3) + " %"; }
 
 function probability(p) { return p < 1e-9 ? "below 1e-9" : figure(p, 2); }
+
+function chance(probability) { return fixed(probability, 2); }
 
 function plural(count, one, many) { return count + " " + (count === 1 ? one : many || one + "s"); }
