@@ -1,6 +1,7 @@
 // selfcal identifiable ROBOT --method METHOD: what a method can tell of a robot, on random
 // configurations that satisfy it; selfcal identifiable DATASET: what the rows at hand can tell.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,6 +19,8 @@
 
 namespace selfcal {
 namespace {
+
+constexpr double kNegligible = 1e-4;  ///< of the largest coefficient of a group
 
 struct IdentifiableArguments {
   std::string subject, method;
@@ -121,6 +124,16 @@ nlohmann::ordered_json answered_json(const Answered& answered) {
   return json;
 }
 
+/// Those that a person needs: others are as good as nothing beside the largest.
+std::vector<Carrier> worth_telling(std::vector<Carrier> carriers) {
+  double most = 0;
+  for (const Carrier& each : carriers) most = std::max(most, std::abs(each.coefficient));
+  std::erase_if(carriers, [&](const Carrier& each) {
+    return std::abs(each.coefficient) < kNegligible * most;
+  });
+  return carriers;
+}
+
 void print_answered(const Answered& answered) {
   const Robot& robot = *answered.robot;
   std::printf("%s by %s, %d rows: %d of %zu parameters identifiable, %d own unknowns\n",
@@ -133,7 +146,7 @@ void print_answered(const Answered& answered) {
   }
   for (size_t i = 0; i < robot.parameters().size(); ++i) {
     std::string text = std::string(to_string(answered.rank.status[i]));
-    const auto& carriers = answered.rank.grouped_with[i];
+    const std::vector<Carrier> carriers = worth_telling(answered.rank.grouped_with[i]);
     for (size_t k = 0; k < carriers.size() && k < 4; ++k) {
       char each[80];
       std::snprintf(each, sizeof each, "%s%+.3g %s", k ? ", " : " with ", carriers[k].coefficient,

@@ -300,6 +300,15 @@ TEST_F(Program, SaysNoToACellWhosePlanMissesItsTarget) {
   EXPECT_EQ(nlohmann::json::parse(plan.out)["reached"], false);
 }
 
+TEST_F(Program, NamesNobodyWhoCarriesAMillionthOfAParameter) {
+  const Ran ran = run_selfcal("identifiable " SELFCAL_SOURCE_DIR
+                              "/app/examples/delta.robot.yaml --method plane --unknown",
+                              true);
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("grouped with +0.0606 radius1"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("e-07"), std::string::npos) << ran.out;
+}
+
 TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const std::string file = (folder_ / "diagnosis.json").string();
   const std::string step =
