@@ -13,7 +13,9 @@
 #include "io/files/robot_file.h"
 #include "kinematics/inverse/compensation.h"
 #include "kinematics/inverse/controller_fit.h"
+#include "kinematics/readable.h"
 #include "kinematics/robot_text.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -22,6 +24,7 @@ constexpr int kEverywhere =
     500;                     // configurations all over the range that a controller is fitted to
 constexpr int kHere = 2000;  // of those reached, beside them
 constexpr unsigned long long kSeed = 1;
+constexpr double kFarAway = 100;  // sizes of the robot, a hall: a thousand are millimetres
 
 struct CompensateArguments {
   std::string calibrated, nominal, poses, out, controller;
@@ -37,6 +40,9 @@ std::string row_of(const WantedPose& wanted, const Command& command, Eigen::Inde
   return row + "," + std::to_string(command.iterations) + "," + format_number(command.error) + "," +
          format_number(command.error_angle) + "," + std::string(to_string(command.status)) + "\n";
 }
+
+/// What is below a thousandth is nothing to a person.
+std::string figure(double value) { return std::abs(value) < 1e-3 ? "0" : plain_figure(value); }
 
 struct Tally {
   std::map<std::string, int, std::less<>> by_status;
@@ -98,22 +104,39 @@ Result<void> tell_controller(const CompensateArguments& arguments, const Robot& 
   };
   const EndsApart maker = error(numbers.start),
                   found = error(as_found(nominal, numbers, calibrated)), fitted = error(xi);
+  if (!arguments.controller.empty())
+    if (auto written = write_file_atomically(arguments.controller, robot_text(nominal, xi));
+        !written)
+      return written;
+  if (maker.most == 0) {
+    std::fprintf(stderr, "%s is the nominal robot itself: there is nothing to compensate\n",
+                 arguments.calibrated.c_str());
+    return {};
+  }
   std::fprintf(
       stderr,
-      "a controller that takes no more than these is off by %.3g mm rms, %.3g mm at most "
-      "(%.3g mrad rms); with their identified values %.3g mm rms, with the maker's %.3g mm "
-      "rms\n",
-      1e3 * fitted.rms, 1e3 * fitted.most, 1e3 * fitted.rms_angle, 1e3 * found.rms,
-      1e3 * maker.rms);
+      "a controller that takes parameters in place of these commands is off by %s mm rms, %s mm at "
+      "most (%s mrad rms) with those below, by %s mm rms with their identified values, by %s mm "
+      "rms with the maker's\n",
+      figure(1e3 * fitted.rms).c_str(), figure(1e3 * fitted.most).c_str(),
+      figure(1e3 * fitted.rms_angle).c_str(), figure(1e3 * found.rms).c_str(),
+      figure(1e3 * maker.rms).c_str());
+  std::fprintf(stderr, "  %-12s %12s %12s\n", "parameter", "maker's", "to set");
   for (const int i : taken) {
     const Parameter& each = nominal.parameters()[static_cast<std::size_t>(i)];
-    std::fprintf(stderr, "  %-12s %s %s, of the maker's %s\n", each.name.c_str(),
-                 format_number(xi[i]).c_str(), std::string(each.unit()).c_str(),
-                 format_number(numbers.start[i]).c_str());
+    const ReadableUnit unit = readable_unit(std::string(each.unit()), 1);
+    std::fprintf(stderr, "  %-12s %12.4f %12.4f %s\n", each.name.c_str(),
+                 unit.factor * numbers.start[i], unit.factor * xi[i], unit.name.c_str());
   }
-  return arguments.controller.empty()
-             ? Result<void>()
-             : write_file_atomically(arguments.controller, robot_text(nominal, xi));
+  return {};
+}
+
+/// Asks for the unit where a pose is beyond all that a robot of `size` reaches; empty elsewhere.
+std::string doubt_of_unit(const WantedPose& wanted, double size, std::size_t number) {
+  const double away = wanted.location.p.norm();
+  if (away < kFarAway * size) return {};
+  return "pose " + std::to_string(number) + " is " + plain_figure(away) +
+         " m from the world's origin: are these millimetres?";
 }
 
 int compensate_command(const CompensateArguments& arguments) {
@@ -136,6 +159,8 @@ int compensate_command(const CompensateArguments& arguments) {
   for (Eigen::Index j = 0; j < joints; ++j) text += ",q" + std::to_string(j + 1);
   text += ",iterations,error,error_angle,status\n";
   Tally tally;
+  std::string doubt;
+  const double size = size_of(*nominal);
   std::optional<Eigen::VectorXd> before;
   for (const WantedPose& each : *wanted) {
     const std::optional<Eigen::VectorXd> near = each.near.size() > 0 ? each.near : before;
@@ -143,6 +168,8 @@ int compensate_command(const CompensateArguments& arguments) {
         arguments.all ? compensation.commands(each.location, near)
                       : std::vector<Command>{compensation.command(each.location, near)};
     if (commands.front().status == Reach::reached) before = commands.front().q;
+    if (commands.front().status == Reach::out_of_reach && doubt.empty())
+      doubt = doubt_of_unit(each, size, static_cast<std::size_t>(&each - wanted->data()) + 1);
     tally.add(commands.front());
     for (const Command& command : commands) text += row_of(each, command, joints);
   }
@@ -152,9 +179,11 @@ int compensate_command(const CompensateArguments& arguments) {
     return tell(written.error());
   for (const auto& [status, count] : tally.by_status)
     std::fprintf(stderr, "%d of %zu poses: %s\n", count, wanted->size(), status.c_str());
+  if (!doubt.empty())
+    std::fprintf(stderr, "selfcal: %s: %s\n", arguments.poses.c_str(), doubt.c_str());
   if (!tally.reached.empty())
-    std::fprintf(stderr, "those reached are left %.2g um and %.2g urad off at most\n",
-                 1e6 * tally.largest, 1e6 * tally.largest_angle);
+    std::fprintf(stderr, "those reached are left %s um and %s urad off at most\n",
+                 figure(1e6 * tally.largest).c_str(), figure(1e6 * tally.largest_angle).c_str());
   if (const auto told = tell_controller(arguments, *nominal, *calibrated, tally); !told)
     return tell(told.error());
   return tally.reached.size() == wanted->size() ? kDone : kAnswerIsNo;

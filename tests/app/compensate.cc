@@ -89,13 +89,29 @@ class CompensateProgram : public testing::Test {
   std::vector<Location> wanted_;
 };
 
+TEST_F(CompensateProgram, AsksWhetherPosesThatNoRobotReachesAreInMillimetres) {
+  write_poses_at({0, 0.4});
+  EXPECT_THAT(compensate().out, testing::Not(HasSubstr("millimetres?")));
+  wanted_[1].p *= 500;  // as far as a file may say
+  std::string text = "x,y,z,qw,qx,qy,qz\n";
+  for (const Location& each : wanted_)
+    text += format_number(each.p.x()) + "," + format_number(each.p.y()) + "," +
+            format_number(each.p.z()) + ",1,0,0,0\n";
+  std::ofstream(at("poses.csv")) << text;
+  const Ran ran = compensate();
+  EXPECT_EQ(ran.status, 1) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("poses.csv: pose 2 is "));
+  EXPECT_THAT(ran.out, HasSubstr("are these millimetres?"));
+}
+
 TEST_F(CompensateProgram, WritesCommandsThatPutTheCalibratedRobotThere) {
   write_poses_at({0, 0.4, -0.7});
   const Ran ran = compensate();
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_THAT(ran.out, HasSubstr("3 of 3 poses: reached"));
-  EXPECT_THAT(ran.out, HasSubstr("those reached are left "));
-  EXPECT_THAT(ran.out, HasSubstr("a controller that takes no more than these is off by "));
+  EXPECT_THAT(ran.out, HasSubstr("those reached are left 0 um and 0 urad off at most"));
+  EXPECT_THAT(ran.out, HasSubstr("a controller that takes parameters in place of these commands "
+                                 "is off by "));
   const auto rows = answer();
   ASSERT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows[0],
@@ -112,6 +128,14 @@ TEST_F(CompensateProgram, WritesCommandsThatPutTheCalibratedRobotThere) {
     EXPECT_GE(std::stoi(rows[row][13]), 1);
     EXPECT_EQ(rows[row].back(), "reached");
   }
+}
+
+TEST_F(CompensateProgram, SaysThatTheMakersRobotNeedsNoCompensation) {
+  write_poses_at({0});
+  std::ofstream(at("calibrated.robot.yaml")) << text_of(kExamples + "rx90.robot.yaml");
+  const Ran ran = compensate();
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("is the nominal robot itself: there is nothing to compensate"));
 }
 
 TEST_F(CompensateProgram, NamesAPoseThatIsOutOfReachAndGivesNoCommandForIt) {
