@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/report/format.h"
 
@@ -18,6 +19,9 @@ double moved(const Drift& drift) {
     most = std::max(most, std::abs(drift.since_last[i]));
   return most;
 }
+
+/// Whether that is more than the last calibration is unsure of.
+bool surely(const Drift& drift) { return moved(drift) > drift.sigma.back(); }
 
 const char* shown_unit(Quantity quantity) {
   return quantity == Quantity::length ? "mm" : quantity == Quantity::angle ? "mrad" : "1e-3";
@@ -38,11 +42,15 @@ std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, s
       const Parameter& now = calibration.robot->parameters()[p];
       drift.since_factory.push_back(now.value - now.nominal);
       drift.since_last.push_back(now.value - before);
+      const auto sigma = calibration.sigma.find(now.name);
+      drift.sigma.push_back(sigma == calibration.sigma.end() ? 0 : sigma->second);
       before = now.value;
     }
     if (moved(drift) > 0) all.push_back(std::move(drift));
   }
-  std::ranges::stable_sort(all, std::greater<>(), moved);
+  std::ranges::stable_sort(all, std::greater<>(), [](const Drift& drift) {
+    return std::pair(surely(drift), moved(drift));
+  });
   if (all.size() > most) all.resize(most);
   return all;
 }
@@ -57,6 +65,9 @@ std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
   for (std::size_t c = first; c < count; ++c)
     text += printed(
         "%20s", printed("session %lld", static_cast<long long>(calibrations[c].session)).c_str());
+  const bool sigmas =
+      std::ranges::any_of(drifts, [](const Drift& d) { return d.sigma.back() > 0; });
+  if (sigmas) text += printed("%9s", "sigma");
   text += "\n" + padded("", width + 7);
   for (std::size_t c = first; c < count; ++c)
     text += printed("%20s", date_time(calibrations[c].unix_ms).substr(0, 10).c_str());
@@ -66,6 +77,7 @@ std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
       const std::string change = c > 0 ? printed("(%+.3f)", 1e3 * drift.since_last[c]) : "";
       text += printed("%+10.3f%10s", 1e3 * drift.since_factory[c], change.c_str());
     }
+    if (drift.sigma.back() > 0) text += printed("%9.3f", 1e3 * drift.sigma.back());
     text.erase(text.find_last_not_of(' ') + 1);
   }
   return text + "\n";

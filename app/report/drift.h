@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace selfcal {
 struct AcceptedParameters {
   std::int64_t session = 0, unix_ms = 0;
   std::shared_ptr<const Robot> robot;
-  std::string json = {};  ///< result.json; empty where it is no longer kept
+  std::map<std::string, double> sigma = {};  ///< by parameter; empty where it is no longer kept
 };
 
 /// One parameter over all calibrations (SI).
@@ -23,14 +24,16 @@ struct Drift {
   Quantity quantity = Quantity::length;
   std::vector<double> since_factory;  ///< value less the maker's figure, by calibration
   std::vector<double> since_last;  ///< less that of the calibration before; of the first as above
+  std::vector<double> sigma;       ///< of the value, by calibration; 0 where it is not known
 };
 
 /// The `most` parameters that moved most after the first calibration, or in it when it is the only
-/// one: 1 mm counts as 1 mrad and as a ratio of 0.001. Those that never moved are left out.
-/// `calibrations` are of one machine, oldest first.
+/// one: 1 mm counts as 1 mrad and as a ratio of 0.001. Those that never moved by more than their
+/// sigma come last; those that never moved are left out. `calibrations` are of one machine, oldest
+/// first.
 std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, std::size_t most);
 
-/// A table in mm, mrad and 1e-3, a column for each of the newest calibrations.
+/// A table in mm, mrad and 1e-3, a column for each of the newest calibrations and the newest sigma.
 std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
                         const std::vector<Drift>& drifts);
 

@@ -2,11 +2,27 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "io/files/json_parts.h"
 #include "io/files/robot_file.h"
 
 namespace selfcal {
+
+namespace {
+
+/// Sigma of each parameter by its name, of result.json; empty where it is gone.
+std::map<std::string, double> sigmas_of(const std::string& json) {
+  std::map<std::string, double> sigmas;
+  const auto result = nlohmann::json::parse(json, nullptr, false);
+  if (!result.is_object() || !result.contains("parameters")) return sigmas;
+  for (const auto& each : result["parameters"])
+    if (each.contains("sigma") && each["sigma"].is_number())
+      sigmas[each["name"].get<std::string>()] = each["sigma"].get<double>();
+  return sigmas;
+}
+
+}  // namespace
 
 bool is_damaged(const Past& past) { return past.session.kind.empty(); }
 
@@ -39,7 +55,7 @@ Result<std::vector<AcceptedParameters>> read_calibrations(Store& store) {
         newest_first.front().robot->text().identity() != (*robot)->text().identity())
       continue;
     newest_first.push_back(
-        {each.session, each.unix_ms, std::move(*robot), std::move((*result)->json)});
+        {each.session, each.unix_ms, std::move(*robot), sigmas_of((*result)->json)});
   }
   std::ranges::reverse(newest_first);
   return newest_first;

@@ -46,6 +46,22 @@ TEST(Drifts, ComeWithTheOneThatMovedMostFirst) {
   EXPECT_THAT(drift_table(all, found), HasSubstr("(+0.500)"));
 }
 
+TEST(Drifts, PutWhatMovedByLessThanItsSigmaLast) {
+  std::vector<AcceptedParameters> all = {calibration(1, 3, 2e-3)};
+  Eigen::VectorXd xi = values(*all[0].robot);
+  xi[5] += 1e-3;
+  all[0].robot = robot_of(robot_text(*all[0].robot, xi), "moved").value();
+  const auto& parameters = all[0].robot->parameters();
+  all[0].sigma = {{parameters[3].name, 25e-3}, {parameters[5].name, 1e-5}};
+
+  const std::vector<Drift> found = drifts(all, 10);
+
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_EQ(found[0].name, full_name(parameters[5]));
+  EXPECT_EQ(found[0].sigma[0], 1e-5);
+  EXPECT_THAT(drift_table(all, found), HasSubstr("   25.000"));
+}
+
 TEST(Drifts, OfOneCalibrationAreThoseFromTheFactory) {
   const std::vector<Drift> found = drifts({calibration(1, 3, 2e-3)}, 10);
   ASSERT_EQ(found.size(), 1);

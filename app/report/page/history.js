@@ -62,7 +62,7 @@ function drift_section(data) {
       "± " + figure(factor * drift.limit) + " " + unit, rate_words(drift.trend, drift.unit)];
   });
   return [
-    paragraph("Change since the factory, with its 95 % interval; those that moved most between sessions first. The limit " +
+    paragraph("Change since the factory, with its 95 % interval; those that moved most between sessions first, surest of all by more than their sigma. The limit " +
               "is three of the maker's tolerances.", "soft"),
     element("div", {class: "multiples"}, drifts.slice(0, most).map(drift => drift_figure(data, drift))),
     folded("every parameter that moved", table([{title: "parameter"}, {title: "now, 95 % interval", number: true},

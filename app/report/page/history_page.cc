@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "app/report/format.h"
 #include "app/report/trend.h"
@@ -22,17 +21,6 @@ constexpr double kUpper = 0.975, kLower = 0.025;
 
 double days(std::int64_t unix_ms) { return static_cast<double>(unix_ms) / kDay; }
 
-/// Sigma of each parameter by its name, of result.json; empty where it is gone.
-std::map<std::string, double> sigmas_of(const std::string& json) {
-  std::map<std::string, double> sigmas;
-  const Json result = Json::parse(json, nullptr, false);
-  if (!result.is_object() || !result.contains("parameters")) return sigmas;
-  for (const Json& each : result["parameters"])
-    if (each.contains("sigma") && each["sigma"].is_number())
-      sigmas[each["name"].get<std::string>()] = each["sigma"].get<double>();
-  return sigmas;
-}
-
 /// `unit` of the values a day; the date at which the limit is left, if it will be.
 Json trend_json(const std::vector<double>& times, const std::vector<double>& values,
                 const std::vector<double>& sigmas, double now, double least, double most) {
@@ -45,37 +33,28 @@ Json trend_json(const std::vector<double>& times, const std::vector<double>& val
           {"leaves_in_days", left ? finite(*left - now) : Json(nullptr)}};
 }
 
-Json drift_json(const HistoryFindings& findings, const Drift& drift, std::size_t index,
-                const std::vector<std::map<std::string, double>>& known) {
-  const Parameter& parameter = findings.calibrations.front().robot->parameters()[index];
-  std::vector<double> times, sigmas;
-  for (std::size_t c = 0; c < findings.calibrations.size(); ++c) {
-    times.push_back(days(findings.calibrations[c].unix_ms));
-    const auto found = known[c].find(parameter.name);
-    sigmas.push_back(found == known[c].end() ? 0 : found->second);
-  }
+Json drift_json(const HistoryFindings& findings, const Drift& drift, const Parameter& parameter) {
+  std::vector<double> times;
+  for (const AcceptedParameters& each : findings.calibrations) times.push_back(days(each.unix_ms));
   const double limit = kTolerances * parameter.tolerance;
-  return {{"name", drift.name},
-          {"unit", parameter.unit()},
-          {"since_factory", array_of(drift.since_factory, finite)},
-          {"sigma", array_of(sigmas, [](double s) { return s > 0 ? finite(s) : Json(nullptr); })},
-          {"limit", finite(limit)},
-          {"trend",
-           trend_json(times, drift.since_factory, sigmas, days(findings.unix_ms), -limit, limit)}};
+  return {
+      {"name", drift.name},
+      {"unit", parameter.unit()},
+      {"since_factory", array_of(drift.since_factory, finite)},
+      {"sigma", array_of(drift.sigma, [](double s) { return s > 0 ? finite(s) : Json(nullptr); })},
+      {"limit", finite(limit)},
+      {"trend",
+       trend_json(times, drift.since_factory, drift.sigma, days(findings.unix_ms), -limit, limit)}};
 }
 
 Json drifts_json(const HistoryFindings& findings) {
   Json list = Json::array();
   if (findings.calibrations.empty()) return list;
-  std::vector<std::map<std::string, double>> known;
-  for (const AcceptedParameters& each : findings.calibrations)
-    known.push_back(sigmas_of(each.json));
   const std::vector<Parameter>& parameters = findings.calibrations.front().robot->parameters();
   for (const Drift& drift : drifts(findings.calibrations, kEveryParameter)) {
     const auto found =
         std::ranges::find(parameters, drift.name, [](const Parameter& p) { return full_name(p); });
-    list.push_back(
-        drift_json(findings, drift, static_cast<std::size_t>(found - parameters.begin()), known));
+    list.push_back(drift_json(findings, drift, *found));
   }
   return list;
 }
