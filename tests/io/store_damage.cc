@@ -189,7 +189,7 @@ TEST(StoreReader, FailsWhereThereIsNoStoreAndMakesNone) {
   const Scratch scratch;
   const auto reader = Store::open_to_read(scratch.folder());
   ASSERT_FALSE(reader.has_value());
-  EXPECT_THAT(reader.error().what, HasSubstr("selfcal.db: unable to open"));
+  EXPECT_THAT(reader.error().what, HasSubstr("holds no selfcal.db: the service has not run"));
   EXPECT_TRUE(std::filesystem::is_empty(scratch.folder()));
   const auto writer = Store::open(scratch.folder() / "none" / "deeper");
   ASSERT_FALSE(writer.has_value());

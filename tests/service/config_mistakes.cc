@@ -39,6 +39,17 @@ TEST(Config, RefusesARobotThatIsBrokenOrNotThere) {
   EXPECT_THAT(config.error().what, HasSubstr("bad.yaml:3"));
 }
 
+TEST(Config, SaysThatTheFileIsARobotsOrADataSets) {
+  const Scratch scratch;
+  const auto robot = load_config(example("rx90.robot.yaml"));
+  ASSERT_FALSE(robot);
+  EXPECT_THAT(robot.error().what, HasSubstr("is the file of a robot; expected a CONFIG.yaml"));
+  const auto data =
+      load_config(scratch.write("dataset.yaml", "robot: x.yaml\nobservations: rows.csv\n"));
+  ASSERT_FALSE(data);
+  EXPECT_THAT(data.error().what, HasSubstr("is the file of a data set; expected a CONFIG.yaml"));
+}
+
 TEST(Config, RefusesWaysThatDoNotFitTogether) {
   EXPECT_THAT(refusal({{"motion.apart", "0.03"}}), HasSubstr("less than clearance"));
   EXPECT_THAT(refusal({{"motion.search", "0.03"}}), HasSubstr("less than clearance"));

@@ -264,6 +264,12 @@ class Reader {
 Result<Config> load_config(const std::filesystem::path& path) {
   const Result<Node> node = read_yaml(path);
   if (!node) return tl::unexpected(node.error());
+  for (const char* key : {"frames", "legs", "chains", "towers", "observations"})
+    if (node->find(key))
+      return bad_input(path.string() + ": is the file of a " +
+                       (key == std::string_view("observations") ? "data set" : "robot") +
+                       "; expected a CONFIG.yaml, which names the robot's file, the surfaces that "
+                       "it may touch and a home");
   Problems problems;
   Config config = Reader(path.parent_path(), problems).read(*node);
   if (problems.any()) return bad_input(problems);
