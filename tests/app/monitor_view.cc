@@ -201,6 +201,20 @@ TEST(MonitorNews, TellsOfSilenceAndOfItsEnd) {
   EXPECT_EQ(news.of_silence(all), "the service is heard again");
 }
 
+TEST(MonitorView, SaysNothingOfACauseInTheModelWhereNoneIsNamed) {
+  ResultMessage result = improved();
+  result.kind = "cause";
+  result.answer = "no-cause";
+  const auto shown = [&] {
+    Watched all = watched();
+    note(all, result);
+    return picture_text(picture(all, kNow, 120, 60));
+  };
+  EXPECT_THAT(shown(), HasSubstr("nothing is named; calibrated 1.92 mm, p"));
+  result.cause = "backlash@j2";
+  EXPECT_THAT(shown(), HasSubstr("with the cause in the model 0.0228 mm"));
+}
+
 TEST(MonitorNews, TellsATouchInOneLine) {
   EXPECT_EQ(News().of(touch(7)), "ramp 7: +12.3 µm; 8 of 240 touches, 3 min 20 s left");
   EXPECT_THAT(News().of(touch(7, false)), HasSubstr("ramp 7: put aside: touched 3.2 mm before"));

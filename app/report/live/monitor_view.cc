@@ -199,10 +199,10 @@ std::string figures(const ResultMessage& result) {
   if (result.kind == "check")
     return "check " + mm(result.check_after) + " mm where " + mm(result.check_before) +
            " mm are expected" + p;
+  if (result.kind == "cause" && result.cause.empty())
+    return "nothing is named; calibrated " + mm(result.check_before) + " mm" + p;
   if (result.kind == "cause")
-    return (result.cause.empty()
-                ? "nothing is named; "
-                : result.cause + printed(" (probability %.2f); ", result.cause_probability)) +
+    return result.cause + printed(" (probability %.2f); ", result.cause_probability) +
            "calibrated " + mm(result.check_before) + " mm, with the cause in the model " +
            mm(result.check_after) + " mm" + p;
   return "check " + mm(result.check_before) + " mm before, " + mm(result.check_after) +
