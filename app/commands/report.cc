@@ -13,6 +13,7 @@
 #include "constraints/estimation/engagements.h"
 #include "diagnosis/diagnosis.h"
 #include "io/files/file.h"
+#include "io/files/json_parts.h"
 
 namespace selfcal {
 namespace {
@@ -51,7 +52,10 @@ nlohmann::ordered_json session_json(const SessionRecord& record,
                                  {"kind", record.kind},
                                  {"when", date_time(record.started_ms)},
                                  {"reason", record.reason}};
-  if (result) json["decision"] = to_string(result->decision);
+  if (!result) return json;
+  json["decision"] = to_string(result->decision);
+  json["in_use"] = {{"before", finite(result->check_before)},
+                    {"after", finite(result->check_after)}};
   return json;
 }
 

@@ -60,6 +60,7 @@ TEST_F(Tutorials, LeadFromABareRobotToACalibration) {
   const std::string page = text_of(folder_ / "cell/session-1.html");
   EXPECT_NE(page.find("It waits for a person"), std::string::npos);
   EXPECT_EQ(page.find("then use calibrated.robot.yaml"), std::string::npos);
+  EXPECT_NE(page.find("\"in_use\":{\"before\":0.00"), std::string::npos) << "what the history has";
 }
 
 TEST_F(Tutorials, FindTheCauseOfAGap) {

@@ -21,6 +21,15 @@ function before_after_table(result, angle_alone) {
           by_set.length > 1 ? folded("rows kept aside, set by set", table(columns, by_set)) : null];
 }
 
+// What a person may take for the same: the parameters that a service used, and the maker's.
+function before_words(session, unit) {
+  const used = session && session.in_use;
+  return "Before: the maker's figures, base and tool placed by these rows." +
+    (used && known(used.before) && known(used.after)
+      ? " The parameters that were in use then, base and tool where they were, missed the touches kept aside by " +
+        mm(used.before) + " " + unit + ", as the history has it." : "");
+}
+
 function shown_rows_text(rows) {
   return rows.row.length < rows.of
     ? " " + rows.row.length + " of " + rows.of + " rows are shown, evenly chosen." : "";
@@ -169,7 +178,7 @@ function parameters_of(data) {
                       (rest.length === 1 ? "its" : "their") + " sigma: no change that one may rely on",
                       parameter_table(rest, names, k)));
   parts.push(...notes("Held, and why", result.gauge, "why"));
-  parts.push(...notes("Not moved enough by these rows to be told", result.unexcited, "what"));
+  parts.push(...notes("Not told by these rows, and what would help", result.unexcited, "what"));
   if (grouped.length)
     parts.push(element("h3", {}, "Known only together with others"),
       paragraph("These rows see a combination of them; the change is booked on the parameter beside.", "soft"),
@@ -253,7 +262,7 @@ function show_identification(data) {
   if (result.warnings.length) section("Warnings", bullets(result.warnings));
   if (!rows) return;
   section("Before and after", histogram_of(rows, unit, lengths),
-          before_after_table(result, angle_alone));
+          before_after_table(result, angle_alone), paragraph(before_words(data.session, unit), "soft"));
   section("In the workspace", workspace_view(data));
   section("What moved", parameters_of(data));
   section("How sure", uncertainty_of(data));

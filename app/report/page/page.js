@@ -30,7 +30,7 @@ function show_facts() {
     ["rows", from ? from.rows : ""],
     ["sets", from ? from.sets.map(set => set.name + " (" + set.method + ")").join(", ") : ""],
     ["measured", session.when],
-    ["asked for by", session.reason],
+    ["begun", session.reason],
     ["decision", session.decision],
     ["page made", data.made],
     ["version", "selfcal " + data.version],
