@@ -191,8 +191,9 @@ std::optional<RowFault> check_joint_columns(const Layout& layout, int joints) {
     const std::string name = "q" + std::to_string(joint);
     if (!layout.find(name))
       return RowFault{"column '" + name + "' is missing: " + robot_has +
-                      "; what the file calls it, dataset.yaml says: columns: {" + name +
-                      ": HEADER [deg]}"};
+                      "; where the file has it under another name, dataset.yaml says which: "
+                      "columns: {" +
+                      name + ": NAME [deg]}"};
   }
   return std::nullopt;
 }

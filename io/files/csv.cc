@@ -40,7 +40,11 @@ class CsvReader {
  public:
   CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row,
             const CsvForm& form)
-      : path_(path), take_header_(header), take_row_(row), lines_above_(form.header - 1) {
+      : path_(path),
+        take_header_(header),
+        take_row_(row),
+        separator_(form.separator),
+        lines_above_(form.header - 1) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
     csv_set_delim(&parser_, static_cast<unsigned char>(form.separator));
     csv_set_blk_size(&parser_, kBlock);
@@ -120,8 +124,11 @@ class CsvReader {
     if (!header_taken_) return take_header();
     if (rows_ == std::numeric_limits<int>::max() - 1) return complain({"too many rows"});
     if (cells_.size() != names_.size()) {
+      // Half of the numbers and more are in two pieces.
+      const bool decimals = separator_ == ',' && 2 * cells_.size() > 3 * names_.size();
       return complain({"expected " + count_of_cells(names_.size()) + " as in the header, got " +
-                       std::to_string(cells_.size())});
+                       std::to_string(cells_.size()) +
+                       (decimals ? " (decimal commas? then semicolons between the columns)" : "")});
     }
     if (const auto fault = take_row_(cells_, rows_ + 1)) return complain(*fault);
     ++rows_;
@@ -155,6 +162,7 @@ class CsvReader {
   const std::filesystem::path& path_;
   const TakeHeader& take_header_;
   const TakeRow& take_row_;
+  const char separator_;
   int lines_above_ = 0;  // the header, to be passed over
   csv_parser parser_{};
   std::string buffer_;             // the row's cells, end to end

@@ -66,6 +66,10 @@ TEST(Csv, ReadsAHeaderWithoutRows) { EXPECT_EQ(table_of("a,b\n"), (Table{{"a", "
 TEST(Csv, NamesTheRowOfAWrongCountOfCells) {
   EXPECT_EQ(csv_error("a,b\n1,2\n3\n"), "f.csv: row 2: expected 2 cells as in the header, got 1");
   EXPECT_EQ(csv_error("a,b\n1,2,3\n"), "f.csv: row 1: expected 2 cells as in the header, got 3");
+  EXPECT_EQ(
+      csv_error("a,b\n1,2,3,4\n"),
+      "f.csv: row 1: expected 2 cells as in the header, got 4 (decimal commas? then semicolons "
+      "between the columns)");
 }
 
 TEST(Csv, RefusesBrokenQuotations) {

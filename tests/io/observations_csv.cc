@@ -121,9 +121,8 @@ TEST_F(ObservationsCsv, ReadsHowMuchNoisierARowIsThanItsSet) {
 TEST_F(ObservationsCsv, RefusesAHeaderThatDoesNotFitTheRobot) {
   EXPECT_EQ(error("q1,q2\n0,0\n"), "observations.csv: header: column 'set' is missing");
   EXPECT_EQ(error("set,q1\ntable,0\n"),
-            "observations.csv: header: column 'q2' is missing: the robot has 2 joints; what the "
-            "file calls it, "
-            "dataset.yaml says: columns: {q2: HEADER [deg]}");
+            "observations.csv: header: column 'q2' is missing: the robot has 2 joints; where the "
+            "file has it under another name, dataset.yaml says which: columns: {q2: NAME [deg]}");
   EXPECT_EQ(error("set,q1,q2,q3\ntable,0,0,0\n"),
             "observations.csv: header: column q3: the robot has 2 joints");
   EXPECT_EQ(error("set,q0,q1,q2\ntable,0,0,0\n"),
