@@ -15,6 +15,7 @@
 #include "app/report/past.h"
 #include "app/service/config/config.h"
 #include "app/service/session/decoding.h"
+#include "app/service/transitions/state.h"
 #include "io/files/file.h"
 #include "io/files/json_parts.h"
 
@@ -155,6 +156,11 @@ Result<void> write_report(Store& store, const HistoryArguments& arguments,
   return write_file_atomically(arguments.report, page_of(history_data(findings)));
 }
 
+bool is_check(Store& store, std::int64_t session) {
+  const auto record = store.session(session);
+  return record && record->kind == to_string(SessionKind::check);
+}
+
 Result<void> print_export(Store& store, const HistoryArguments& arguments,
                           const StoreSource& source) {
   const auto session = std::atoll(arguments.exported[0].c_str());
@@ -168,8 +174,10 @@ Result<void> print_export(Store& store, const HistoryArguments& arguments,
     std::printf("%s\n",
                 line_of({{"session", session}, {"folder", folder}, {"rows", *rows}}).c_str());
   else
-    std::printf("%s: %d rows of session %lld; solve them again by: selfcal identify %s\n",
-                folder.c_str(), *rows, session, folder.c_str());
+    std::printf(
+        "%s: %s of session %lld%s\n", folder.c_str(), counted(*rows, "row").c_str(), session,
+        is_check(store, session) ? ", a quick check: too few to calibrate by"
+                                 : ("; solve them again by: selfcal identify " + folder).c_str());
   return {};
 }
 

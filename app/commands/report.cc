@@ -79,6 +79,12 @@ Result<void> write_page(const ReportArguments& arguments) {
   if (!source) return tl::unexpected(source.error());
   const auto store = Store::open_to_read(source->state);
   if (!store) return tl::unexpected(store.error());
+  const auto record = (*store)->session(arguments.session);
+  if (!record) return tl::unexpected(record.error());
+  if (record->kind == to_string(SessionKind::check))
+    return bad_input("session " + std::to_string(record->id) +
+                     " is a quick check: its touches are too few to calibrate by, `selfcal "
+                     "history` says what it found");
   const auto rows = session_rows(**store, arguments.session, source->robot_text);
   if (!rows) return tl::unexpected(rows.error());
   const auto result = (*store)->result(rows->record.id);

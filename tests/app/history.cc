@@ -194,6 +194,18 @@ TEST_F(History, WritesAPage) {
   EXPECT_THAT(unknown.out, HasSubstr("9"));
 }
 
+TEST_F(History, HasNoPageOfACheckWhoseTouchesAreTooFewToCalibrateBy) {
+  accepted(2e-3);
+  begin("check");
+  const std::string page = (folder_ / "check.html").string();
+
+  const Ran ran = run_selfcal("report 2 " + folder_.string() + " --out " + page);
+
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_THAT(ran.out, HasSubstr("session 2 is a quick check"));
+  EXPECT_FALSE(std::filesystem::exists(page));
+}
+
 TEST_F(History, SaysThatThereIsNoSession) {
   const Ran ran = history("");
   EXPECT_EQ(ran.status, 0);
