@@ -82,6 +82,7 @@ function touch_chart() {
     const first = touches.filter(touch => touch.accepted && !known(touch.residual)).length;
     note.textContent = first === 0 ? "" : plural(first, "touch is", "touches are") +
       " taken and not drawn: a surface's first touches find where it lies, and can miss nothing.";
+    made.hidden = list.length > 0 && numbered().length === 0;
     if (!entry.chart || list.length === 0) return;
     entry.chart.resize();
     entry.chart.data = make().data;
