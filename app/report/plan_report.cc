@@ -54,7 +54,9 @@ std::string plan_report(const Robot& robot, const PlanRequest& request,
         "%s mm after these\n",
         mm(plan.sigma_beyond).c_str(), mm(plan.rest(plan.random.sigma)).c_str(),
         mm(plan.rest(plan.planned.sigma)).c_str());
-  text += printed("observability of %d parameters\n  %-10s %12s %12s\n", plan.parameters, "",
+  const double least = std::min(plan.random.observability.o1, plan.planned.observability.o1);
+  text += printed("observability of %d parameters%s\n  %-10s %12s %12s\n", plan.parameters,
+                  least > 0 ? "" : " (-: so few configurations do not tell all of them)", "",
                   "at random", "planned");
   for (const auto& [name, index] : {std::pair{"condition", &Observability::condition},
                                     {"o1", &Observability::o1},

@@ -309,6 +309,14 @@ TEST_F(Program, NamesNobodyWhoCarriesAMillionthOfAParameter) {
   EXPECT_EQ(ran.out.find("e-07"), std::string::npos) << ran.out;
 }
 
+TEST_F(Program, SaysWhyAPlanHasNoObservability) {
+  const std::string plan = "plan " SELFCAL_SOURCE_DIR
+                           "/app/examples/irb1600.robot.yaml --method position --candidates 200";
+  const std::string told = "do not tell all of them";
+  EXPECT_NE(run_selfcal(plan + " --count 4", true).out.find(told), std::string::npos);
+  EXPECT_EQ(run_selfcal(plan + " --count 20", true).out.find(told), std::string::npos);
+}
+
 TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const std::string file = (folder_ / "diagnosis.json").string();
   const std::string step =
