@@ -1,4 +1,5 @@
 // selfcal data check FOLDER: a first look at rows and robot, and what is likely wrong with them.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -55,6 +56,11 @@ int data_check(const std::string& folder) {
   const auto loaded = load_data_set(folder);
   if (!loaded) return tell(with_likely_wrong(loaded.error(), folder));
   print_notices(*loaded);
+  const std::vector<char>& check = loaded->data.rows.check;
+  if (std::ranges::none_of(check, [](char each) { return each == 0; })) {
+    std::printf("every row is `part: check`: none is left to look at\n");
+    return kAnswerIsNo;
+  }
   const auto look = look_at_files(folder, *loaded, loaded->robot);
   return look ? print_first_look(*look) : tell(look.error());
 }

@@ -195,6 +195,12 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
   for (const std::string& warning : solution.warnings)
     if (warning.starts_with(kFilesFirst)) return {warning};
   std::vector<std::string> steps;
+  const std::vector<char>& check = data.rows.check;
+  if (!check.empty() && std::ranges::none_of(check, [](char each) { return each == 0; }))
+    return {
+        "Leave `check` (column part) to about a third of the rows: the others are to identify."};
+  if (solution.sets.empty() && !check.empty())
+    return {"Look at rows and robot file first: `selfcal data check` says what is likely wrong."};
   if (!solution.converged)
     steps.push_back("Not converged: " + solution.stop_reason +
                     ". Check that the nominal model, units and joint signs belong to these rows.");
@@ -270,7 +276,11 @@ std::string headline(const Solution& solution) {
 std::string summary(const DataSet& data, const Solution& solution) {
   std::string text = headline(solution) + "\n";
   if (!solution.verdict.why.empty()) text += solution.verdict.why + "\n";
-  if (solution.sets.empty()) return text;
+  const auto itself = [](const std::string& each) { return each; };
+  if (solution.sets.empty()) {
+    list(text, "Next", next_steps(data, solution), itself);
+    return text;
+  }
   text += first_line(data, solution) + parameter_table(solution);
   list(text, "Sets", solution.sets, set_line);
   const std::vector<ScaleLength>& lengths = solution.scale.stands_on;
@@ -294,8 +304,8 @@ std::string summary(const DataSet& data, const Solution& solution) {
     if (!std::isfinite(r.residual)) return of_row + r.why;
     return of_row + plain_figure(1e3 * r.residual) + (r.angle_alone ? " mrad, " : " mm, ") + r.why;
   });
-  list(text, "Warnings", solution.warnings, [](const std::string& each) { return each; });
-  list(text, "Next", next_steps(data, solution), [](const std::string& each) { return each; });
+  list(text, "Warnings", solution.warnings, itself);
+  list(text, "Next", next_steps(data, solution), itself);
   return text;
 }
 

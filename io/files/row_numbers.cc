@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "io/files/plausible.h"
+#include "kinematics/readable.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -67,8 +68,8 @@ std::optional<RowFault> NumberReader::check_joints(int row) {
     }
     if (!outside_limits(joint, values_[column])) continue;
     if (outside_++ > 0) continue;
-    first_outside_ = "joint " + joint.name + " at " + format_number(values_[column]) + " in row " +
-                     std::to_string(row);
+    first_outside_ = joint.name + " at " + plain_figure(values_[column], 4) + " " +
+                     std::string(unit(joint.quantity)) + " in row " + std::to_string(row);
   }
   return std::nullopt;
 }
@@ -119,7 +120,9 @@ std::optional<RowFault> NumberReader::read_vector(const Columns<N>& places,
 
 std::optional<std::string> NumberReader::outside_limits_notice() const {
   if (outside_ == 0) return std::nullopt;
-  return "joint readings outside their limits: " + std::to_string(outside_) + ", the first " +
+  return std::to_string(outside_) +
+         (outside_ == 1 ? " joint reading is outside its limits: "
+                        : " joint readings are outside their limits, the first: ") +
          first_outside_;
 }
 

@@ -208,7 +208,13 @@ TEST_F(Program, ListsEveryParameterAsFixedWhereAllRowsAreKeptAside) {
   }
   EXPECT_EQ(run_selfcal("identify " + data, true).out,
             "Not determined: these rows do not say how the robot really is.\n"
-            "no rows to identify from\n");
+            "no rows to identify from\n"
+            "\nNext\n"
+            "  Leave `check` (column part) to about a third of the rows: the others are to "
+            "identify.\n");
+  const Ran look = run_selfcal("data check " + data, true);
+  EXPECT_EQ(look.status, 1);
+  EXPECT_EQ(look.out, "every row is `part: check`: none is left to look at\n");
   EXPECT_EQ(run_selfcal("identifiable " + data).status, 1);
 }
 

@@ -223,8 +223,11 @@ TEST_F(ObservationsCsv, RefusesDegreesAndReadingsFarOutsideTheLimits) {
 
 TEST_F(ObservationsCsv, NotesReadingsALittleOutsideTheLimits) {
   EXPECT_THAT(notices("set,q1,q2\ntable,2.003,0\ntable,2.3,0\ntable,0,1.05\n"),
-              ElementsAre("observations.csv: joint readings outside their limits: 2, the first "
-                          "joint j1 at 2.3 in row 2"));
+              ElementsAre("observations.csv: 2 joint readings are outside their limits, the first: "
+                          "j1 at 2.3 rad in row 2"));
+  EXPECT_THAT(notices("set,q1,q2\ntable,0,1.0512345678\n"),
+              ElementsAre("observations.csv: 1 joint reading is outside its limits: j2 at 1.051 m "
+                          "in row 1"));
 }
 
 TEST_F(ObservationsCsv, RefusesDegreesOfAJointWithoutLimits) {
