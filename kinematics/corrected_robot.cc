@@ -112,6 +112,7 @@ class CorrectedRobot final : public Robot, public RobotText {
     const Eigen::VectorXd v = xi.tail(xi.size() - own.size());
     ConfigurationBlock moved{block.q, block.count};
     moved.start = block.start;
+    moved.near = block.near;
     moved.added.setZero(block.lanes(), block.q.cols());
     for (int lane = 0; lane < block.lanes(); ++lane)
       moved.added.row(lane) = (deviations[lane].by.joints * v).transpose().array();

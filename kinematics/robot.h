@@ -49,21 +49,6 @@ struct Location {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< m
 };
 
-/// Joint readings of a block: kLanes x joints, or 1 x joints (rad or m). Lanes past `count` repeat
-/// the last one.
-struct ConfigurationBlock {
-  Eigen::ArrayXXd q;
-  int count = 0;
-  Eigen::ArrayXXd added = {};  ///< lanes x joints, to the joint variables; without rows: nothing
-  MeasurementConditions conditions = {};
-  /// About where the last link stands in the first lane, of a machine with loops: they are closed
-  /// from there. Nothing: from the robot's home. Where it belongs to another assembly mode than
-  /// home, no lane closes.
-  std::optional<Location> start = {};
-
-  int lanes() const { return static_cast<int>(q.rows()); }
-};
-
 /// The same lane by lane.
 struct Locations {
   LaneArray<9> rotation{kLanes, 9};  ///< column 3 j + i holds R(i, j)
@@ -76,6 +61,24 @@ struct Locations {
   Eigen::Matrix3d R(int lane) const;
   Eigen::Vector3d p(int lane) const { return position.row(lane).matrix().transpose(); }
   Location at(int lane) const { return {R(lane), p(lane)}; }
+};
+
+/// Joint readings of a block: kLanes x joints, or 1 x joints (rad or m). Lanes past `count` repeat
+/// the last one.
+struct ConfigurationBlock {
+  Eigen::ArrayXXd q;
+  int count = 0;
+  Eigen::ArrayXXd added = {};  ///< lanes x joints, to the joint variables; without rows: nothing
+  MeasurementConditions conditions = {};
+  /// About where the last link stands in the first lane, of a machine with loops: they are closed
+  /// from there. Nothing: from the robot's home. Where it belongs to another assembly mode than
+  /// home, no lane closes.
+  std::optional<Location> start = {};
+  /// Where the body that is asked for stood in each lane at readings near these, of a machine with
+  /// loops: they are closed from there, which is quick; where that leads nowhere, as without.
+  const Locations* near = nullptr;
+
+  int lanes() const { return static_cast<int>(q.rows()); }
 };
 
 /// Psi of a block, (6 lanes) x parameters: row c lanes + lane is component c (dx dy dz of the

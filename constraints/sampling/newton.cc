@@ -53,7 +53,16 @@ NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& tru
 void NewtonStep::evaluate(const ConfigurationBlock& block) {
   const Method& method = *data_.sets[set_].method;
   const int reference = data_.sets[set_].reference;
-  closure_ = robot_.locate(block, truth_.xi, method.body(), X_, &psi_);
+  if (robot_.has_loops()) {
+    // Newton's next readings are near its last ones.
+    const Locations last = X_;
+    ConfigurationBlock at = block;
+    if (evaluated_) at.near = &last;
+    closure_ = robot_.locate(at, truth_.xi, method.body(), X_, &psi_);
+    evaluated_ = true;
+  } else {
+    closure_ = robot_.locate(block, truth_.xi, method.body(), X_, &psi_);
+  }
   robot_.joint_jacobian(block, truth_.xi, method.body(), psi_, J_);
   out_.resize(static_cast<int>(quantities_.size()), method.tangent_dimension(),
               reference < 0 ? 0 : data_.sets[reference].method->tangent_dimension(),

@@ -47,6 +47,7 @@ class NewtonStep {
   double size_;                       ///< of the robot (m)
   std::vector<int> rows_;
   Locations X_;
+  bool evaluated_ = false;
   Closure closure_;
   PsiBlock psi_;
   Eigen::MatrixXd J_, GJ_;  ///< GJ_: as J_, a block of lanes for each equation

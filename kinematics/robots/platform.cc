@@ -24,6 +24,23 @@ double between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// The lane is at the configuration of the one before.
+bool repeats(const ConfigurationBlock& block, int lane) {
+  const auto same = [lane](const Eigen::ArrayXXd& of) {
+    return of.rows() == 0 || (of.row(lane) == of.row(lane - 1)).all();
+  };
+  return same(block.q) && same(block.added);
+}
+
+/// Writes to the lane what the one before has.
+void repeat(int lane, Closure& closure, Locations& X, PsiBlock* psi) {
+  if (!closure.closes(lane - 1)) closure.leave_open(lane, closure.why[lane - 1]);
+  X.rotation.row(lane) = X.rotation.row(lane - 1);
+  X.position.row(lane) = X.position.row(lane - 1);
+  const Eigen::Index lanes = X.position.rows();
+  for (int c = 0; psi && c < 6; ++c) psi->row(c * lanes + lane) = psi->row(c * lanes + lane - 1);
+}
+
 /// A pose about `home`: up to `shift` along each axis (m), `turn` about each (rad).
 Location about(const Location& home, double shift, double turn,
                const std::function<double()>& uniform) {
@@ -57,9 +74,12 @@ std::string Platform::take_mode(const std::optional<Location>& home, double side
   return {};
 }
 
-ClosedChains Platform::closed(const ConfigurationBlock& block, const Eigen::VectorXd& xi, int lane,
+ClosedChains Platform::closed(const Chains& at, const Location* near,
                               const ClosedChains* before) const {
-  const Chains at = chains(xi, row_of(block.q, lane), row_of(block.added, lane));
+  if (near) {
+    const ClosedChains warm = close_near(at, *near, &mode_);
+    if (warm.open.empty()) return warm;
+  }
   if (before && before->open.empty()) {
     const ClosedChains warm = close(at, before->X, &mode_);
     if (warm.open.empty()) return warm;
@@ -87,7 +107,7 @@ bool Platform::within_passive_limits(const Eigen::VectorXd& q) const {
   if (std::none_of(passive_.begin(), passive_.end(),
                    [](const PassiveJoint& joint) { return joint.swing > 0; }))
     return true;
-  const ClosedChains at = closed(block_of(q), nominal_values(*this), 0, nullptr);
+  const ClosedChains at = closed(chains(nominal_values(*this), q, Six::Zero()), nullptr, nullptr);
   return at.open.empty() && swings(at);
 }
 
@@ -103,6 +123,8 @@ Closure Platform::locate(const ConfigurationBlock& block, const Eigen::VectorXd&
     before.X = *block.start;
     astray = !belongs(chains(xi, row_of(block.q, 0), row_of(block.added, 0)), *block.start, mode_);
   }
+  const bool knows_near =
+      block.near && (body == Body::endpoint || body == Body::last_link) && !block.start;
   for (int lane = 0; lane < block.lanes(); ++lane) {
     X.rotation.row(lane) = Eigen::Matrix3d::Identity().reshaped().transpose().array();
     X.position.row(lane).setZero();
@@ -112,8 +134,15 @@ Closure Platform::locate(const ConfigurationBlock& block, const Eigen::VectorXd&
                          "no location of the platform: the start is of another assembly mode");
       continue;
     }
+    if (lane > 0 && repeats(block, lane)) {
+      repeat(lane, closure, X, psi);
+      continue;
+    }
     const Chains of = chains(xi, row_of(block.q, lane), row_of(block.added, lane));
-    const ClosedChains at = closed(block, xi, lane, lane > 0 || block.start ? &before : nullptr);
+    const std::optional<Location> near =
+        knows_near ? std::optional(block.near->at(lane)) : std::nullopt;
+    const ClosedChains at =
+        closed(of, near ? &*near : nullptr, lane > 0 || block.start ? &before : nullptr);
     before = at;
     if (!at.open.empty()) {
       closure.leave_open(lane, at.open);

@@ -58,6 +58,9 @@ ClosedChains at_pose(const Chains& chains, const Location& X);
 /// do, and steps go straight.
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode);
 
+/// Newton's steps from `start` alone, as above.
+ClosedChains close_near(const Chains& chains, const Location& start, const AssemblyMode* mode);
+
 /// `start` is on the mode's side of the singular places, and not turned over.
 bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mode);
 
@@ -126,8 +129,7 @@ class Platform : public Robot {
                         const std::array<Swing, kChains>& swing, std::string_view chain_name);
 
  private:
-  ClosedChains closed(const ConfigurationBlock& block, const Eigen::VectorXd& xi, int lane,
-                      const ClosedChains* before) const;
+  ClosedChains closed(const Chains& at, const Location* near, const ClosedChains* before) const;
   void place(const Chains& chains, const ClosedChains& at, Body body, int lane, Locations& X) const;
   void differentiate(const ConfigurationBlock& block, const Eigen::VectorXd& xi,
                      const Chains& chains, const ClosedChains& at, Body body, int lane,

@@ -87,9 +87,7 @@ bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mo
          log_rotation(start.R * mode.home.R.transpose()).norm() <= kFarthestTurn;
 }
 
-namespace {
-
-ClosedChains newton(const Chains& chains, const Location& start, const AssemblyMode* mode) {
+ClosedChains close_near(const Chains& chains, const Location& start, const AssemblyMode* mode) {
   const double size = size_of(chains), fits = kClosed * chains.length.cwiseAbs().maxCoeff();
   ClosedChains at = at_pose(chains, start);
   if ((chains.length.array() <= 0).any()) {
@@ -98,8 +96,8 @@ ClosedChains newton(const Chains& chains, const Location& start, const AssemblyM
   }
   Six f = misfit(chains, at.X);
   bool barred = false;
-  for (int i = 0; i < kSteps && step(chains, mode, size, at, f, barred); ++i)
-    if (f.cwiseAbs().maxCoeff() < fits / 100) break;
+  for (int i = 0; i < kSteps && !(f.cwiseAbs().maxCoeff() < fits / 100); ++i)
+    if (!step(chains, mode, size, at, f, barred)) break;
   if (!(f.cwiseAbs().maxCoeff() < fits)) {
     at.open = barred ? "no location of the platform on its side of the singular places: another "
                        "assembly mode"
@@ -112,22 +110,22 @@ ClosedChains newton(const Chains& chains, const Location& start, const AssemblyM
   return at;
 }
 
-}  // namespace
-
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
-  ClosedChains at = newton(chains, start, mode);
+  ClosedChains at = close_near(chains, start, mode);
   if (at.open.empty() || !mode || (chains.length.array() <= 0).any()) return at;
   const Six from = misfit(chains, start) + chains.length;
-  for (int parts = 4; parts <= kMostParts; parts *= 4) {
-    Chains between = chains;
-    ClosedChains next = at_pose(chains, start);
-    for (int i = 1; i <= parts && next.open.empty(); ++i) {
-      between.length = from + (chains.length - from) * i / parts;
-      next = newton(between, next.X, mode);
+  Chains between = chains;
+  ClosedChains last = at_pose(chains, start);
+  double share = 0;
+  for (int parts = 4; parts <= kMostParts; parts *= 4)
+    while (share < 1) {
+      between.length = from + (chains.length - from) * (share + 1.0 / parts);
+      ClosedChains next = close_near(between, last.X, mode);
+      if (!next.open.empty()) break;
+      last = std::move(next);
+      share += 1.0 / parts;
     }
-    if (next.open.empty()) return next;
-  }
-  return at;
+  return share < 1 ? at : last;
 }
 
 Location pose_between(const Chains& chains, double side) {
