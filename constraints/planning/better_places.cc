@@ -81,13 +81,18 @@ class Powell {
       by.col(lane) = (lane % 2 == 0 ? 1 : -1) * kLongest *
                      std::pow(0.5, lane / 4.0 - lane % 2 / 4.0) * direction;
     const std::vector<Eigen::MatrixXd> rows = moves_.look(unit, by);
-    std::vector<std::pair<double, int>> gaining;
+    std::vector<Eigen::MatrixXd> possible;
+    std::vector<int> lanes;
     for (int lane = 0; lane < kLanes; ++lane) {
       const Eigen::MatrixXd& w = rows[static_cast<std::size_t>(lane)];
       if (w.rows() != design_.rows(unit)) continue;
-      const double merit = design_.merit_with(w);
-      if (merit > merit_ + 1e-9 * std::abs(merit_)) gaining.emplace_back(-merit, lane);
+      possible.push_back(w);
+      lanes.push_back(lane);
     }
+    const std::vector<double> merits = design_.merits_with(possible);
+    std::vector<std::pair<double, int>> gaining;
+    for (std::size_t i = 0; i < merits.size(); ++i)
+      if (merits[i] > merit_ + 1e-9 * std::abs(merit_)) gaining.emplace_back(-merits[i], lanes[i]);
     std::ranges::sort(gaining);
     for (std::size_t i = 0; i < gaining.size() && i < kTaken; ++i) {
       const auto [merit, lane] = gaining[i];

@@ -61,6 +61,12 @@ Design::Design(const std::vector<Eigen::MatrixXd>& candidates, Objective objecti
   expects(!candidates.empty(), "there are candidates");
   if (kinds_.empty()) kinds_.assign(in_.size(), 0);
   expects(kinds_.size() == in_.size(), "every candidate has a kind");
+  of_kind_.assign(static_cast<std::size_t>(this->kinds()), {in_.size(), 0});
+  for (std::size_t i = 0; i < in_.size(); ++i) {
+    Stretch& own = of_kind_[static_cast<std::size_t>(kinds_[i])];
+    own.first = std::min(own.first, i);
+    own.end = i + 1;
+  }
   const Eigen::Index m = candidates.front().cols();
   Eigen::Index rows = 0;
   for (const Eigen::MatrixXd& w : candidates) {
@@ -146,7 +152,6 @@ void Design::refresh() {
   Eigen::MatrixXd WC;
   all_ = moments(0, m, &WC);
   if (objective_.criterion == Criterion::sigma) {
-    CAC_ = all_.C * objective_.weight * all_.C;
     trace_ = objective_.weight.cwiseProduct(all_.C).sum();
     spread_ = blocks_of(transposed_product(WC.transpose(), objective_.weight), WC);
   }
@@ -184,6 +189,10 @@ Design::Rise Design::rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w,
 }
 
 double Design::merit_after(std::size_t i, int sign) const {
+  if (widest_ == 1 && objective_.criterion == Criterion::sigma) {
+    const double left = 1 + sign * all_.seen(at_[i], 0);
+    return left > 0 ? -trace_ + sign * spread_(at_[i], 0) / left : kNever;
+  }
   const Small S = raised(all_.seen, at_[i], k_[i], sign);
   const double factor = determinant(S);
   if (!(factor > 0)) return kNever;
@@ -237,81 +246,135 @@ std::pair<int, double> Design::best_by_spectrum(int sign, int kind) const {
   return best;
 }
 
-void Design::update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const {
+void Design::update(Moments& at, const Stretch& these, const Rise& rise, const Eigen::MatrixXd& by,
+                    int sign) const {
   at.C -= sign * rise.U * rise.U.transpose();
-  const Eigen::MatrixXd by = W_.middleCols(first, at.C.cols()) * rise.U;
+  const Eigen::Index first = at_[these.first];
   if (widest_ == 1) {
-    at.seen.col(0) -= sign * by.rowwise().squaredNorm();
+    at.seen.col(0).segment(first, by.rows()) -= sign * by.rowwise().squaredNorm();
     return;
   }
-  for (std::size_t i = 0; i < in_.size(); ++i)
+  for (std::size_t i = these.first; i < these.end; ++i)
     if (k_[i] == 3 && by.cols() == 3) {
-      const Eigen::Matrix3d mine = by.block<3, 3>(at_[i], 0);
+      const Eigen::Matrix3d mine = by.block<3, 3>(at_[i] - first, 0);
       at.seen.block<3, 3>(at_[i], 0) -= sign * (mine * mine.transpose());
     } else {
-      const auto mine = by.middleRows(at_[i], k_[i]);
+      const auto mine = by.middleRows(at_[i] - first, k_[i]);
       at.seen.block(at_[i], 0, k_[i], k_[i]).noalias() -= sign * mine.lazyProduct(mine.transpose());
     }
 }
 
 void Design::change(int candidate, int sign) {
-  const auto which = static_cast<std::size_t>(candidate);
+  change_within({0, in_.size()}, static_cast<std::size_t>(candidate), sign);
+}
+
+bool Design::change_within(const Stretch& these, std::size_t which, int sign) {
   in_[which] = sign > 0;
   if (sign < 0 && !(determinant(raised(all_.seen, at_[which], k_[which], -1)) > kLeastRemoved)) {
     refresh();
-    return;
+    return false;
   }
   const Eigen::MatrixXd w = rows_of(which);
   const Rise rise = rise_of(all_.C, w, sign);
+  const Eigen::MatrixXd& U = rise.U;
+  const Eigen::Index first = at_[these.first], k = U.cols();
+  const auto W = W_.middleRows(first, rows_in(these));
+  Eigen::MatrixXd by;
   if (objective_.criterion == Criterion::sigma) {
-    const Eigen::MatrixXd& U = rise.U;
-    const Eigen::MatrixXd AU = objective_.weight * U, V = all_.C * AU, T = U.transpose() * AU;
-    CAC_ += U * T * U.transpose() - sign * (U * V.transpose() + V * U.transpose());
+    const Eigen::MatrixXd AU = objective_.weight * U, T = U.transpose() * AU;
     trace_ -= sign * T.trace();
-    const Eigen::MatrixXd by = W_ * U, along = W_ * V, half = 0.5 * by * T - sign * along;
-    for (std::size_t i = 0; i < in_.size(); ++i) {
-      const Small cross =
-          by.middleRows(at_[i], k_[i]).lazyProduct(half.middleRows(at_[i], k_[i]).transpose());
-      spread_.block(at_[i], 0, k_[i], k_[i]) += cross + cross.transpose();
+    Eigen::MatrixXd both(U.rows(), 2 * k);
+    both << U, all_.C * AU;
+    const Eigen::MatrixXd of_both = W * both;
+    by = of_both.leftCols(k);
+    const Eigen::MatrixXd half = 0.5 * by * T - sign * of_both.rightCols(k);
+    if (widest_ == 1) {
+      spread_.col(0).segment(first, by.rows()) += 2 * by.cwiseProduct(half);
+    } else {
+      for (std::size_t i = these.first; i < these.end; ++i) {
+        const Small cross = by.middleRows(at_[i] - first, k_[i])
+                                .lazyProduct(half.middleRows(at_[i] - first, k_[i]).transpose());
+        spread_.block(at_[i], 0, k_[i], k_[i]) += cross + cross.transpose();
+      }
     }
+  } else {
+    by = W * U;
   }
   log_determinant_ += rise.log_determinant;
-  update(all_, 0, rise, sign);
+  update(all_, these, rise, by, sign);
   if (objective_.criterion == Criterion::o1 && objective_.nuisance > 0) {
     const Rise of_nuisance = rise_of(nuisance_.C, w.rightCols(objective_.nuisance), sign);
     log_determinant_ -= of_nuisance.log_determinant;
-    update(nuisance_, interest(), of_nuisance, sign);
+    update(nuisance_, these, of_nuisance, W.rightCols(objective_.nuisance) * of_nuisance.U, sign);
   }
+  return true;
 }
 
 std::pair<int, double> Design::best_instead_of(int candidate) {
-  const Moments all = all_, nuisance = nuisance_;
-  const Eigen::MatrixXd CAC = CAC_, spread = spread_;
-  const double trace = trace_, log_determinant = log_determinant_;
   const auto which = static_cast<std::size_t>(candidate);
-  change(candidate, -1);
-  std::pair<int, double> found = best(+1, kinds_[which]);
-  all_ = all;
-  nuisance_ = nuisance;
-  CAC_ = CAC;
-  spread_ = spread;
+  // Only those of its kind are asked what they would be worth then.
+  const Stretch& own = of_kind_[static_cast<std::size_t>(kinds_[which])];
+  const auto rows = [&](Eigen::MatrixXd& blocks) {
+    return blocks.rows() > 0 ? blocks.middleRows(at_[own.first], rows_in(own))
+                             : blocks.middleRows(0, 0);
+  };
+  const Eigen::MatrixXd C = all_.C, seen = rows(all_.seen), of_nuisance = nuisance_.C,
+                        seen_of_nuisance = rows(nuisance_.seen), spread = rows(spread_);
+  const double trace = trace_, log_determinant = log_determinant_;
+  const bool followed = change_within(own, which, -1);
+  const std::pair<int, double> found = best(+1, kinds_[which]);
+  in_[which] = 1;
+  if (!followed) {
+    refresh();
+    return found;
+  }
+  all_.C = C;
+  rows(all_.seen) = seen;
+  nuisance_.C = of_nuisance;
+  rows(nuisance_.seen) = seen_of_nuisance;
+  rows(spread_) = spread;
   trace_ = trace;
   log_determinant_ = log_determinant;
-  in_[which] = 1;
   return found;
 }
 
-double Design::merit_with(const Eigen::MatrixXd& rows) const {
-  const Eigen::MatrixXd w = rows * scale_.cwiseInverse().asDiagonal();
+double Design::merit_besides(const Eigen::MatrixXd& w) const {
   const Rise rise = rise_of(all_.C, w, +1);
-  if (objective_.criterion == Criterion::sigma)
-    return -trace_ + (objective_.weight * rise.U).cwiseProduct(rise.U).sum();
   if (objective_.criterion != Criterion::o1)
     return merit_of_spectrum(all_.C - rise.U * rise.U.transpose());
   double merit = log_determinant_ + rise.log_determinant;
   if (objective_.nuisance > 0)
     merit -= rise_of(nuisance_.C, w.rightCols(objective_.nuisance), +1).log_determinant;
   return merit;
+}
+
+std::vector<double> Design::merits_with(const std::vector<Eigen::MatrixXd>& measurements) const {
+  std::vector<double> merits;
+  const auto scaled = [&](const Eigen::MatrixXd& w) {
+    return Eigen::MatrixXd(w * scale_.cwiseInverse().asDiagonal());
+  };
+  if (objective_.criterion != Criterion::sigma) {
+    for (const Eigen::MatrixXd& each : measurements) merits.push_back(merit_besides(scaled(each)));
+    return merits;
+  }
+  Eigen::Index rows = 0, at = 0;
+  for (const Eigen::MatrixXd& each : measurements) rows += each.rows();
+  Eigen::MatrixXd W(rows, W_.cols());
+  for (const Eigen::MatrixXd& each : measurements) {
+    W.middleRows(at, each.rows()) = scaled(each);
+    at += each.rows();
+  }
+  const Eigen::MatrixXd G = all_.C * W.transpose(), AG = objective_.weight * G;
+  at = 0;
+  for (const Eigen::MatrixXd& each : measurements) {
+    const Eigen::Index k = each.rows();
+    const auto g = G.middleCols(at, k);
+    const Eigen::MatrixXd seen = W.middleRows(at, k) * g,
+                          spread = g.transpose() * AG.middleCols(at, k);
+    merits.push_back(-trace_ + trace_of_quotient(raised(seen, 0, k, +1), spread, 0));
+    at += k;
+  }
+  return merits;
 }
 
 void Design::replace(int candidate, const Eigen::MatrixXd& w) {

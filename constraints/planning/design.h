@@ -52,8 +52,9 @@ class Design {
   /// Makes anew what changes have rounded.
   void refresh();
 
-  /// The merit with a measurement besides that is no candidate: its rows, as a candidate's.
-  double merit_with(const Eigen::MatrixXd& w) const;
+  /// The merit with each of these measurements besides, which are no candidates: its rows, as a
+  /// candidate's.
+  std::vector<double> merits_with(const std::vector<Eigen::MatrixXd>& measurements) const;
   /// Another measurement takes the place of a candidate that is not chosen; as many rows.
   void replace(int candidate, const Eigen::MatrixXd& w);
 
@@ -75,7 +76,19 @@ class Design {
   /// For each candidate its block of A B^T, in rows as W's.
   Eigen::MatrixXd blocks_of(const Eigen::Ref<const Eigen::MatrixXd>& A,
                             const Eigen::Ref<const Eigen::MatrixXd>& B) const;
-  void update(Moments& at, Eigen::Index first, const Rise& rise, int sign) const;
+  /// Candidates one after the other.
+  struct Stretch {
+    std::size_t first, end;
+  };
+  /// Adds or removes a candidate and follows what these are worth; false where all was made anew.
+  bool change_within(const Stretch& these, std::size_t candidate, int sign);
+  /// `by`: W U of the candidates' rows.
+  void update(Moments& at, const Stretch& these, const Rise& rise, const Eigen::MatrixXd& by,
+              int sign) const;
+  Eigen::Index rows_in(const Stretch& these) const {
+    return at_[these.end - 1] + k_[these.end - 1] - at_[these.first];
+  }
+  double merit_besides(const Eigen::MatrixXd& w) const;
   static Rise rise_of(const Eigen::MatrixXd& C, const Eigen::MatrixXd& w, int sign);
   double merit_of_spectrum(const Eigen::MatrixXd& C) const;
   std::pair<int, double> best_by_spectrum(int sign, int kind) const;
@@ -93,10 +106,11 @@ class Design {
   Eigen::Index widest_ = 0;           ///< most rows of one
   Eigen::VectorXd scale_;             ///< a column is that of its parameter over this
   std::vector<char> in_;
-  std::vector<int> kinds_;  ///< by candidate
-  Moments all_, nuisance_;  ///< of all columns, of the last ones alone
-  // Of `sigma`: C A C with its blocks, and trace(A C).
-  Eigen::MatrixXd CAC_, spread_;
+  std::vector<int> kinds_;        ///< by candidate
+  std::vector<Stretch> of_kind_;  ///< from the first to the last of each
+  Moments all_, nuisance_;        ///< of all columns, of the last ones alone
+  // Of `sigma`: the blocks of w C A C wᵀ, as seen, and trace(A C).
+  Eigen::MatrixXd spread_;
   double trace_ = 0;
   double log_determinant_ = 0;  ///< of the information, that of the nuisance columns taken off
 };

@@ -98,49 +98,64 @@ TEST(Design, HasTheMeritOfItsDefinitionAfterAnyChange) {
     }
 }
 
-TEST(Design, TakesTheBestOfAllInsteadOfOneOfTheChosen) {
+TEST(Design, TakesTheBestOfItsKindInsteadOfOneOfTheChosen) {
   std::mt19937_64 random(2);
-  for (const Criterion criterion : {Criterion::sigma, Criterion::o1}) {
-    const auto rows = drawn_rows(2, random);
-    const Objective objective = objective_of(criterion, random);
-    Design design(rows, objective);
-    design.choose(random_choice(kCandidates, 10, random));
-    for (const int out : design.chosen()) {
-      const auto [in, merit] = design.best_instead_of(out);
-      int best = -1;
-      double most = -HUGE_VAL;
-      for (int each = 0; each < kCandidates; ++each) {
-        std::vector<int> other = design.chosen();
-        if (each != out && std::ranges::count(other, each) > 0) continue;
-        *std::ranges::find(other, out) = each;
-        const double defined = by_definition(objective, rows, other);
-        const double good = criterion == Criterion::sigma ? -defined : defined;
-        if (good <= most) continue;
-        most = good;
-        best = each;
+  std::vector<int> kinds;  // the second stands among those of the others
+  for (int i = 0; i < kCandidates; ++i) kinds.push_back(i % 5 == 3 ? 1 : i < 25 ? 0 : 2);
+  for (const Criterion criterion : {Criterion::sigma, Criterion::o1})
+    for (const int k : {1, 2}) {
+      const auto rows = drawn_rows(k, random);
+      const Objective objective = objective_of(criterion, random);
+      Design design(rows, objective, kinds);
+      design.choose(random_choice(kCandidates, 12, random));
+      const double before = design.merit();
+      const std::pair<int, double> next = design.best(+1);
+      for (const int out : design.chosen()) {
+        const auto [in, merit] = design.best_instead_of(out);
+        int best = -1;
+        double most = -HUGE_VAL;
+        for (int each = 0; each < kCandidates; ++each) {
+          std::vector<int> other = design.chosen();
+          if (kinds[each] != kinds[out] || (each != out && std::ranges::count(other, each) > 0))
+            continue;
+          *std::ranges::find(other, out) = each;
+          const double defined = by_definition(objective, rows, other);
+          const double good = criterion == Criterion::sigma ? -defined : defined;
+          if (good <= most) continue;
+          most = good;
+          best = each;
+        }
+        EXPECT_EQ(in, best);
+        EXPECT_NEAR(by_merit(objective, merit), std::abs(most), 1e-7 * std::abs(most));
+        EXPECT_TRUE(design.has(out));
+        EXPECT_NEAR(design.merit(), before, 1e-9 * std::abs(before)) << "nothing has changed";
+        EXPECT_EQ(design.best(+1).first, next.first);
+        EXPECT_NEAR(design.best(+1).second, next.second, 1e-9 * std::abs(next.second));
       }
-      EXPECT_EQ(in, best);
-      EXPECT_NEAR(by_merit(objective, merit), std::abs(most), 1e-7 * std::abs(most));
-      EXPECT_TRUE(design.has(out));
     }
-  }
 }
 
-TEST(Design, KnowsTheMeritOfAMeasurementThatIsNoCandidate) {
+TEST(Design, KnowsTheMeritOfMeasurementsThatAreNoCandidates) {
   std::mt19937_64 random(3);
-  for (const std::string_view name : criterion_names()) {
-    auto rows = drawn_rows(2, random);
-    const Objective objective = objective_of(*criterion_of(name), random);
-    Design design(rows, objective);
-    design.choose({0, 1, 2, 3, 4, 5, 6, 7, 8});
-    const double with = design.merit_with(rows[20] * 2);
-    design.replace(20, rows[20] * 2);
-    design.change(20, +1);
-    EXPECT_NEAR(design.merit(), with, 1e-9 * std::abs(with)) << name;
-    rows[20] *= 2;
-    const double defined = by_definition(objective, rows, design.chosen());
-    EXPECT_NEAR(by_merit(objective, with), defined, 1e-7 * defined) << name;
-  }
+  for (const std::string_view name : criterion_names())
+    for (const int k : {1, 2, 3}) {
+      auto rows = drawn_rows(k, random);
+      const Objective objective = objective_of(*criterion_of(name), random);
+      Design design(rows, objective);
+      design.choose({0, 1, 2, 3, 4, 5, 6, 7, 8});
+      const std::vector<double> with = design.merits_with({rows[20] * 2, rows[21] * 3});
+      ASSERT_EQ(with.size(), 2u);
+      for (const int one : {20, 21}) {
+        rows[one] *= one == 20 ? 2 : 3;
+        design.replace(one, rows[one]);
+        design.change(one, +1);
+        const double merit = with[one == 20 ? 0 : 1];
+        EXPECT_NEAR(design.merit(), merit, 1e-9 * std::abs(merit)) << name;
+        const double defined = by_definition(objective, rows, design.chosen());
+        EXPECT_NEAR(by_merit(objective, merit), defined, 1e-7 * defined) << name;
+        design.change(one, -1);
+      }
+    }
 }
 
 TEST(Design, IsBetterByItsOwnCriterionThanAnyOfAHundredRandomOnes) {
