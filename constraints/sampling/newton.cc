@@ -19,21 +19,32 @@ constexpr double kExact = 1e-13;      // size of a miss that is none
 constexpr double kIndependent = 1e-3;
 
 /// x of least length with A x = b, by the products of A's few rows; nothing where these are nearly
-/// dependent.
-std::optional<Eigen::VectorXd> by_products(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  using Square =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostEquations, kMostEquations>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostEquations, 1>;
+/// dependent. `products`: by lane, (a, b) of the lower triangle in column a (a + 1) / 2 + b.
+template <int rows>
+std::optional<Eigen::VectorXd> by_products(const Eigen::MatrixXd& A,
+                                           const Eigen::ArrayXXd& products, int lane,
+                                           const Eigen::VectorXd& b) {
+  constexpr int most = rows == Eigen::Dynamic ? kMostEquations : rows;
+  using Square = Eigen::Matrix<double, rows, rows, 0, most, most>;
+  using Column = Eigen::Matrix<double, rows, 1, 0, most, 1>;
+  Square P(b.size(), b.size());
+  for (Eigen::Index r = 0, at = 0; r < b.size(); ++r)
+    for (Eigen::Index c = 0; c <= r; ++c, ++at) P(r, c) = P(c, r) = products(lane, at);
   const Column length = A.rowwise().norm();
   if (!(length.minCoeff() > 0)) return std::nullopt;
   const Column per = length.cwiseInverse();
-  const Square products =
-      per.asDiagonal() * Square(A.lazyProduct(A.transpose())) * per.asDiagonal();
-  const Eigen::LLT<Square> factor(products);
+  P = (per.asDiagonal() * P * per.asDiagonal()).eval();
+  const Eigen::LLT<Square> factor(P);
   if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() > kIndependent))
     return std::nullopt;
-  const Column right = per.cwiseProduct(b);
-  return A.transpose() * Column(per.cwiseProduct(Column(factor.solve(right))));
+  Column x = per.cwiseProduct(b);
+  const Square& L = factor.matrixLLT();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    x[i] /= L(i, i);
+    for (Eigen::Index r = i + 1; r < x.size(); ++r) x[r] -= x[i] * L(r, i);
+  }
+  factor.matrixU().solveInPlace(x);
+  return A.transpose() * per.cwiseProduct(x);
 }
 
 }  // namespace
@@ -86,11 +97,21 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
       out_.r.col(a).setZero();
       continue;
     }
-    for (Eigen::Index j = 0; j < J_.cols(); ++j)
-      for (Eigen::Index c = 0; c < 6; ++c)
+    for (Eigen::Index c = 0; c < 6; ++c) {
+      const auto g = out_.G_now.col(6 * a + c).head(lanes);
+      if ((g == 0).all()) continue;
+      for (Eigen::Index j = 0; j < J_.cols(); ++j)
         GJ_.col(j).segment(a * lanes, lanes).array() +=
-            out_.G_now.col(6 * a + c).head(lanes) * J_.col(j).segment(c * lanes, lanes).array();
+            g * J_.col(j).segment(c * lanes, lanes).array();
+    }
   }
+  const auto k = static_cast<Eigen::Index>(quantities_.size());
+  products_.setZero(lanes, k * (k + 1) / 2);
+  for (Eigen::Index j = 0; j < GJ_.cols(); ++j)
+    for (Eigen::Index a = 0, at = 0; a < k; ++a)
+      for (Eigen::Index b = 0; b <= a; ++b, ++at)
+        products_.col(at) += GJ_.col(j).segment(a * lanes, lanes).array() *
+                             GJ_.col(j).segment(b * lanes, lanes).array();
 }
 
 Eigen::VectorXd NewtonStep::miss(int lane, const Eigen::VectorXd& wanted) const {
@@ -108,10 +129,12 @@ double NewtonStep::size_of_miss(int lane, const Eigen::VectorXd& miss) const {
 }
 
 Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
-  const Eigen::Index lanes = J_.rows() / 6;
-  const Eigen::MatrixXd GJ = GJ_(Eigen::seqN(lane, miss.size(), lanes), Eigen::all);
-  if (const std::optional<Eigen::VectorXd> dq = by_products(GJ, miss)) return *dq;
-  return least_squares(GJ, miss);
+  const Eigen::MatrixXd GJ = GJ_(Eigen::seqN(lane, miss.size(), J_.rows() / 6), Eigen::all);
+  const std::optional<Eigen::VectorXd> by =
+      miss.size() == 3   ? by_products<3>(GJ, products_, lane, miss)
+      : miss.size() == 1 ? by_products<1>(GJ, products_, lane, miss)
+                         : by_products<Eigen::Dynamic>(GJ, products_, lane, miss);
+  return by ? *by : least_squares(GJ, miss);
 }
 
 std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,

@@ -50,7 +50,8 @@ class NewtonStep {
   bool evaluated_ = false;
   Closure closure_;
   PsiBlock psi_;
-  Eigen::MatrixXd J_, GJ_;  ///< GJ_: as J_, a block of lanes for each equation
+  Eigen::MatrixXd J_, GJ_;    ///< GJ_: as J_, a block of lanes for each equation
+  Eigen::ArrayXXd products_;  ///< by lane, of GJ's rows with each other
   MethodOutput out_;
 };
 
