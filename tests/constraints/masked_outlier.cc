@@ -102,5 +102,54 @@ TEST(MaskedOutlier, IsTheRowWhoseAbsenceLeavesLeastOfItsSet) {
   EXPECT_EQ(masked_outlier(equations, simulated.truth, noise, prior), std::nullopt);
 }
 
+/// The same with every parameter free, column by column: by how much the sum of squares falls
+/// without each row, over what is left of a freedom.
+int row_of_most_by_refits(const DenseEquations& dense, const Eigen::VectorXd& weights) {
+  const Eigen::Index n = dense.y.size();
+  const auto squares_without = [&](int row) {
+    Eigen::MatrixXd A(n + weights.size(), weights.size());
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(A.rows());
+    A << dense.W, Eigen::MatrixXd(weights.asDiagonal());
+    y.head(n) = dense.y;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (dense.row[static_cast<std::size_t>(i)] == row) {
+        A.row(i).setZero();
+        y[i] = 0;
+      }
+    return (y - A * A.colPivHouseholderQr().solve(y)).squaredNorm();
+  };
+  const double all = squares_without(-1);
+  int most = -1;
+  double largest = 0;
+  for (const int row : dense.row) {
+    const double left = squares_without(row);
+    if ((all - left) / left <= largest) continue;
+    largest = (all - left) / left;
+    most = row;
+  }
+  return most;
+}
+
+TEST(MaskedOutlier, IsThatOfAllColumnsTogether) {
+  for (const int at : {3, 20, 40}) {
+    const Simulated simulated = few_touches(6);
+    DataSet data = simulated.data;
+    data.rows.q(fit_rows(data)[static_cast<std::size_t>(at)], 1) += 3e-3;
+    const Equations equations(rx90(), data, Use::fit);
+    Prior prior;
+    prior.centre = simulated.truth.xi;
+    prior.sigma = Eigen::VectorXd::Constant(prior.centre.size(), 1e-3);
+    prior.free.assign(static_cast<std::size_t>(prior.centre.size()), 1);
+    Noise noise;
+    noise.used.assign(data.sets.size(), Scale{2e-5, 1});
+    noise.outlier.assign(static_cast<std::size_t>(data.rows.rows()), 0);
+    Eigen::VectorXd weights(equations.columns());
+    for (int c = 0; c < equations.columns(); ++c) weights[c] = prior_weight(equations, prior, c);
+    EXPECT_EQ(masked_outlier(equations, simulated.truth, noise, prior),
+              row_of_most_by_refits(equations.dense(simulated.truth, noise.used, noise.outlier),
+                                    weights));
+  }
+}
+
 }  // namespace
 }  // namespace selfcal
