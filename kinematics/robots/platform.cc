@@ -171,7 +171,7 @@ void Platform::place(const Chains& of, const ClosedChains& at, Body body, int la
 void Platform::differentiate(const ConfigurationBlock& block, const Eigen::VectorXd& xi,
                              const Chains& of, const ClosedChains& at, Body body, int lane,
                              PsiBlock& psi) const {
-  const Eigen::Matrix<double, 6, 6> inverse = at.A.inverse();
+  const Elimination::Square inverse = at.A.inverse();
   const Six q = row_of(block.q, lane), added = row_of(block.added, lane);
   const Eigen::Matrix3d& R = at.X.R;
   const int m = chain_parameters();

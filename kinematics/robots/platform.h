@@ -37,12 +37,28 @@ struct AssemblyMode {
   double volume = 1;  ///< there; its sign is the side
 };
 
+/// Six equations by elimination, rows exchanged for the largest pivot. All sizes are known when it
+/// is compiled: a platform is stepped to where its loops close a hundred thousand times in a plan.
+class Elimination {
+ public:
+  using Square = Eigen::Matrix<double, kChains, kChains>;
+  void compute(const Square& A);
+  Six solve(const Six& b) const;  ///< not finite where A is singular
+  Square inverse() const;
+  double determinant() const;
+
+ private:
+  Square lu_ = Square::Identity();           ///< U, below it L without its ones
+  Six per_ = Six::Ones();                    ///< 1 / the pivots
+  std::array<int, kChains> exchanged_ = {};  ///< row that came up at each step
+};
+
 /// The loops closed.
 struct ClosedChains {
   Location X;  ///< of the platform
   Centres n;   ///< unit, along each chain from c_i to the platform, base axes
   /// Of A, row i (n_i, R b_i x n_i), so that A dX = d l_i + …
-  Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> A;
+  Elimination A;
   double volume = 0;  ///< det A with lengths over the platform's size
   std::string open;   ///< why there is no X; empty where it closes
 };

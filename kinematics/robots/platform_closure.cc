@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "kinematics/robots/platform.h"
 #include "kinematics/rotation.h"
@@ -19,11 +20,20 @@ constexpr double kSingular = 1e-7;     // volume of a place where the platform i
 constexpr double kFarthestTurn = 2.1;  // rad from home: beyond, the chains are wound up
 constexpr double kBetter = 1 - 1e-3;   // of the misfit, what counts as closing
 
-Six misfit(const Chains& chains, const Location& X) {
-  Six f;
-  for (int i = 0; i < kChains; ++i)
-    f[i] = (X.p + X.R * chains.joint.col(i) - chains.carrier.col(i)).norm() - chains.length[i];
-  return f;
+/// The chains with the platform at X: R b_i, p + R b_i - c_i, and how long these are.
+struct Reached {
+  Centres arm, way;
+  Six length;
+};
+
+Reached reached(const Chains& chains, const Location& X) {
+  Reached at;
+  for (int i = 0; i < kChains; ++i) {
+    at.arm.col(i) = X.R * chains.joint.col(i);
+    at.way.col(i) = X.p + at.arm.col(i) - chains.carrier.col(i);
+    at.length[i] = at.way.col(i).norm();
+  }
+  return at;
 }
 
 std::string does_not_close(const Six& f) {
@@ -37,6 +47,71 @@ std::string does_not_close(const Six& f) {
   return text;
 }
 
+}  // namespace
+
+void Elimination::compute(const Square& A) {
+  lu_ = A;
+  for (int k = 0; k < kChains; ++k) {
+    int row = k;
+    for (int i = k + 1; i < kChains; ++i)
+      if (std::abs(lu_(i, k)) > std::abs(lu_(row, k))) row = i;
+    exchanged_[static_cast<std::size_t>(k)] = row;
+    if (row != k) lu_.row(k).swap(lu_.row(row));
+    per_[k] = 1 / lu_(k, k);
+    if (lu_(k, k) == 0) continue;
+    for (int i = k + 1; i < kChains; ++i) lu_(i, k) *= per_[k];
+    for (int j = k + 1; j < kChains; ++j)
+      for (int i = k + 1; i < kChains; ++i) lu_(i, j) -= lu_(i, k) * lu_(k, j);
+  }
+}
+
+Six Elimination::solve(const Six& b) const {
+  Six x = b;
+  for (int k = 0; k < kChains; ++k) std::swap(x[k], x[exchanged_[static_cast<std::size_t>(k)]]);
+  for (int k = 0; k < kChains; ++k)
+    for (int i = k + 1; i < kChains; ++i) x[i] -= lu_(i, k) * x[k];
+  for (int k = kChains - 1; k >= 0; --k) {
+    x[k] *= per_[k];
+    for (int i = 0; i < k; ++i) x[i] -= lu_(i, k) * x[k];
+  }
+  return x;
+}
+
+Elimination::Square Elimination::inverse() const {
+  Square all;
+  for (int k = 0; k < kChains; ++k) all.col(k) = solve(Six::Unit(k));
+  return all;
+}
+
+double Elimination::determinant() const {
+  double product = 1;
+  for (int k = 0; k < kChains; ++k)
+    product *= exchanged_[static_cast<std::size_t>(k)] == k ? lu_(k, k) : -lu_(k, k);
+  return product;
+}
+
+double size_of(const Chains& chains) {
+  const Eigen::Vector3d middle = chains.joint.rowwise().mean();
+  return (chains.joint.colwise() - middle).colwise().norm().mean();
+}
+
+namespace {
+
+/// What closes at X, of a platform of `size`.
+ClosedChains placed(const Reached& chains, const Location& X, double size) {
+  ClosedChains at;
+  at.X = X;
+  Elimination::Square A;
+  for (int i = 0; i < kChains; ++i) {
+    at.n.col(i) = chains.way.col(i) / chains.length[i];
+    A.row(i) << at.n.col(i).transpose(),
+        Eigen::Vector3d(chains.arm.col(i)).cross(Eigen::Vector3d(at.n.col(i))).transpose();
+  }
+  at.A.compute(A);
+  at.volume = at.A.determinant() / (size * size * size);
+  return at;
+}
+
 /// One Newton step from `at`, shortened until the lengths fit better; false where none does.
 bool step(const Chains& chains, const AssemblyMode* mode, double size, ClosedChains& at, Six& f,
           bool& barred) {
@@ -46,14 +121,15 @@ bool step(const Chains& chains, const AssemblyMode* mode, double size, ClosedCha
   double share = std::min(1.0, kLongestTurn / std::max(reach, 1e-300));
   for (int i = 0; i < kHalvings; ++i, share /= 2) {
     const Location X{exp_rotation(share * dX.tail<3>()) * at.X.R, at.X.p + share * dX.head<3>()};
-    const Six g = misfit(chains, X);
+    const Reached there = reached(chains, X);
+    const Six g = there.length - chains.length;
     if (!(g.norm() < kBetter * f.norm())) continue;
-    const ClosedChains next = at_pose(chains, X);
+    ClosedChains next = placed(there, X, size);
     if (mode && !(std::copysign(next.volume, next.volume * mode->volume) > kSingular)) {
       barred = true;
       continue;
     }
-    at = next;
+    at = std::move(next);
     f = g;
     return true;
   }
@@ -62,24 +138,8 @@ bool step(const Chains& chains, const AssemblyMode* mode, double size, ClosedCha
 
 }  // namespace
 
-double size_of(const Chains& chains) {
-  const Eigen::Vector3d middle = chains.joint.rowwise().mean();
-  return (chains.joint.colwise() - middle).colwise().norm().mean();
-}
-
 ClosedChains at_pose(const Chains& chains, const Location& X) {
-  ClosedChains at;
-  at.X = X;
-  Eigen::Matrix<double, 6, 6> A;
-  for (int i = 0; i < kChains; ++i) {
-    const Eigen::Vector3d arm = X.R * chains.joint.col(i);
-    at.n.col(i) = (X.p + arm - chains.carrier.col(i)).normalized();
-    A.row(i) << at.n.col(i).transpose(), arm.cross(at.n.col(i)).transpose();
-  }
-  at.A.compute(A);
-  const double size = size_of(chains);
-  at.volume = at.A.determinant() / (size * size * size);
-  return at;
+  return placed(reached(chains, X), X, size_of(chains));
 }
 
 bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mode) {
@@ -89,12 +149,13 @@ bool belongs(const Chains& chains, const Location& start, const AssemblyMode& mo
 
 ClosedChains close_near(const Chains& chains, const Location& start, const AssemblyMode* mode) {
   const double size = size_of(chains), fits = kClosed * chains.length.cwiseAbs().maxCoeff();
-  ClosedChains at = at_pose(chains, start);
+  const Reached from = reached(chains, start);
+  ClosedChains at = placed(from, start, size);
   if ((chains.length.array() <= 0).any()) {
     at.open = "no location of the platform: a chain has no length";
     return at;
   }
-  Six f = misfit(chains, at.X);
+  Six f = from.length - chains.length;
   bool barred = false;
   for (int i = 0; i < kSteps && !(f.cwiseAbs().maxCoeff() < fits / 100); ++i)
     if (!step(chains, mode, size, at, f, barred)) break;
@@ -113,7 +174,7 @@ ClosedChains close_near(const Chains& chains, const Location& start, const Assem
 ClosedChains close(const Chains& chains, const Location& start, const AssemblyMode* mode) {
   ClosedChains at = close_near(chains, start, mode);
   if (at.open.empty() || !mode || (chains.length.array() <= 0).any()) return at;
-  const Six from = misfit(chains, start) + chains.length;
+  const Six from = reached(chains, start).length;
   Chains between = chains;
   ClosedChains last = at_pose(chains, start);
   double share = 0;
