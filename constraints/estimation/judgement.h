@@ -29,6 +29,11 @@ struct Judged {
 Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equations,
              const Fit& fit, bool norms_alone = false);
 
+/// The far quantile of NoiseRule: what would have been put aside among the rows that identify.
+inline constexpr double kOutlierQuantile = NoiseRule{}.outlier_quantile;
+/// A `check` row that would have been put aside.
+bool is_outlier(const RowResidual& r, const Judged& judged);
+
 /// `before` has the norms alone.
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier);
