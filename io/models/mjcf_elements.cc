@@ -4,6 +4,7 @@
 
 #include <array>
 #include <numbers>
+#include <string_view>
 
 namespace selfcal {
 namespace {
@@ -86,6 +87,43 @@ std::vector<SprungBody> bending_bodies(const BodySpring& link, const Eigen::Vect
 
 SprungBody mounting_body(const BodySpring& tool) {
   return {tool.frame + ".mount", Eigen::Vector3d::Zero(), tool.compliance};
+}
+
+void list_mjcf_bodies(TiXmlElement& parent, std::vector<TiXmlElement*>& list) {
+  for (auto* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
+    if (e->ValueStr() == "body") list.push_back(e);
+    list_mjcf_bodies(*e, list);
+  }
+}
+
+TiXmlElement* named_mjcf_child(TiXmlElement& parent, const char* kind, const std::string& name) {
+  for (auto* e = parent.FirstChildElement(kind); e; e = e->NextSiblingElement(kind))
+    if (const char* found = e->Attribute("name"); found && name == found) return e;
+  return nullptr;
+}
+
+void place_mjcf(TiXmlElement& element, const Eigen::Isometry3d& X) {
+  for (const char* other : {"axisangle", "xyaxes", "zaxis", "euler"})
+    element.RemoveAttribute(other);
+  set_mjcf_pose(element, X);
+}
+
+TiXmlElement* free_joint_copy(TiXmlElement& body, TiXmlElement& joint, const std::string& name) {
+  TiXmlElement copy = joint;
+  copy.SetAttribute("name", name);
+  for (const char* other : {"range", "ref", "springref", "springdamper", "margin"})
+    copy.RemoveAttribute(other);
+  for (const char* none : {"stiffness", "damping", "armature", "frictionloss", "ref", "springref"})
+    copy.SetAttribute(none, "0");
+  copy.SetAttribute("limited", "false");
+  return body.InsertAfterChild(&joint, copy)->ToElement();
+}
+
+double mjcf_angle_unit(TiXmlElement& root) {
+  for (auto* e = root.FirstChildElement("compiler"); e; e = e->NextSiblingElement("compiler"))
+    if (const char* angle = e->Attribute("angle"); angle && std::string_view(angle) == "radian")
+      return 1;
+  return 180 / std::numbers::pi;
 }
 
 }  // namespace selfcal

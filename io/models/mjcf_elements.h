@@ -42,4 +42,15 @@ std::vector<SprungBody> bending_bodies(const BodySpring& link, const Eigen::Vect
 /// That of what turns at its frame's origin.
 SprungBody mounting_body(const BodySpring& tool);
 
+/// The bodies under `parent`, each before those in it.
+void list_mjcf_bodies(TiXmlElement& parent, std::vector<TiXmlElement*>& list);
+/// The `kind` of element in `parent` that is called `name`; null without.
+TiXmlElement* named_mjcf_child(TiXmlElement& parent, const char* kind, const std::string& name);
+/// As set_mjcf_pose, in place of however the element says where it is.
+void place_mjcf(TiXmlElement& element, const Eigen::Isometry3d& X);
+/// A copy of the joint's element behind it, with a name and a rest of its own.
+TiXmlElement* free_joint_copy(TiXmlElement& body, TiXmlElement& joint, const std::string& name);
+/// What the file has angles in, of a radian: degrees where it says nothing.
+double mjcf_angle_unit(TiXmlElement& root);
+
 }  // namespace selfcal

@@ -8,8 +8,6 @@
 #include <tinyxml.h>
 
 #include <algorithm>
-#include <numbers>
-#include <string_view>
 
 #include "io/models/mjcf_elements.h"
 
@@ -24,25 +22,6 @@ constexpr double kNextToNone = 1e-3;    // kg
 
 bool same_pose(const Isometry3d& a, const Isometry3d& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() < kUnmovedBody;
-}
-
-void list_bodies(TiXmlElement& parent, std::vector<TiXmlElement*>& list) {
-  for (auto* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
-    if (e->ValueStr() == "body") list.push_back(e);
-    list_bodies(*e, list);
-  }
-}
-
-TiXmlElement* named_child(TiXmlElement& parent, const char* kind, const std::string& name) {
-  for (auto* e = parent.FirstChildElement(kind); e; e = e->NextSiblingElement(kind))
-    if (const char* found = e->Attribute("name"); found && name == found) return e;
-  return nullptr;
-}
-
-void place_element(TiXmlElement& element, const Isometry3d& X) {
-  for (const char* other : {"axisangle", "xyaxes", "zaxis", "euler"})
-    element.RemoveAttribute(other);
-  set_mjcf_pose(element, X);
 }
 
 class MendedModel {
@@ -61,7 +40,7 @@ class MendedModel {
     if (root)
       for (auto* e = root->FirstChildElement("worldbody"); e;
            e = e->NextSiblingElement("worldbody"))
-        list_bodies(*e, all);
+        list_mjcf_bodies(*e, all);
     if (std::ssize(all) != read_.every_body)
       return bad_input(file + ": MuJoCo makes " + std::to_string(read_.every_body) +
                        " bodies of it, and the file itself has " + std::to_string(all.size()) +
@@ -112,7 +91,7 @@ class MendedModel {
   void place_body(std::size_t b, const Isometry3d& in_parent) {
     const Isometry3d& X_BF = read_.bodies[b].X_BF;
     const bool stays = same_pose(X_BF, Isometry3d::Identity());
-    place_element(*elements_[b], stays ? in_parent : in_parent * X_BF);
+    place_mjcf(*elements_[b], stays ? in_parent : in_parent * X_BF);
   }
 
   void place_tool() {
@@ -120,8 +99,8 @@ class MendedModel {
     const Isometry3d X_before = read_.bodies.back().X_WB.inverse() * read_.chain.X_WT;
     if (same_pose(X, X_before)) return;
     TiXmlElement* site =
-        read_.tool_is_site ? named_child(*elements_.back(), "site", read_.tool) : nullptr;
-    if (site) return place_element(*site, X);
+        read_.tool_is_site ? named_mjcf_child(*elements_.back(), "site", read_.tool) : nullptr;
+    if (site) return place_mjcf(*site, X);
     if (read_.bodies.back().joints.empty() && elements_.size() > 1)
       return place_body(elements_.size() - 1,
                         placed_[placed_.size() - 2].inverse() * corrected_.chain.X_WT);
@@ -175,19 +154,6 @@ class MendedModel {
     }
   }
 
-  /// A copy of the joint's element behind it, with a name and a rest of its own.
-  TiXmlElement* copy_of(TiXmlElement& body, TiXmlElement& joint, const std::string& name) {
-    TiXmlElement copy = joint;
-    copy.SetAttribute("name", name);
-    for (const char* other : {"range", "ref", "springref", "springdamper", "margin"})
-      copy.RemoveAttribute(other);
-    for (const char* none :
-         {"stiffness", "damping", "armature", "frictionloss", "ref", "springref"})
-      copy.SetAttribute(none, "0");
-    copy.SetAttribute("limited", "false");
-    return body.InsertAfterChild(&joint, copy)->ToElement();
-  }
-
   /// The joint of the model that the robot's frame `name` is of.
   const std::string& model_joint(const std::string& name) const {
     const std::vector<int> moving = serial::moving_frames(robot_);
@@ -199,27 +165,27 @@ class MendedModel {
   void add_joint_effects(TiXmlElement& root, TiXmlElement& body, int joint) {
     const std::string& frame =
         robot_.frames[static_cast<std::size_t>(serial::moving_frames(robot_)[joint])].name;
-    TiXmlElement* element = named_child(body, "joint", before(joint).name);
+    TiXmlElement* element = named_mjcf_child(body, "joint", before(joint).name);
     const auto mine = [&](const std::string& name) { return name == frame; };
     for (Following each : followings(robot_, effects_.drags)) {
       if (!mine(each.joint) || !element) continue;
       each.leader = model_joint(each.leader);
-      copy_of(body, *element, each.name);
+      free_joint_copy(body, *element, each.name);
       TiXmlElement* equality = root.FirstChildElement("equality");
       if (!equality) equality = root.InsertEndChild(TiXmlElement("equality"))->ToElement();
       equality->InsertEndChild(follow_element(each));
     }
     for (const DeadBand& each : effects_.plays) {
       if (!mine(each.joint) || !element) continue;
-      TiXmlElement* play = copy_of(body, *element, each.joint + ".play");
+      TiXmlElement* play = free_joint_copy(body, *element, each.joint + ".play");
       play->SetAttribute("limited", "true");
       const bool turns = before(joint).motion == serial::Motion::revolute;
-      const double half = each.play / 2 * (turns ? angle_unit(root) : 1);
+      const double half = each.play / 2 * (turns ? mjcf_angle_unit(root) : 1);
       play->SetAttribute("range", mjcf_numbers(Eigen::Vector2d(-half, half)));
     }
     for (const JointSpring& each : effects_.joints)
       if (mine(each.joint) && element)
-        set_mjcf_spring(*copy_of(body, *element, each.joint + ".spring"), each.compliance);
+        set_mjcf_spring(*free_joint_copy(body, *element, each.joint + ".spring"), each.compliance);
     if (!element) unnamed(frame);
   }
 
@@ -230,14 +196,6 @@ class MendedModel {
     if (needs(effects_.joints) || needs(effects_.plays) || needs(effects_.drags))
       out_.left_out.push_back("effects of joint " + joint +
                               ", which the file does not call so: give it this name");
-  }
-
-  /// What the file has angles in, of a radian: degrees where it says nothing.
-  static double angle_unit(TiXmlElement& root) {
-    for (auto* e = root.FirstChildElement("compiler"); e; e = e->NextSiblingElement("compiler"))
-      if (const char* angle = e->Attribute("angle"); angle && std::string_view(angle) == "radian")
-        return 1;
-    return 180 / std::numbers::pi;
   }
 
   /// The frames are rigid on the bodies: those of the calibrated robot at zero, in the model's
@@ -290,7 +248,7 @@ class MendedModel {
     for (const SprungBody& each : bodies) {
       const Isometry3d X = frames[frame] * Eigen::Translation3d(each.p);
       TiXmlElement made = sprung_element(each);
-      place_element(made, carriers_[b + 1].inverse() * X);
+      place_mjcf(made, carriers_[b + 1].inverse() * X);
       parent = parent->InsertEndChild(made)->ToElement();
       carriers_[b + 1] = X;
     }
@@ -301,7 +259,7 @@ class MendedModel {
   /// The elements of the bodies from `b` on, the first of which is now `element`.
   void relocate(std::size_t b, TiXmlElement& element) {
     std::vector<TiXmlElement*> inside = {&element};
-    list_bodies(element, inside);
+    list_mjcf_bodies(element, inside);
     const int first = read_.bodies[b].place;
     for (std::size_t i = b; i < elements_.size(); ++i)
       elements_[i] = inside[static_cast<std::size_t>(read_.bodies[i].place - first)];

@@ -2,38 +2,19 @@
 // poses of links in the base, axes there, and the masses of what each joint of the chain carries.
 #include "io/models/urdf.h"
 
-#include <console_bridge/console.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "io/models/urdf_lines.h"
+#include "io/models/urdf_tree.h"
 
 namespace selfcal {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-/// Keeps what urdfdom says while it lives, instead of letting it write to standard error.
-class Listener : public console_bridge::OutputHandler {
- public:
-  Listener() { console_bridge::useOutputHandler(this); }
-  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) said_ += text + "\n";
-  }
-  const std::string& said() const { return said_; }
-
- private:
-  std::string said_;
-};
 
 Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -44,9 +25,6 @@ Isometry3d pose_of(const urdf::Pose& pose) {
   X.translation() = vector_of(pose.position);
   return X;
 }
-
-/// One line of a library's message.
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
 
@@ -298,14 +276,9 @@ Result<UrdfChain> read_urdf(const std::string& text, const std::string& file,
                             const UrdfEnds& ends) {
   const auto lines = UrdfLines::of(text, file);
   if (!lines) return tl::unexpected(lines.error());
-  Listener listener;
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!model || !model->getRoot()) {
-    const std::string why = first_line(listener.said());
-    return bad_input(lines->place_of(listener.said()) +
-                     ": urdfdom: " + (why.empty() ? "is no tree of links and joints" : why));
-  }
-  return Reduction(*model, *lines, file).run(ends);
+  const auto model = urdf_tree(text, *lines);
+  if (!model) return tl::unexpected(model.error());
+  return Reduction(**model, *lines, file).run(ends);
 }
 
 }  // namespace selfcal
