@@ -25,6 +25,9 @@ struct DiagnosisConstants {
     double at_once = 60;              ///< s, between immediate repeats at most; 10 to 600 [physics]
     double fewest_visits = 6;         ///< freedoms that tell a visit's noise; 4 to 20 [habit]
     double most_of_visits = 10;       ///< over the noise of immediate repeats; 3 to 100 [physics]
+    /// Of the equations, that unknowns take at most where noise is told from the middle of what is
+    /// left; 0.5 to 0.9 [habit]
+    double most_taken = 0.7;
   };
   /// Structure of no known cause; sizes are over the noise.
   struct Structure {
@@ -52,6 +55,9 @@ struct DiagnosisConstants {
     double least_seen = 1e-3;
     /// Of a cause, over the noise, each as probable as the others; 0.1 to 100 [trials]
     std::array<double, 7> sizes = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
+    /// Times the usual largest: up to it a size is as good as any; 1 to 10 [physics]
+    double as_usual = 3;
+    double tenfold = 2;             ///< log evidence that ten times that costs; 1 to 5 [trials]
     int agreements = 3;             ///< rounds of noise and structure; 1 to 10 [cost]
     double worthwhile = 5;          ///< log evidence that a cause must bring; 2 to 10 [habit]
     std::size_t most_families = 5;  ///< that a set of causes grows to; 3 to 10 [trials]
@@ -61,11 +67,12 @@ struct DiagnosisConstants {
   };
   /// Of candidates.
   struct Shapes {
-    int moments = 24;     ///< at which a step may have happened; 8 to 100 [cost]
-    int few_times = 40;   ///< up to which it may have between any two; 10 to 100 [cost]
-    int most_waves = 64;  ///< a turn; 10 to 200 [physics]
-    int profile = 30;     ///< waves a turn, of a profile; 10 to most_waves [cost]
-    double warms = 0.2;   ///< K; 0.05 to 2 [physics]
+    int moments = 24;         ///< at which a step may have happened; 8 to 100 [cost]
+    int few_times = 40;       ///< up to which it may have between any two; 10 to 100 [cost]
+    double fewest_times = 8;  ///< below which none is looked for; 4 to 20 [habit]
+    int most_waves = 64;      ///< a turn; 10 to 200 [physics]
+    int profile = 30;         ///< waves a turn, of a profile; 10 to most_waves [cost]
+    double warms = 0.2;       ///< K; 0.05 to 2 [physics]
     /// Doubt of masses that are usual ones, over their torques; 0.25 to 1 [physics]
     double assumed = 0.6;
     /// Probability that what drifts with the rows' order drifts with time, where they carry none
@@ -78,6 +85,8 @@ struct DiagnosisConstants {
     double payload = 0.1;  ///< over that mass; 0.02 to 0.3 [physics]
   };
   struct Naming {
+    /// From which a cause, or structure of no known one, is taken to be there; 0.5 to 0.7 [exact]
+    double probable = 0.5;
     double least_told = 0.005;  ///< probability; 0 to 0.05 [habit]
     /// Of the cause's own: others as probable share its evidence; 0.01 to 0.3 [habit]
     double confounded = 0.05;
@@ -105,6 +114,14 @@ struct DiagnosisConstants {
     /// Share beyond the nuisance parameters below which calibration absorbs a cause; 0.02 to 0.3
     /// [trials]
     double least_beyond_nuisance = 0.15;
+    /// Temperatures that may calibrate probabilities, and from one to the next; 0.5 to 1, 2 to 10,
+    /// 1.02 to 1.5 [cost]
+    double coldest = 0.7, hottest = 4, step = 1.1;
+    /// Log likelihood that a temperature e times one costs: few sessions are simulated; 0.5 to 8
+    /// [habit]
+    double far_from_one = 2;
+    /// Least probability, of a cause and of its absence; 1e-9 to 1e-3 [habit]
+    double hardly = 1e-6;
   };
   /// Of a correction, on rows that were held out.
   struct Validation {
@@ -118,10 +135,12 @@ struct DiagnosisConstants {
     /// A validation row's prediction has an error of its own; 1 to 2 [physics]
     double beyond = 1.25;
     int folds = 3;         ///< in which rows take turns at judging; 2 to 10 [cost]
+    int stretches = 2;     ///< of a set's rows, in each fold; 1 to 5 [habit]
     int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
     /// Of which an interval is drawn: a sign test of fewer cannot reach 2.5 % on one side;
     /// 6 to 10 [habit]
     std::size_t fewest_blocks = 6;
+    double beside_interval = 0.025;  ///< probability on either side of it; 0.005 to 0.16 [habit]
     /// Before over floor below which nothing can be said; 1 to 1.2 [habit]
     double within_floor = 1.05;
   };
@@ -150,12 +169,20 @@ struct DiagnosisConstants {
     /// Of the robot's size, or rad: a surface or instrument that stands so much elsewhere by the
     /// two sessions' own fits has moved, too far to be linear in it; 0.005 to 0.05 [physics]
     double elsewhere = 0.02;
+    /// Sizes of a length (m), an angle (rad) or a ratio that changes; 1e-6 to 1e-5, 1e-3 to 2e-2
+    /// [physics]
+    double usual_least = 5e-6, usual_most = 5e-3;
     double apart = 3;         ///< sigmas of a figure that differs; 2 to 5 [habit]
     double alike = 1 - 1e-6;  ///< cosine of columns that no row tells apart [exact]
   };
   /// What a person is told.
   struct Report {
     int regions = 6, times = 6;  ///< 2 to 20 [habit]
+    /// Over the noise, of all effects of the joints together, that share what is left; 1 to 10
+    /// [trials]
+    double of_joints = 2;
+    std::size_t most_look_alikes = 3;  ///< that a sentence names; 1 to 10 [habit]
+    double sigmas = 2;                 ///< by which a value is beyond a limit; 1 to 3 [habit]
     /// Share beyond the nuisance parameters below which nothing can be said; 1e-3 to 0.1 [trials]
     double least_beyond_nuisance = 0.02;
     /// Of the usual largest, by two sigma: what is larger is no usual cause; 2 to 10 [physics]
@@ -186,6 +213,7 @@ struct DiagnosisConstants {
     double least_at_issue =
         0.02;  ///< probability of a cause that rows are chosen for; 0 to 0.1 [habit]
     std::size_t most_at_issue = 5;  ///< 2 to 10 [cost]
+    double least_of_pair = 0.01;    ///< probability of either of two causes; 0.001 to 0.1 [habit]
     double settled = 0.95;  ///< probability from which no row is asked for; 0.8 to 1 [habit]
   };
   Rows rows;

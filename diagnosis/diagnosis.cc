@@ -90,7 +90,8 @@ class Diagnostician {
     ByNoise p{null.p_of(evaluator_->best_found().log_odds), 1};
     CauseResult named =
         named_cause(linearised_, *evaluator_, posterior_, result_.candidates, options_);
-    const bool structure = posterior_.unknown > 0.5 || named.effect == kUnknown;
+    const bool structure =
+        posterior_.unknown > kDiagnosis.naming.probable || named.effect == kUnknown;
     if (structure)
       p.unknown = p_of_unknown(linearised_, *evaluator_, best_with_structure(), data_.rows,
                                options_.resamples, options_.seed);
@@ -136,7 +137,8 @@ class Diagnostician {
     const double freedom = evaluator_->marginal_likelihood(0).freedom();
     if (freedom >= kDiagnosis.rows.fewest_freedoms) return {};
     return "too few rows for a diagnosis: beyond what calibration takes they leave " +
-           format_number(std::floor(freedom)) + " equations, at least 10 are needed";
+           format_number(std::floor(freedom)) + " equations, at least " +
+           format_number(kDiagnosis.rows.fewest_freedoms) + " are needed";
   }
 
   /// Every cause on rows without the false ones, until neither these nor the noise change.

@@ -11,7 +11,8 @@ namespace {
 
 /// What is usual of a length (m), an angle (rad) or a ratio.
 EffectParameter usual_parameter(const std::string& name, std::string unit) {
-  return {name, std::move(unit), 5e-6, 5e-3, 0};
+  return {name, std::move(unit), kDiagnosis.comparison.usual_least,
+          kDiagnosis.comparison.usual_most, 0};
 }
 
 class Builder {

@@ -161,7 +161,8 @@ std::vector<Change> stand_elsewhere(const Robot& geometry, const FittedSession& 
     list.push_back({fixture_moved(between),
                     set.name,
                     1,
-                    {{"rows off by", lengths ? "m" : "rad", by[s], sigma, 5e-6, 5e-3}}});
+                    {{"rows off by", lengths ? "m" : "rad", by[s], sigma,
+                      kDiagnosis.comparison.usual_least, kDiagnosis.comparison.usual_most}}});
   }
   return list;
 }
@@ -172,7 +173,7 @@ bool add_moved(const Robot& geometry, const Comparison& result, Between between,
                std::vector<Change>& elsewhere) {
   const size_t had = elsewhere.size();
   for (const Change& each : result.changes)
-    if (each.effect == fixture_moved(between) && each.probability > 0.5 &&
+    if (each.effect == fixture_moved(between) && each.probability > kDiagnosis.naming.probable &&
         find_parameter(geometry, each.values.front().name) < 0)
       elsewhere.push_back(each);
   return elsewhere.size() > had;
@@ -181,11 +182,12 @@ bool add_moved(const Robot& geometry, const Comparison& result, Between between,
 std::string changes_in_words(const Comparison& result) {
   std::string text;
   for (const Change& each : result.changes)
-    if (each.probability > 0.5)
+    if (each.probability > kDiagnosis.naming.probable)
       text += (text.empty() ? "changed: " : ", ") + each.effect + " at " + each.where;
   if (!text.empty()) return text;
-  return result.none > 0.5 ? "nothing changed that these rows would show"
-                           : "something changed, but not one known thing alone";
+  return result.none > kDiagnosis.naming.probable
+             ? "nothing changed that these rows would show"
+             : "something changed, but not one known thing alone";
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ class Maker {
     const auto n = static_cast<double>(t.size());
     const int most = n <= kDiagnosis.shapes.few_times ? static_cast<int>(t.size()) - 1
                                                       : kDiagnosis.shapes.moments;
-    for (int i = 1; i <= most && n >= 8; ++i) {
+    for (int i = 1; i <= most && n >= kDiagnosis.shapes.fewest_times; ++i) {
       const auto at = static_cast<size_t>(std::lround(n * i / (most + 1)));
       if (at == 0 || at >= t.size()) continue;
       const double moment = (t[at - 1] + t[at]) / 2;

@@ -160,9 +160,8 @@ Eigen::MatrixXd EvidenceEvaluator::log_evidences_of(const Eigen::MatrixXd& Y) co
 }
 
 double EvidenceEvaluator::plausibility(int candidate, double size) const {
-  // Three times the usual largest is as good as any; ten times that costs two.
-  const double beyond = std::log10(size * amplitude_[candidate] / 3);
-  return beyond > 0 ? -2 * beyond * beyond : 0;
+  const double beyond = std::log10(size * amplitude_[candidate] / kDiagnosis.evidence.as_usual);
+  return beyond > 0 ? -kDiagnosis.evidence.tenfold * beyond * beyond : 0;
 }
 
 double EvidenceEvaluator::log_prior(std::span<const int> candidates, int structure) const {

@@ -20,7 +20,7 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
   for (size_t i = 0; i < all.row.size(); ++i)
     if (all.row[i] >= 0) sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
   const auto n = static_cast<double>(sizes.size());
-  const double spent = std::min(unknowns, 0.7 * n);
+  const double spent = std::min(unknowns, kDiagnosis.rows.most_taken * n);
   return std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(sizes)), 2) / (1 - spent / n);
 }
 

@@ -22,7 +22,7 @@ std::vector<Share> by_joint(const LinearisedModel& linearised, const EvidenceEva
     joint.push_back(all[c].joint);
   }
   for (MarginalLikelihood::Term& term : terms)
-    term.size = 2 / std::sqrt(static_cast<double>(terms.size()));
+    term.size = kDiagnosis.report.of_joints / std::sqrt(static_cast<double>(terms.size()));
   const MarginalLikelihood& plain = evaluator.marginal_likelihood(0);
   const Eigen::VectorXd v = plain.mean(terms);
   std::vector<double> share(joints.size(), 0);

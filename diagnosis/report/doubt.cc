@@ -30,7 +30,8 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
     if (lasting_of(each.effect) == EffectLasting::moved_at_will) continue;
     for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.impossible * v.usual_most)
+      if (std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
+          kDiagnosis.report.impossible * v.usual_most)
         return "no machine has " + v.name + " of " + in_readable_unit(v.value, v.unit) +
                ", which is what the rows would need";
   }
@@ -74,7 +75,8 @@ bool drifts_too_far(const std::vector<CauseResult>& named) {
   return std::ranges::any_of(named, [](const CauseResult& each) {
     return each.effect == "base_drift" &&
            std::ranges::any_of(each.parameters, [](const NamedValue& v) {
-             return std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.too_far * v.usual_most;
+             return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
+                    kDiagnosis.report.too_far * v.usual_most;
            });
   });
 }

@@ -38,7 +38,8 @@ std::vector<Node> other_entries(const CauseResult* other) {
 }
 
 double odds(double one, double other) {
-  return std::clamp(one / std::max(one + other, 1e-12), 0.01, 0.99);
+  constexpr double kLeast = kDiagnosis.report.least_of_pair;
+  return std::clamp(one / std::max(one + other, 1e-12), kLeast, 1 - kLeast);
 }
 
 /// The most probable of the causes that are listed as look-alikes; null where none of them is
@@ -188,7 +189,8 @@ class Planner {
 
   std::string why_nothing() const {
     if (names_effect(diagnosis_.verdict.effect)) return "no other cause looks like what is named";
-    return "no cause is as probable as 5 %: more of the same rows would only lower that";
+    return "no cause is as probable as " + format_number(100 * kDiagnosis.report.edge) +
+           " %: more of the same rows would only lower that";
   }
 
   Observations rows_of(const CandidateRows& further) const {

@@ -50,7 +50,8 @@ class CorrectionValidation {
     const double noise = result_.noise;
     if (!best.candidates.empty()) result_.found = grown(best);
     // What nobody knows is no noise; nor is what more of the named effects explains.
-    if (posterior_.unknown > 0.5) result_.noise = std::min(noise, result_.noise);
+    if (posterior_.unknown > kDiagnosis.naming.probable)
+      result_.noise = std::min(noise, result_.noise);
     return validated(result_.found);
   }
 
@@ -110,7 +111,9 @@ class CorrectionValidation {
     const auto candidate = [&](int c) -> const Candidate& {
       return linearised_.candidates().list[c];
     };
-    const auto probable = [&](int c) { return posterior_.family.at(candidate(c).effect) > 0.5; };
+    const auto probable = [&](int c) {
+      return posterior_.family.at(candidate(c).effect) > kDiagnosis.naming.probable;
+    };
     const auto named = [&](int c) { return names(verdict, candidate(c)); };
     for (const Hypothesis& h : posterior_.hypotheses)
       if (!h.candidates.empty() &&

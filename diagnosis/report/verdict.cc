@@ -31,7 +31,8 @@ std::string with_places(const CauseResult& cause) {
 /// ", or what these rows cannot tell from it (…)"; empty without look-alikes.
 std::string look_alikes(const CauseResult& cause) {
   std::string words;
-  for (size_t i = 0; i < cause.confounded_with.size() && i < 3; ++i)
+  for (size_t i = 0; i < cause.confounded_with.size() && i < kDiagnosis.report.most_look_alikes;
+       ++i)
     words +=
         (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + cause.confounded_with[i];
   return words.empty() ? words : words + ")";
@@ -85,7 +86,8 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   std::string words;
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - 2 * v.sigma > kDiagnosis.report.far_beyond * v.usual_most)
+      if (std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
+          kDiagnosis.report.far_beyond * v.usual_most)
         words += "; " + v.name + " = " + in_readable_unit(v.value, v.unit) +
                  " is far beyond the usual " + in_readable_unit(v.usual_least, v.unit) + " to " +
                  in_readable_unit(v.usual_most, v.unit) + ": something else may look like it";

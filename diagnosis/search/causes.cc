@@ -213,7 +213,8 @@ std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
 }
 
 CauseResult without_cause(const Posterior& posterior) {
-  if (posterior.unknown > 0.5) return {.effect = kUnknown, .probability = posterior.unknown};
+  if (posterior.unknown > kDiagnosis.naming.probable)
+    return {.effect = kUnknown, .probability = posterior.unknown};
   return {.effect = kNone, .probability = posterior.none};
 }
 
@@ -223,7 +224,7 @@ CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluat
   const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
   if (posterior.none >= options.name_below_none) return without_cause(posterior);
   const auto rank = [](const CauseResult& each) {
-    return each.of_its_kind() > 0.5 ? 1 + each.visible : each.of_its_kind();
+    return each.of_its_kind() > kDiagnosis.naming.probable ? 1 + each.visible : each.of_its_kind();
   };
   const CauseResult* best = nullptr;
   for (const CauseResult& each : causes)
@@ -231,7 +232,8 @@ CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluat
   if (!best) return unknown;
   CauseResult known = *best;
   known.together = with_look_alikes(linearised, posterior, known);
-  if (posterior.unknown < 0.5) return posterior.unknown > known.together ? unknown : known;
+  if (posterior.unknown < kDiagnosis.naming.probable)
+    return posterior.unknown > known.together ? unknown : known;
   // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
   if (known.together < std::min(kDiagnosis.naming.sure, posterior.unknown)) return unknown;
   const Shares part = shares(evaluator, posterior);

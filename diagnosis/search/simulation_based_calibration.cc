@@ -14,7 +14,7 @@ namespace selfcal {
 namespace {
 
 double clamped_logit(double p) {
-  p = std::clamp(p, 1e-6, 1 - 1e-6);
+  p = std::clamp(p, kDiagnosis.simulation.hardly, 1 - kDiagnosis.simulation.hardly);
   return std::log(p / (1 - p));
 }
 
@@ -142,8 +142,9 @@ class Simulator {
 
   static double fitted(const std::vector<Stated>& stated) {
     double best = 1, most = -INFINITY;
-    for (double T = 0.7; T < 4; T *= 1.1) {
-      double log_likelihood = -2 * std::pow(std::log(T), 2);  // few sessions: not far from one
+    const DiagnosisConstants::Simulation& constants = kDiagnosis.simulation;
+    for (double T = constants.coldest; T < constants.hottest; T *= constants.step) {
+      double log_likelihood = -constants.far_from_one * std::pow(std::log(T), 2);
       for (const Stated& each : stated) {
         const double p = 1 / (1 + std::exp(-clamped_logit(each.probability) / T));
         log_likelihood += std::log(each.right ? p : 1 - p);

@@ -10,7 +10,7 @@
 namespace selfcal {
 namespace {
 
-constexpr int kStretches = 2 * kDiagnosis.validation.folds;
+constexpr int kStretches = kDiagnosis.validation.stretches * kDiagnosis.validation.folds;
 
 /// Of each of the rows `of`: how many configurations of its set came before among them; `count` by
 /// set.

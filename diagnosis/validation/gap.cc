@@ -72,8 +72,10 @@ Closed closed(const std::vector<ValidationRow>& rows, Square square, unsigned lo
   }
   std::sort(low.begin(), low.end());
   std::sort(high.begin(), high.end());
-  part.least = low[static_cast<size_t>(0.025 * kDiagnosis.validation.resamples)];
-  part.most = high[static_cast<size_t>(0.975 * kDiagnosis.validation.resamples)];
+  part.least = low[static_cast<size_t>(kDiagnosis.validation.beside_interval *
+                                       kDiagnosis.validation.resamples)];
+  part.most = high[static_cast<size_t>((1 - kDiagnosis.validation.beside_interval) *
+                                       kDiagnosis.validation.resamples)];
   return part;
 }
 
