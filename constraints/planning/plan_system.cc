@@ -198,7 +198,7 @@ double PlanSystem::sigma_beyond(const DataSet& data, const std::vector<Unit>& un
   for (Eigen::Index i = 0; i < eigen.values.size() && eigen.values[i] < 1; ++i)
     variance += eigen.vectors.col(i).dot(weight * eigen.vectors.col(i)) /
                 (1 + std::max(0.0, eigen.values[i]));
-  return std::sqrt(variance);
+  return std::sqrt(std::max(0.0, variance));
 }
 
 PlanFigures PlanSystem::figures(const DataSet& data, const std::vector<Unit>& units) const {
