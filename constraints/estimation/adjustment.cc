@@ -178,6 +178,7 @@ class Adjustment {
   /// How much more the rows could weigh than in the placed fit, were their noise the least that it
   /// can be.
   double quietest() const {
+    const Scale least = least_noise(robot_);
     double most = 1;
     for (size_t s = 0; s < equations_.data().sets.size(); ++s) {
       if (equations_.plan(static_cast<int>(s)).items.empty()) continue;
@@ -185,9 +186,9 @@ class Adjustment {
       const Scale& stated = equations_.stated(static_cast<int>(s));
       const Scale& used = adjusted_.before.noise.used[s];
       if (method.has_lengths())
-        most = std::max(most, used.length / std::max(stated.length, kLeastNoise));
+        most = std::max(most, used.length / std::max(stated.length, least.length));
       if (method.has_angles())
-        most = std::max(most, used.angle / std::max(stated.angle, kLeastNoise));
+        most = std::max(most, used.angle / std::max(stated.angle, least.angle));
     }
     return most;
   }

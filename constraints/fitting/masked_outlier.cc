@@ -12,6 +12,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kChance = 1e-6;
+constexpr double kLeastOfNoise = 1e-9;            ///< that rows which fit exactly have: rounding
 constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the fit alone
 constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
 constexpr std::size_t kMostTried = 20;            ///< those whose absence makes most difference
@@ -175,7 +176,7 @@ class LeastSquares {
     if (!(own.freedom > 0)) return 1;
     const Scale& stated = equations_.stated(of.set);
     const double least =
-        std::max({stated.length / used.length, stated.angle / used.angle, kLeastNoise});
+        std::max({stated.length / used.length, stated.angle / used.angle, kLeastOfNoise});
     const Sum& told = kind.variance() > own.variance() ? kind : own;
     const double variance = std::max(told.variance(), least * least);
     const auto count = static_cast<double>(of.equations.size());

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "constraints/statistics.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -108,6 +109,8 @@ void pool(const std::vector<Set>& sets, const std::vector<SetNoise>& by_set,
 
 }  // namespace
 
+Scale least_noise(const Robot& robot) { return {kLeastNoise * size_of(robot), kLeastNoise}; }
+
 Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,
                      const NoiseRule& rule) {
   const std::vector<Set>& sets = equations.data().sets;
@@ -130,8 +133,9 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
   noise.used.resize(sets.size());
   noise.at_bound.assign(sets.size(), 0);
   noise.outlier.assign(equations.data().rows.rows(), 0);
+  const Scale least = least_noise(equations.robot());
   const auto weighed = [&](size_t s) {
-    const Scale floored = at_least(noise.estimated[s], kLeastNoise, kLeastNoise);
+    const Scale floored = at_least(noise.estimated[s], least.length, least.angle);
     const Scale& stated = equations.stated(static_cast<int>(s));
     return at_least(floored, stated.length, stated.angle);
   };
@@ -153,7 +157,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
     if (rule.pool || by_set[s].equations - by_set[s].fitted < kFewFreedoms)
       noise.estimated[s] = pooled[s];
   for (size_t s = 0; s < sets.size(); ++s) {
-    noise.estimated[s] = at_least(noise.estimated[s], kLeastNoise, kLeastNoise);
+    noise.estimated[s] = at_least(noise.estimated[s], least.length, least.angle);
     noise.used[s] = weighed(s);
   }
   return noise;

@@ -21,14 +21,17 @@ struct NoiseRule {
 };
 
 struct Noise {
-  std::vector<Scale> estimated;  ///< by set, floored at kLeastNoise
+  std::vector<Scale> estimated;  ///< by set, floored at least_noise
   std::vector<Scale> used;       ///< the larger of estimated and declared
   std::vector<char> outlier;     ///< by row
   std::vector<char> at_bound;    ///< by set: more rows were far than may be put aside
 };
 
-/// Residuals below this are rounding, not noise (m, rad): noise-free data are weighed by it.
+/// Residuals below this are rounding, not noise (of the robot's size, or rad): noise-free data are
+/// weighed by it.
 inline constexpr double kLeastNoise = 1e-9;
+/// The same of `robot` (m, rad).
+Scale least_noise(const Robot& robot);
 
 /// Noise of every set with rows, and its rows that lie beyond it.
 Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-/// A motion of the world that the rows place no better than this (m or rad) is unseen.
+/// A motion of the world that the rows place no better than this (of the robot's size, or rad) is
+/// unseen.
 constexpr double kPlaced = 50e-3;
 
 template <class Predicate>
@@ -104,11 +106,14 @@ Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd
   const int at = equations.columns();
   const Eigen::MatrixXd nuisance =
       R.middleCols(equations.robot_columns(), equations.nuisance_columns());
-  const SingularValues svd = singular_values(beyond(nuisance, R.middleCols(at, 6)));
+  Eigen::Matrix<double, 6, 1> unit = Eigen::Matrix<double, 6, 1>::Ones();
+  unit.head<3>().setConstant(size_of(equations.robot()));
+  const SingularValues svd =
+      singular_values(beyond(nuisance, R.middleCols(at, 6) * unit.asDiagonal()));
   std::vector<int> unseen;
   for (int i = 0; i < 6; ++i)
     if (svd.values[i] * kPlaced < 1) unseen.push_back(i);
-  return svd.directions(Eigen::all, unseen);
+  return unit.asDiagonal() * svd.directions(Eigen::all, unseen);
 }
 
 bool point_is_unknown(const Equations& equations) {

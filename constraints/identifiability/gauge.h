@@ -27,8 +27,9 @@ bool orientation_is_seen(const Equations& equations);
 std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
                               const Eigen::VectorXd& xi, const std::vector<char>& free);
 
-/// Orthonormal combinations (columns, 6 x k) of the world's motions that the rows do not see, own
-/// unknowns being unknown. R is whitened, with the six motion columns before its last.
+/// Independent combinations (columns, 6 x k) of the world's motions that the rows do not see, own
+/// unknowns being unknown; orthonormal with shifts over the robot's size. R is whitened, with the
+/// six motion columns before its last.
 Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd& R);
 
 /// True when no row tells where the tool's point is: every set measures an unknown one, or angles.

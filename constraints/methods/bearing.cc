@@ -18,6 +18,7 @@
 namespace selfcal {
 namespace {
 
+constexpr double kUpright = 1e-9;     // tangent of the angle to the vertical below which it is none
 constexpr double kFlatPlaces = 1e-3;  // thickness of places that are taken to lie in a plane
 
 Eigen::Vector2d bearing_of(const Eigen::Vector3d& v) {
@@ -126,7 +127,8 @@ class Bearing final : public Method {
       out.r(lane, 0) = wrapped(now[0] - azimuth[in.rows[lane]]);
       out.r(lane, 1) = wrapped(now[1] - elevation[in.rows[lane]]);
       // Straight above or below the azimuth is any.
-      const double h = std::max(std::hypot(v.x(), v.y()), 1e-9), length = std::max(v.norm(), 1e-9);
+      const double length = v.norm() > 0 ? v.norm() : 1;
+      const double h = std::max(std::hypot(v.x(), v.y()), kUpright * length);
       const Eigen::Vector3d by_azimuth = Eigen::Vector3d(-v.y(), v.x(), 0) / (h * h);
       const Eigen::Vector3d by_elevation =
           Eigen::Vector3d(-v.x() * v.z() / h, -v.y() * v.z() / h, h) / (length * length);

@@ -204,7 +204,8 @@ void Platform::differentiate(const ConfigurationBlock& block, const Eigen::Vecto
 Eigen::VectorXd Platform::draw(const Eigen::MatrixX2d& span,
                                const std::function<double()>& uniform) const {
   constexpr int kTries = 400, kBeforeNearer = 50;
-  constexpr double kMostTurned = 0.5, kSame = 1e-6, kFarFromSingular = 0.3;
+  constexpr double kMostTurned = 0.5, kFarFromSingular = 0.3;
+  constexpr double kSame = 1e-6;  // of the platform's size
   const Eigen::VectorXd xi = nominal_values(*this);
   const double stroke = (span.col(1) - span.col(0)).mean() / 2;
   double share = 1;
@@ -214,8 +215,9 @@ Eigen::VectorXd Platform::draw(const Eigen::MatrixX2d& span,
     const auto q = readings_at(xi, X);
     if (!q || (q->array() < span.col(0).array()).any() || (q->array() > span.col(1).array()).any())
       continue;
-    const ClosedChains at = close(chains(xi, *q, Six::Zero()), mode_.home, &mode_);
-    if (at.open.empty() && (at.X.p - X.p).norm() < kSame && swings(at) &&
+    const Chains legs = chains(xi, *q, Six::Zero());
+    const ClosedChains at = close(legs, mode_.home, &mode_);
+    if (at.open.empty() && (at.X.p - X.p).norm() < kSame * size_of(legs) && swings(at) &&
         at.volume / mode_.volume > kFarFromSingular)
       return *q;
   }

@@ -44,7 +44,7 @@ Model with_usual_masses(Model model) {
     // What hangs on the last one is the tool, which is no part of the robot's mass.
     const double length = j + 1 < next.size() ? next[j].norm() : 0;
     share.push_back(std::pow(kLighter, static_cast<double>(j)) *
-                    (length + kStout * std::max(reach, 1e-3)));
+                    (length + kStout * (reach > 0 ? reach : 1)));
     sum += share.back();
   }
   for (size_t j = 0; j < next.size(); ++j) {
