@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kFirstTurn = 0.25;  // joint units of a stretch before any is halved
 constexpr int kHalvings = 20;        // a machine that has jumped until then has no way there
-/// m, that a stretch may be long next to what is in the way, where less or nothing is kept apart.
+/// Of the robot's size, that a stretch may be long next to what is in the way, where less or
+/// nothing is kept apart.
 constexpr double kLeastStretch = 5e-3;
 /// Of the way from home, where the two ends leave it for each other.
 constexpr double kShares[] = {0.9, 0.75, 0.6, 0.45, 0.3, 0.15};
@@ -115,7 +116,7 @@ class Path {
     for (std::size_t i = 0; i < a.points.size(); ++i)
       chord = std::max(chord, (a.points[i] - b.points[i]).norm());
     const double turn = (b.share - a.share) * turn_, off_chord = reach_ * turn * turn / 8;
-    return chord + 2 * off_chord <= a.room + b.room + std::max(in_.apart, kLeastStretch);
+    return chord + 2 * off_chord <= a.room + b.room + std::max(in_.apart, least_stretch_);
   }
 
   const Robot& robot_;
@@ -125,6 +126,7 @@ class Path {
   const Obstruction in_;
   const double turn_ = (way_.array().abs() / units_of_readings(robot_)).sum();
   double reach_ = size_of(robot_);  ///< of the tip and the capsules' ends, from any joint
+  const double least_stretch_ = kLeastStretch * size_of(robot_);
   std::vector<Place> places_;
 };
 

@@ -14,6 +14,7 @@ constexpr int kSecants = 4;           // until the start is as far out as it sha
 constexpr double kMostTurn = 0.6;     // of a joint's unit, that it moves on the way in
 constexpr double kMostAside = 2.5;    // times the clearance, that the tip moves along the surface
 constexpr double kNearHeight = 0.02;  // of the wanted height
+constexpr double kStep = 1e-4;        // of a direction, for its slope
 
 class ApproachFinder {
  public:
@@ -54,7 +55,6 @@ class ApproachFinder {
   }
   /// Along the direction, over the height.
   double slope(const Eigen::VectorXd& direction) const {
-    constexpr double kStep = 1e-4;
     return kStep / height_of(touch_.touch + kStep * direction);
   }
 
@@ -77,6 +77,7 @@ std::vector<PlannedTouch> other_approaches(const Robot& robot, const Eigen::Vect
   if (!target.plane) return found;
   const ApproachFinder finder(robot, xi, target, touch);
   std::normal_distribution<double> normal;
+  const Eigen::ArrayXd units = units_of_readings(robot);
   const auto usable = [&](const PlannedTouch& each) {
     return within_limits(robot, each.outside, options.limit_margin) &&
            within_limits(robot, each.end, options.limit_margin) &&
@@ -88,7 +89,7 @@ std::vector<PlannedTouch> other_approaches(const Robot& robot, const Eigen::Vect
   };
   for (int draw = 0; draw < count * kDraws && static_cast<int>(found.size()) < count; ++draw) {
     const Eigen::VectorXd direction =
-        Eigen::VectorXd::NullaryExpr(touch.touch.size(), [&] { return normal(random); });
+        units * Eigen::ArrayXd::NullaryExpr(touch.touch.size(), [&] { return normal(random); });
     const auto outside = finder.at_height(direction, options.clearance);
     const auto start = finder.at_height(direction, std::min(options.slow, options.clearance));
     const auto end = finder.at_height(direction, -options.search);

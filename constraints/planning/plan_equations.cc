@@ -5,19 +5,28 @@
 
 #include "constraints/identifiability/given_doubt.h"
 #include "constraints/planning/touch_rows.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 PlanEquations::PlanEquations(const Robot& robot, const std::vector<Set>& sets, State state)
     : robot_(robot),
       state_(std::move(state)),
       columns_(static_cast<Eigen::Index>(robot.parameters().size())) {
+  const double size = size_of(robot);
   for (const Set& set : sets) {
     own_at_.push_back(columns_);
     columns_ += set.method->tangent_dimension();
+    for (int i = 0; i < set.method->tangent_dimension(); ++i)
+      place_unit_.push_back(set.method->tangent_quantity(i) == Quantity::length ? size : 1);
   }
   for (std::size_t s = 0; s < sets.size(); ++s) {
+    const Method& method = *sets[s].method;
     group_at_.push_back(columns_);
-    columns_ += state_.groups[s].cols() * sets[s].method->group_freedom();
+    columns_ += state_.groups[s].cols() * method.group_freedom();
+    const int lengths = static_cast<int>(method.group_names().size());
+    for (Eigen::Index g = 0; g < state_.groups[s].cols(); ++g)
+      for (int i = 0; i < method.group_freedom(); ++i)
+        place_unit_.push_back(i < lengths ? size : 1);
   }
 }
 
@@ -28,7 +37,11 @@ std::vector<Scale> PlanEquations::scale(const std::vector<Set>& sets) const {
 }
 
 Eigen::VectorXd PlanEquations::tolerance() const {
-  Eigen::VectorXd list = Eigen::VectorXd::Constant(columns_, std::sqrt(kPlaceVariance));
+  Eigen::VectorXd list(columns_);
+  list.tail(static_cast<Eigen::Index>(place_unit_.size())) =
+      std::sqrt(kPlaceVariance) *
+      Eigen::Map<const Eigen::VectorXd>(place_unit_.data(),
+                                        static_cast<Eigen::Index>(place_unit_.size()));
   Eigen::Index i = 0;
   for (const Parameter& each : robot_.parameters())
     list[i++] = each.free ? each.tolerance : doubt_of_fixed(each);

@@ -31,8 +31,8 @@ class PlanEquations {
   /// Whitened rows that no configuration carries (a known distance between groups).
   Eigen::MatrixXd of_none(const DataSet& data) const;
   /// 1 sigma of each column before anything is measured: the makers' tolerances of the robot's
-  /// parameters (of those that are fixed how far they are believed), a metre or radian of the
-  /// others.
+  /// parameters (of those that are fixed how far they are believed), the robot's size or a radian
+  /// of the others.
   Eigen::VectorXd tolerance() const;
 
  private:
@@ -45,6 +45,7 @@ class PlanEquations {
   const Robot& robot_;
   State state_;
   std::vector<Eigen::Index> own_at_, group_at_;  ///< first column by set
+  std::vector<double> place_unit_;               ///< by column behind the robot's: m, rad, 1
   Eigen::Index columns_ = 0;
 };
 

@@ -72,10 +72,7 @@ class TouchDesigns {
   TouchDesigns(const Robot& robot, const Eigen::VectorXd& xi, const std::vector<Set>& sets,
                const std::vector<PossibleTouch>& candidates, const KnownBefore& known,
                const Eigen::MatrixXd& weight, Given given)
-      : robot_(robot),
-        xi_(xi),
-        sets_(sets),
-        columns_(static_cast<int>(robot.parameters().size()), sets) {
+      : robot_(robot), xi_(xi), sets_(sets), columns_(robot, sets) {
     for (const PossibleTouch& each : candidates) columns_.add(each);
     for (const PossibleTouch& each : known.made) columns_.add(each);
     const Eigen::MatrixXd covariance = covariance_before(robot, known.prior, columns_);

@@ -6,6 +6,7 @@
 #include "constraints/identifiability/given_doubt.h"
 #include "constraints/methods/shared/unit_normal.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -58,6 +59,11 @@ Eigen::MatrixXd lock_rows(const PlaceUnknowns& nuisance, int columns, const Eige
 
 }  // namespace
 
+PlaceColumns::PlaceColumns(const Robot& robot, const std::vector<Set>& sets)
+    : first_(static_cast<int>(robot.parameters().size())),
+      sets_(sets),
+      place_variance_(kPlaceVariance * std::pow(size_of(robot), 2)) {}
+
 void PlaceColumns::add(const PossibleTouch& touch) {
   (void)of(touch);
   (void)step_of(touch);
@@ -70,9 +76,13 @@ PlaceUnknowns PlaceColumns::of(const PossibleTouch& touch) {
   if (added) {
     const Set& set = sets_[place];
     const bool known = set.method->place_known();
-    const double turn = known ? std::pow(doubt_of_turn(set), 2) : kPlaceVariance;
+    // A surface's first two turn it, all three of a socket shift it.
+    const bool shifts = set.method->planned() == Planned::places;
+    const double turn = known    ? std::pow(doubt_of_turn(set), 2)
+                        : shifts ? place_variance_
+                                 : kPlaceVariance;
     variances_.insert(variances_.end(), 2, turn);
-    variances_.push_back(known ? variance_of_lengths(set, false) : kPlaceVariance);
+    variances_.push_back(known ? variance_of_lengths(set, false) : place_variance_);
   }
   return found->second;
 }
@@ -176,7 +186,7 @@ Eigen::MatrixXd covariance_after(const Robot& robot, const Eigen::VectorXd& xi,
                                  const std::vector<Set>& sets,
                                  const std::vector<PossibleTouch>& touches,
                                  const Eigen::MatrixXd& prior) {
-  PlaceColumns columns(static_cast<int>(robot.parameters().size()), sets);
+  PlaceColumns columns(robot, sets);
   const std::vector<Eigen::MatrixXd> rows = touch_rows(robot, xi, sets, touches, columns);
   Eigen::MatrixXd C = covariance_before(robot, prior, columns);
   for (const Eigen::MatrixXd& W : rows)

@@ -20,7 +20,8 @@ struct PossibleTouch {
   Eigen::Vector3d outward;  ///< of a surface (world, unit)
 };
 
-/// 1 sigma² of where a surface or socket lies, or how it is turned, that is not known (m², rad²).
+/// 1 sigma² of where a surface or socket lies, or how it is turned, that is not known (squares of
+/// the robot's size, rad²).
 inline constexpr double kPlaceVariance = 1;
 
 /// Inverse of the covariance `C`, whose directions without variance get a little.
@@ -41,7 +42,8 @@ struct PlaceUnknowns {
 /// they come.
 class PlaceColumns {
  public:
-  PlaceColumns(int first, const std::vector<Set>& sets) : first_(first), sets_(sets) {}
+  /// After those of `robot`.
+  PlaceColumns(const Robot& robot, const std::vector<Set>& sets);
 
   /// Takes the columns of the touch's surface or socket in.
   void add(const PossibleTouch& touch);
@@ -58,6 +60,7 @@ class PlaceColumns {
  private:
   int first_;
   const std::vector<Set>& sets_;
+  double place_variance_;  ///< of a length that is not known (m²)
   std::vector<double> variances_;
   std::map<std::pair<int, int>, PlaceUnknowns> at_;
   std::map<int, int> step_;
