@@ -6,6 +6,7 @@
 
 #include "constraints/estimation/identification.h"
 #include "diagnosis/diagnosis.h"
+#include "io/files/robot_file.h"
 #include "tests/recovery/session.h"
 #include "tests/support/arm_of_size.h"
 
@@ -121,6 +122,47 @@ Measured measured(std::string_view kind, double k) {
   options.resamples = 39;
   options.simulated_sessions = 0;
   return {identify(*robot, data), diagnose(robot, data, options)};
+}
+
+/// A session of the arm of size `k` whose second joint's encoder sits off its axis.
+Diagnosis diagnosed(double k) {
+  const std::shared_ptr<const Robot> nominal = arm_of_size(k);
+  const auto machine = selfcal::robot_of(
+      robot_text(*nominal, values(*nominal)) +
+          "effects: [{effect: transmission_error, at: j2, sin1: 4.0e-4, cos1: 2.0e-4}]\n",
+      "machine");
+  EXPECT_TRUE(machine.has_value()) << machine.error().what;
+  Random random(13);
+  const std::string noise = format_number(20e-6 * k);
+  Session session =
+      make_session(**machine, values(**machine),
+                   {{"tracker", entry({{"method", "position"}, {"noise", noise.c_str()}}), 180}},
+                   20e-6 * k, random);
+  EXPECT_EQ(session.unreached, "") << k;
+  session.data.target *= k;
+  DiagnosisOptions options;
+  options.resamples = 99;
+  options.simulated_sessions = 0;
+  return diagnose(nominal, session.data, options);
+}
+
+TEST(CauseOfAnySize, IsNamedAtItsPlaceAndClosesAsMuch) {
+  const Diagnosis one = diagnosed(1);
+  ASSERT_EQ(one.verdict.effect, "transmission_error") << one.why;
+  for (const double k : {0.1, 10.0}) {
+    const Diagnosis other = diagnosed(k);
+    EXPECT_EQ(other.verdict.effect, one.verdict.effect) << k << ": " << other.why;
+    EXPECT_EQ(other.verdict.where, one.verdict.where) << k;
+    EXPECT_EQ(other.verdict.confounded_with, one.verdict.confounded_with) << k;
+    // Configurations are rounded in another way: a thousandth of the figure.
+    EXPECT_NEAR(other.verdict.probability, one.verdict.probability, 1e-3) << k;
+    ASSERT_EQ(other.verdict.parameters.size(), one.verdict.parameters.size()) << k;
+    for (std::size_t i = 0; i < one.verdict.parameters.size(); ++i)
+      EXPECT_NEAR(other.verdict.parameters[i].value, one.verdict.parameters[i].value,
+                  1e-3 * std::abs(one.verdict.parameters[i].value))
+          << k;
+    EXPECT_NEAR(other.gap.rms_after / k, one.gap.rms_after, 1e-3 * one.gap.rms_after) << k;
+  }
 }
 
 class Measure : public testing::TestWithParam<const char*> {};
