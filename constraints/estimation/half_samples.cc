@@ -70,14 +70,13 @@ class Parts {
       each_.push_back(of([k](int stretch) { return stretch == k; }));
   }
 
-  /// Of two stretches.
+  /// Of two stretches, not yet triangular.
   Eigen::MatrixXd half(int one, int other) const {
     if (each_.empty()) return of([=](int stretch) { return stretch == one || stretch == other; });
     const Eigen::MatrixXd& first = each_[static_cast<size_t>(one)];
     Eigen::MatrixXd both(2 * first.rows(), first.cols());
     both << first, each_[static_cast<size_t>(other)];
-    triangularise(both);
-    return both.topRows(first.rows());
+    return both;
   }
 
  private:

@@ -118,10 +118,13 @@ class LeastSquares {
         part_[static_cast<std::size_t>(i)] = static_cast<int>(parts_.size());
       parts_.push_back(std::move(part.equations));
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
-        A.leftCols(n) * length.cwiseMax(1e-300).cwiseInverse().asDiagonal());
-    const Eigen::Index rank = (qr.matrixQR().diagonal().cwiseAbs().array() > kRounding).count();
-    const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), rank);
+    Eigen::MatrixXd Q(A.rows(), 0);
+    if (n > 0) {
+      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
+          A.leftCols(n) * length.cwiseMax(1e-300).cwiseInverse().asDiagonal());
+      const Eigen::Index rank = (qr.matrixQR().diagonal().cwiseAbs().array() > kRounding).count();
+      Q = qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), rank);
+    }
     left_ = (A.col(n) - Q * (Q.transpose() * A.col(n))).head(rows);
     Q_ = Q.topRows(rows).transpose();
     leverage_ = Q_.colwise().squaredNorm().transpose();
