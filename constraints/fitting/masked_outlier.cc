@@ -16,7 +16,7 @@ constexpr double kLeastOfNoise = 1e-9;            ///< that rows which fit exact
 constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the fit alone
 constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
 constexpr std::size_t kMostTried = 20;            ///< those whose absence makes most difference
-constexpr double kRounding = 1e-13;               ///< of a column, left where others explain it
+constexpr double kNothingLeft = 1e-13;            ///< of a column, left where others explain it
 
 /// What a row's absence does to the least squares.
 struct Deletion {
@@ -122,7 +122,8 @@ class LeastSquares {
     if (n > 0) {
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
           A.leftCols(n) * length.cwiseMax(1e-300).cwiseInverse().asDiagonal());
-      const Eigen::Index rank = (qr.matrixQR().diagonal().cwiseAbs().array() > kRounding).count();
+      const Eigen::Index rank =
+          (qr.matrixQR().diagonal().cwiseAbs().array() > kNothingLeft).count();
       Q = qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), rank);
     }
     left_ = (A.col(n) - Q * (Q.transpose() * A.col(n))).head(rows);
