@@ -131,6 +131,11 @@ Result<FirmwareText> delta_firmware(const Delta& delta, const Eigen::VectorXd& t
       return bad_input(file + ": " + tower_name(t) + " stands " + rounded(trim(told, t)) +
                        " degrees from where firmwares have it (210, 330, 90 in this order)");
   const FirmwareNumbers now = numbers_of(told), before = numbers_of(delta.nominal);
+  for (const FirmwareNumbers* each : {&now, &before})
+    if (!(each->rod.minCoeff() > each->radius))
+      return bad_input(file + ": a rod of " + rounded(each->rod.minCoeff()) +
+                       " mm does not reach over the radius of " + rounded(each->radius) +
+                       " mm: no firmware has such a machine");
   FirmwareText out;
   out.text =
       "; RepRapFirmware (config.g). Heights are above the base plane: take the bed's off.\n" +

@@ -42,7 +42,9 @@ Heading heading_of(std::string_view cell) {
 }
 
 /// What a column is of a frame, in the robot file's words.
-enum class Place { name, type, alpha, along_x, theta, along_z, least, most, passed_over };
+/// An offset is of the joint's own variable: an angle of one that turns, a length of one that
+/// slides.
+enum class Place { name, type, alpha, along_x, theta, along_z, offset, least, most, passed_over };
 
 bool is_number(Place place) {
   return place != Place::name && place != Place::type && place != Place::passed_over;
@@ -50,11 +52,11 @@ bool is_number(Place place) {
 
 const std::map<std::string, Place>& places() {
   static const std::map<std::string, Place> list{
-      {"joint", Place::name},  {"name", Place::name},    {"i", Place::name},
-      {"j", Place::name},      {"link", Place::name},    {"type", Place::type},
-      {"alpha", Place::alpha}, {"a", Place::along_x},    {"r", Place::along_z},
-      {"theta", Place::theta}, {"offset", Place::theta}, {"theta offset", Place::theta},
-      {"min", Place::least},   {"lower", Place::least},  {"max", Place::most},
+      {"joint", Place::name},  {"name", Place::name},     {"i", Place::name},
+      {"j", Place::name},      {"link", Place::name},     {"type", Place::type},
+      {"alpha", Place::alpha}, {"a", Place::along_x},     {"r", Place::along_z},
+      {"theta", Place::theta}, {"offset", Place::offset}, {"theta offset", Place::theta},
+      {"min", Place::least},   {"lower", Place::least},   {"max", Place::most},
       {"upper", Place::most},  {"", Place::passed_over},
   };
   return list;
@@ -114,6 +116,7 @@ class Table {
       if (!value) return value.error();
       number[columns_[i].place] = *value;
     }
+    number[type == "prismatic" ? Place::along_z : Place::theta] += number[Place::offset];
     Node frame = Node::map();
     frame.set("name", Node::of(name)).set("joint", Node::of(type));
     for (const auto& [place, key] :
@@ -150,12 +153,14 @@ class Table {
     const auto number = written_number(with_point);
     if (!number)
       return tl::unexpected(RowFault{"expected a number, got '" + std::string(cell) + "'", at});
-    const bool limit = column.place == Place::least || column.place == Place::most;
+    const bool of_variable = column.place == Place::least || column.place == Place::most ||
+                             column.place == Place::offset;
     const bool length =
-        column.place == Place::along_x || column.place == Place::along_z || (limit && slides);
+        column.place == Place::along_x || column.place == Place::along_z || (of_variable && slides);
     const Dimension dimension = length ? Dimension::length : Dimension::angle;
     if (column.unit.empty()) return *number;
-    // A column of limits has one unit: that of the joints that turn does not fit one that slides.
+    // A column of limits or offsets has one unit: that of the joints that turn does not fit one
+    // that slides.
     const auto unit = unit_of(column.unit, dimension);
     if (!unit)
       return tl::unexpected(

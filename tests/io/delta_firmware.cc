@@ -107,6 +107,7 @@ TEST(DeltaFirmware, NamesWhatItLacksAndRefusesOtherTowers) {
     delta.value.segment<7>(linear_delta::index(t, 0)) << 0.1,
         std::array{210, 330, 90}[t] * M_PI / 180, 0.2, 0.4, 0, 0, 1;
   }
+  delta.nominal = delta.value;
   delta.value[linear_delta::index(1, linear_delta::kTiltX)] = 0.002;
   delta.value[linear_delta::index(1, linear_delta::kScale)] = 1.0001;
   const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
@@ -116,6 +117,17 @@ TEST(DeltaFirmware, NamesWhatItLacksAndRefusesOtherTowers) {
   std::swap(delta.value[linear_delta::index(0, linear_delta::kAngle)],
             delta.value[linear_delta::index(1, linear_delta::kAngle)]);
   EXPECT_FALSE(delta_firmware(delta, delta.value, "", "d.yaml"));
+}
+
+TEST(DeltaFirmware, RefusesRodsThatDoNotReachOverTheRadius) {
+  linear_delta::Delta delta;
+  for (int t = 0; t < 3; ++t)
+    delta.value.segment<7>(linear_delta::index(t, 0)) << 0.105,
+        std::array{210, 330, 90}[t] * M_PI / 180, 0.1, 0.4, 0, 0, 1;
+  delta.nominal = delta.value;
+  const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().what, HasSubstr("does not reach over the radius of 105.0000 mm"));
 }
 
 }  // namespace

@@ -75,6 +75,17 @@ TEST_F(DhTable, TakesLimitsTypesAndOffsets) {
   EXPECT_LT((end - Eigen::Vector3d(0, 0.3, 0.35)).norm(), 1e-12);
 }
 
+TEST_F(DhTable, PutsTheOffsetOfASlideAlongItAndThatOfATurnAroundIt) {
+  const auto arm = robot(
+      "alpha;a [mm];d [mm];offset;type\n"
+      "0;0;100;1.5707963267948966;revolute\n"
+      "0;300;0;0.25;prismatic\n");
+  ASSERT_TRUE(arm);
+  EXPECT_LT((end_of(*arm, Eigen::Vector2d(0, 0)) - Eigen::Vector3d(0, 0.3, 0.35)).norm(), 1e-12);
+  EXPECT_THAT(fault("alpha;a [mm];d [mm];offset [mm];type\n0;0;100;90;revolute\n"),
+              HasSubstr("the unit mm"));
+}
+
 TEST_F(DhTable, TakesDecimalCommasBetweenSemicolons) {
   const auto arm = robot("alpha [deg];a [mm];d [mm];theta [deg]\n0;300,5;0,25;0\n");
   ASSERT_TRUE(arm);
