@@ -187,7 +187,10 @@ struct DiagnosisConstants {
     double least_beyond_nuisance = 0.02;
     /// Of the usual largest, by two sigma: what is larger is no usual cause; 2 to 10 [physics]
     double far_beyond = 3;
-    double beside = 0.5;     ///< least probability that is told beside the unknown [habit]
+    double beside = 0.5;  ///< least probability that is told beside the unknown [habit]
+    /// Over what is left with the named causes alone: everything found is worse; 1.02 to 1.2
+    /// [habit]
+    double rest_worse = 1.05;
     double gear_sigmas = 3;  ///< of a ratio that is told; 2 to 5 [habit]
     /// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
     /// exchanged may be moved as far as one likes; 10 to 100 [physics]

@@ -105,7 +105,7 @@ Result<void> write_page(const ReportArguments& arguments) {
   data["session"] = session;
   if (*result && found.solution.verdict.answer == Answer::improved)
     if (const std::string_view next = next_of((*result)->decision); !next.empty())
-      data["verdict"]["next"] = {next};
+      data["verdict"]["next"].front() = next;  // what a candidate asks for; the rest still holds
   return write_file_atomically(arguments.out, page_of(data));
 }
 

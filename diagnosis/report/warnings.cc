@@ -99,6 +99,9 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
                "have closed nothing") +
            (gap.closed_all.least > 0 ? ", though everything found closes some of the gap"
                                      : "; measure more before the corrected model is used");
+  if (named && gap.rms_all > kDiagnosis.report.rest_worse * gap.rms_after)
+    return "what is named leaves less on the rows kept aside than everything found: the entries "
+           "of the corrected model with `named: false` do not carry over, leave them out";
   return {};
 }
 

@@ -64,6 +64,9 @@ TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   rest_harms.gap.rms_all = 2.1e-4;
   EXPECT_THAT(warning_of_gap(rest_harms),
               AllOf(HasSubstr("worse with everything found"), HasSubstr("do not use")));
+  Diagnosis rest_carries_less = named(2e-4, 1e-4, 0.3);
+  rest_carries_less.gap.rms_all = 1.1e-4;
+  EXPECT_THAT(warning_of_gap(rest_carries_less), HasSubstr("`named: false` do not carry over"));
   Diagnosis none = named(2e-4, 2.1e-4, 0);
   none.verdict.effect = "none";
   EXPECT_THAT(warning_of_gap(none), IsEmpty());
