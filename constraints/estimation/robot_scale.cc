@@ -20,6 +20,9 @@ namespace {
 
 /// A healthy robot is doubted once in so many times, all tests together.
 constexpr double kFalseAlarm = 0.01;
+/// Over what the maker's lengths make of a length: known less well than this they check none, and a
+/// robot that is so far off is not linear in it.
+constexpr double kTellsScale = 0.1;
 /// A length of N that carries less of the scale than this over N is no matter of it.
 constexpr double kLeastShare = 0.05;
 
@@ -190,7 +193,7 @@ class ScaleTest {
     const double most = chi_quantile(1, 1 - (m > 1 ? kFalseAlarm / 2 : kFalseAlarm));
     for (ScaleLength& each : lengths()) each.unseen = most * scale.excess_sigma * each.value;
     const double sigmas = std::abs(scale.excess) / scale.excess_sigma;
-    if (!(sigmas > most)) return;
+    if (!(sigmas > most) || scale.excess_sigma > kTellsScale * (1 - scale.excess)) return;
     scale.against_maker = !reads_lengths();
     scale.contradictions.push_back(in_words(sigmas));
     Eigen::VectorXd doubt = Eigen::VectorXd::Zero(equations_.columns());

@@ -43,6 +43,24 @@ double error(const Robot& robot, const Solution& solution, const Eigen::VectorXd
   return std::sqrt(square);
 }
 
+TEST(KnownLength, IsNotCheckedByLengthsThatTheMakerHardlyKnows) {
+  std::string text = kRx90;
+  for (const char* length :
+       {", r: 0.5}\n  - {name: j1", ", d: 0.5", ", r: 0.5,", ", r: 0.3", ", r: 0.1"})
+    text.insert(text.rfind(length), ", tolerance: {d: 0.8, r: 0.8}");
+  const auto robot = robot_of(text);
+  Random random(2);
+  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+  Session session = make_session(*robot, truth, planes_and_a_step(), 20e-6, random);
+  give(session, "gauge", step("gauge", "0.4", 60));
+  const Solution found = identify(*robot, session.data);
+  std::printf("the maker's lengths tell the scale to %.0f %%, the length given is %.0f %% off\n",
+              100 * found.scale.excess_sigma, 100 * found.scale.excess);
+  EXPECT_GT(found.scale.excess_sigma, 0.1 * (1 - found.scale.excess));
+  EXPECT_THAT(found.scale.contradictions, testing::IsEmpty());
+  EXPECT_FALSE(found.scale.against_maker);
+}
+
 TEST(KnownLength, ThatIsRightIsSaidToCarryTheScaleAlone) {
   const auto robot = robot_of(kRx90);
   Random random(2);
