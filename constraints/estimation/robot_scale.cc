@@ -20,9 +20,6 @@ namespace {
 
 /// A healthy robot is doubted once in so many times, all tests together.
 constexpr double kFalseAlarm = 0.01;
-/// Over what the maker's lengths make of a length: known less well than this they check none, and a
-/// robot that is so far off is not linear in it.
-constexpr double kTellsScale = 0.1;
 /// A length of N that carries less of the scale than this over N is no matter of it.
 constexpr double kLeastShare = 0.05;
 
@@ -36,11 +33,11 @@ struct Eliminated {
 
 class ScaleTest {
  public:
-  ScaleTest(const Equations& equations, const Adjusted& adjusted, const Eigen::MatrixXd& R,
+  ScaleTest(const Equations& equations, const Adjusted& adjusted, Eigen::MatrixXd R,
             Eigen::MatrixXd weight)
       : equations_(equations),
         adjusted_(adjusted),
-        R_(R),
+        R_(std::move(R)),
         weight_(std::move(weight)),
         prior_(as_the_maker_says(equations.robot(), adjusted)),
         columns_(free_columns(equations, prior_)) {}
@@ -48,6 +45,7 @@ class ScaleTest {
   ScaleJudgement run() {
     find_lengths();
     if (lengths().empty()) return std::move(result_);
+    if (!reads_lengths()) leave_scale_to_lengths();
     Eliminated at = eliminated();
     const double widening = shape_widening(at);
     for (size_t i = 0; widening > 1 && i < equations_.robot().parameters().size(); ++i)
@@ -110,6 +108,25 @@ class ScaleTest {
     }
     known_ = kept;
     lengths() = carrying;
+  }
+
+  /// Touches say nothing of the scale: that what they leave shrinks with the robot is no evidence
+  /// of a smaller one. What the rows say of all given lengths changed alike is taken out of R_.
+  void leave_scale_to_lengths() {
+    const Eliminated at = eliminated();
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns_.size()));
+    Eigen::VectorXd rows = Eigen::VectorXd::Zero(R_.rows());
+    double shares = 0;
+    for (size_t k = 0; k < known_.size(); ++k) {
+      const ScaleLength& length = lengths()[k];
+      x += length.value *
+           at.x.triangularView<Eigen::Upper>().solve(at.x_known.col(static_cast<Eigen::Index>(k)));
+      rows += length.value * R_.col(known_[k]);
+      shares += length.share;
+    }
+    rows -= R_(Eigen::all, columns_) * x;
+    for (size_t k = 0; k < known_.size(); ++k)
+      R_.col(known_[k]) -= lengths()[k].share / shares / lengths()[k].value * rows;
   }
 
   Eliminated eliminated() const {
@@ -193,7 +210,7 @@ class ScaleTest {
     const double most = chi_quantile(1, 1 - (m > 1 ? kFalseAlarm / 2 : kFalseAlarm));
     for (ScaleLength& each : lengths()) each.unseen = most * scale.excess_sigma * each.value;
     const double sigmas = std::abs(scale.excess) / scale.excess_sigma;
-    if (!(sigmas > most) || scale.excess_sigma > kTellsScale * (1 - scale.excess)) return;
+    if (!(sigmas > most)) return;
     scale.against_maker = !reads_lengths();
     scale.contradictions.push_back(in_words(sigmas));
     Eigen::VectorXd doubt = Eigen::VectorXd::Zero(equations_.columns());
@@ -257,7 +274,7 @@ class ScaleTest {
 
   const Equations& equations_;
   const Adjusted& adjusted_;
-  const Eigen::MatrixXd& R_;
+  Eigen::MatrixXd R_;       ///< of [W | K | Delta Y]
   Eigen::MatrixXd weight_;  ///< of the end position
   Prior prior_;             ///< with the maker's own tolerances
   std::vector<int> columns_;

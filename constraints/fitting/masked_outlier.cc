@@ -101,11 +101,11 @@ class LeastSquares {
     Eigen::MatrixXd A =
         Eigen::MatrixXd::Zero(rows + n + static_cast<Eigen::Index>(own.size()), n + 1);
     A.col(n).head(rows) = dense.y;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int c = robot[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; const int c : robot) {
       A.col(i).head(rows) = dense.W.col(c);
       A(rows + i, i) = prior_weight(equations, prior, c);
       A(rows + i, n) = A(rows + i, i) * (prior.centre[c] - state.xi[c]);
+      ++i;
     }
     const Eigen::VectorXd length = A.leftCols(n).colwise().norm();
     Eigen::Index at = rows + n;
