@@ -91,11 +91,16 @@ struct SetFigures {
   Figures figures;
 };
 
-/// One row that judges.
+/// One row that judges, as a model meets it.
 struct CheckRow {
-  double residual = 0;    ///< m, after
+  double residual = 0;    ///< m; rad of a row that has angles alone
   bool outlier = false;   ///< beyond the noise
   int configuration = 0;  ///< from 0 on; repeats have the same
+  int set = 0;            ///< from 0
+  bool aligned = false;   ///< unknowns of its set were fitted to rows that judge
+  double angle = 0;       ///< rad
+  double noise = 0;       ///< the most that noise alone makes of `residual`
+  int row = 0;            ///< from 0; of the data set
 };
 
 /// A row before (the maker's robot, placed) and after, for a person to look at.
@@ -114,7 +119,7 @@ struct Residuals {
   Figures fit, check;
   /// Those that gave an equation, in the order of the data set; of more than 100 000 every so many.
   std::vector<RowFigure> rows;
-  std::vector<CheckRow> check_rows;  ///< in the order of the data set's
+  std::vector<CheckRow> check_rows;  ///< after, in the order of the data set's
   std::vector<SetFigures> check_by_set;
 };
 

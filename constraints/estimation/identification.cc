@@ -211,7 +211,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
   for (const FrameStep& step : solution.frame_steps)
     if (step.shift > data.target) grounds.contradictions.push_back(step_words(step));
-  solution.verdict = verdict(before, after, solution.residual, grounds);
+  solution.verdict = verdict(before, solution.residual, grounds);
   return solution;
 }
 

@@ -164,12 +164,25 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   return judged;
 }
 
+std::vector<CheckRow> check_rows(const Judged& judged) {
+  std::vector<CheckRow> rows;
+  rows.reserve(judged.check.size());
+  for (const RowResidual& r : judged.check) {
+    const Scale& scale = judged.check_scale[r.set];
+    const double sigma = r.lengths > 0 ? scale.length : scale.angle;
+    const int scalars = r.lengths > 0 ? r.lengths : r.angles;
+    rows.push_back({r.size(), is_outlier(r, judged), 0, r.set, judged.aligned[r.set] != 0, r.angle,
+                    chi_quantile(scalars, kOutlierQuantile) * sigma * r.factor, r.row});
+  }
+  return rows;
+}
+
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier) {
   expects(before.fit_norms.size() == after.fit.size() && before.check.size() == after.check.size(),
           "both models are judged by the same rows");
   Residuals result;
-  result.check_rows.reserve(after.check.size());
+  result.check_rows = check_rows(after);
   Tally fit, check;
   for (size_t i = 0; i < after.fit.size(); ++i)
     if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
@@ -178,9 +191,9 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   const std::vector<int> configuration = configurations_of(data, after.check);
   for (size_t i = 0; i < after.check.size(); ++i) {
     const RowResidual& row = after.check[i];
-    const bool is_far = is_outlier(row, after);
+    result.check_rows[i].configuration = configuration[i];
+    const bool is_far = result.check_rows[i].outlier;
     check_outlier[row.row] = is_far;
-    result.check_rows.push_back({row.size(), is_far, configuration[i]});
     check.add(norm_of_row(before.check[i]), row, is_far);
     of_set[row.set].add(norm_of_row(before.check[i]), row, is_far);
   }

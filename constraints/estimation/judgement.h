@@ -34,6 +34,9 @@ inline constexpr double kOutlierQuantile = NoiseRule{}.outlier_quantile;
 /// A `check` row that would have been put aside.
 bool is_outlier(const RowResidual& r, const Judged& judged);
 
+/// Its `check` rows, each for a configuration of its own.
+std::vector<CheckRow> check_rows(const Judged& judged);
+
 /// `before` has the norms alone.
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier);
@@ -55,7 +58,9 @@ struct Grounds {
   std::vector<std::string> contradictions = {};
 };
 
-Verdict verdict(const Judged& before, const Judged& after, const Residuals& residual,
-                const Grounds& grounds);
+/// Improved where the rows that judge are met better (check_comparison.h) and the end position is
+/// known to the target.
+/// `residual` is that of `before` and of the model that is judged.
+Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& grounds);
 
 }  // namespace selfcal

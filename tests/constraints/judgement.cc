@@ -53,7 +53,7 @@ struct Rows {
     grounds.target = 1e-3;
     grounds.converged = true;
     grounds.contradictions = std::move(contradictions);
-    return verdict(nominal, calibrated, figures(), grounds);
+    return verdict(nominal, figures(), grounds);
   }
   Answer answer() const { return judged().answer; }
 

@@ -16,14 +16,22 @@ namespace {
 
 using testing::HasSubstr;
 
+/// Check rows of that residual (m), each of a configuration of its own.
+std::vector<CheckRow> check_rows(std::initializer_list<double> residuals) {
+  std::vector<CheckRow> rows;
+  for (const double residual : residuals)
+    rows.push_back({residual, false, static_cast<int>(rows.size())});
+  return rows;
+}
+
 /// A candidate that is twice as good on the check rows and changes nothing.
 struct Case {
   Acceptance accept;
   Solution candidate, unchanged;
   Case() {
     candidate.verdict = {Answer::improved, "better", 1e-6};
-    candidate.residual.check_rows = {{1e-4, false}};
-    unchanged.residual.check_rows = {{2e-4, false}};
+    candidate.residual.check_rows = check_rows({1e-4, 1e-4, 1e-4, 1e-4, 1e-4});
+    unchanged.residual.check_rows = check_rows({2e-4, 2e-4, 2e-4, 2e-4, 2e-4});
     for (const Parameter& parameter : rx90().parameters())
       candidate.parameters.push_back({parameter, parameter.value, 1e-5, Status::identified, {}});
   }
@@ -41,8 +49,8 @@ TEST(AcceptanceDecision, AcceptsWhatIsBetterByTheMarginAndWithinTheLimits) {
   const AcceptanceDecision decided = good.rule();
   EXPECT_TRUE(decided.acceptable);
   EXPECT_EQ(decided.answer, Answer::improved);
-  EXPECT_EQ(decided.check_before, 2e-4);
-  EXPECT_EQ(decided.check_after, 1e-4);
+  EXPECT_DOUBLE_EQ(decided.check_before, 2e-4);
+  EXPECT_DOUBLE_EQ(decided.check_after, 1e-4);
   EXPECT_THAT(decided.why, HasSubstr("check residual 0.2 to 0.1 mm"));
   EXPECT_THAT(decided.why, HasSubstr("(100 sigma)"));
 }
@@ -113,8 +121,9 @@ TEST(AcceptanceDecision, RefusesWhatIsNotBetterByTheMargin) {
 
 TEST(AcceptanceDecision, ComparesTheSameRowsBeforeAndAfter) {
   Case one;
-  one.unchanged.residual.check_rows = {{2e-4, false}, {9e-3, true}, {2e-4, false}};
-  one.candidate.residual.check_rows = {{1e-4, false}, {1e-4, false}, {8e-3, true}};
+  for (CheckRow* row :
+       {&one.unchanged.residual.check_rows[1], &one.candidate.residual.check_rows[2]})
+    row->residual = 2e-4, row->outlier = true;
   const AcceptanceDecision decided = one.rule();
   EXPECT_DOUBLE_EQ(decided.check_before, 2e-4) << "without what either rejects";
   EXPECT_DOUBLE_EQ(decided.check_after, 1e-4);
@@ -122,18 +131,47 @@ TEST(AcceptanceDecision, ComparesTheSameRowsBeforeAndAfter) {
 
 TEST(AcceptanceDecision, IsAsSureAsTheRowsAreThatTheActiveParametersAreWorse) {
   Case one;  // sure that the maker's figures are worse, which nobody uses any more
-  one.unchanged.residual.check_rows.clear();
-  one.candidate.residual.check_rows.clear();
-  for (int row = 0; row < 10; ++row) {
-    one.unchanged.residual.check_rows.push_back({row % 2 == 0 ? 4e-4 : 1e-4, false, row});
-    one.candidate.residual.check_rows.push_back({2e-4, false, row});
-  }
-  EXPECT_TRUE(one.rule().acceptable);
+  one.unchanged.residual.check_rows = check_rows({4e-4, 1e-4, 4e-4, 1e-4, 4e-4, 1e-4, 4e-4, 1e-4});
+  one.candidate.residual.check_rows = check_rows({2e-4, 2e-4, 2e-4, 2e-4, 2e-4, 2e-4, 2e-4, 2e-4});
+  EXPECT_LT(one.rule().check_after, 0.7 * one.rule().check_before);
   EXPECT_GT(one.rule().p_value, 0.05) << "half of them gain, half of them lose";
-  for (int row = 0; row < 10; ++row) one.unchanged.residual.check_rows[row].residual = 4e-4;
+  EXPECT_FALSE(one.rule().acceptable);
+  EXPECT_THAT(one.rule().why, HasSubstr("do not say that the active parameters are worse"));
+  for (CheckRow& row : one.unchanged.residual.check_rows) row.residual = 4e-4;
   EXPECT_LT(one.rule().p_value, 0.01);
-  for (int row = 0; row < 10; ++row) one.candidate.residual.check_rows[row].configuration = 0;
-  EXPECT_DOUBLE_EQ(one.rule().p_value, 0.5) << "ten repeats are one configuration";
+  EXPECT_TRUE(one.rule().acceptable);
+  for (CheckRow& row : one.candidate.residual.check_rows) row.configuration = 0;
+  EXPECT_DOUBLE_EQ(one.rule().p_value, 0.5) << "eight repeats are one configuration";
+  EXPECT_FALSE(one.rule().acceptable);
+}
+
+TEST(AcceptanceDecision, ExcusesNoRowThatTheCandidateAloneMakesFar) {
+  Case one;
+  one.unchanged.residual.check_rows.assign(40, {2e-4});
+  one.candidate.residual.check_rows.assign(40, {1e-4});
+  for (int row = 0; row < 40; ++row)
+    for (auto* rows : {&one.unchanged.residual.check_rows, &one.candidate.residual.check_rows})
+      (*rows)[row].configuration = row;
+  EXPECT_TRUE(one.rule().acceptable);
+  one.candidate.residual.check_rows[7].residual = 9e-3;
+  one.candidate.residual.check_rows[7].outlier = true;
+  EXPECT_FALSE(one.rule().acceptable);
+  EXPECT_THAT(one.rule().why, HasSubstr("some of them are met much worse"));
+  // A false trigger is far under both.
+  one.unchanged.residual.check_rows[7] = one.candidate.residual.check_rows[7];
+  one.unchanged.residual.check_rows[7].noise = 1e-4;
+  EXPECT_TRUE(one.rule().acceptable);
+}
+
+TEST(AcceptanceDecision, SaysNothingOfRowsThatOneModelAloneMeets) {
+  Case one;
+  for (auto* rows : {&one.unchanged.residual.check_rows, &one.candidate.residual.check_rows})
+    for (int row = 0; row < 5; ++row) (*rows)[row].row = 10 * row;
+  CheckRow& closed = one.candidate.residual.check_rows.emplace_back();  // its loop closes now
+  closed = {5e-3, true, 5};
+  closed.row = 50;
+  EXPECT_TRUE(one.rule().acceptable);
+  EXPECT_DOUBLE_EQ(one.rule().check_after, 1e-4);
 }
 
 TEST(AcceptanceDecision, HasALimitOfItsOwnForEachPartOfTheMachine) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <utility>
 
+#include "constraints/estimation/check_comparison.h"
 #include "constraints/statistics.h"
 
 namespace selfcal {
@@ -54,31 +54,6 @@ std::pair<ParameterChange, ParameterChange> largest_changes(const ByPart& limits
   return {against_limit, against_sigma};
 }
 
-/// The check rows before and after, on the same rows: those that neither rejects.
-struct BeforeAndAfter {
-  double before = 0, after = 0;  ///< rms
-  double p_value = 1;            ///< of the paired test that after is better
-};
-
-BeforeAndAfter compare(const std::vector<CheckRow>& before, const std::vector<CheckRow>& after) {
-  double squares_before = 0, squares_after = 0, rows = 0;
-  // Repeats share more than their noise, so that one of them says as much as many.
-  std::map<int, std::pair<double, double>> gain_and_rows;  // by configuration
-  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
-    if (before[i].outlier || after[i].outlier) continue;
-    squares_before += before[i].residual * before[i].residual;
-    squares_after += after[i].residual * after[i].residual;
-    ++rows;
-    auto& [gain, count] = gain_and_rows[after[i].configuration];
-    gain += before[i].residual - after[i].residual;
-    ++count;
-  }
-  if (rows == 0) return {};
-  std::vector<double> gains;
-  for (const auto& [configuration, sum] : gain_and_rows) gains.push_back(sum.first / sum.second);
-  return {std::sqrt(squares_before / rows), std::sqrt(squares_after / rows), signed_rank_p(gains)};
-}
-
 }  // namespace
 
 AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& active,
@@ -88,10 +63,10 @@ AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& activ
   decided.endpoint_sigma = candidate.workspace.rms;
   decided.outliers = count_outliers(candidate);
   decided.identified = parameters_identified(candidate);
-  const BeforeAndAfter compared =
-      compare(unchanged.residual.check_rows, candidate.residual.check_rows);
-  decided.check_before = compared.before;
-  decided.check_after = compared.after;
+  const CheckComparison compared =
+      compare_check_rows(unchanged.residual.check_rows, candidate.residual.check_rows);
+  decided.check_before = compared.rms_before;
+  decided.check_after = compared.rms_after;
   decided.p_value = compared.p_value;
   if (candidate.verdict.answer != Answer::improved) {
     decided.why = candidate.verdict.why;
@@ -102,6 +77,16 @@ AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& activ
     decided.why =
         sentence("the active parameters explain the check rows as well: %.4g %s against %.4g",
                  1e3 * decided.check_before, unit_of_rows, 1e3 * decided.check_after);
+    return decided;
+  }
+  if (!compared.better()) {
+    decided.why = sentence(
+        "the check rows do not say that the active parameters are worse: %.4g %s against %.4g "
+        "(p = %.2g)%s",
+        1e3 * decided.check_before, unit_of_rows, 1e3 * decided.check_after, decided.p_value,
+        !compared.lengths_fall ? ", some of them are met much worse"
+        : compared.angles_rise ? ", the angles are met worse"
+                               : "");
     return decided;
   }
   const auto [limit, sigma] = largest_changes(accept.largest_change, active, candidate);

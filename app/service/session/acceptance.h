@@ -20,9 +20,9 @@ struct AcceptanceDecision : ResultFigures {
 
 /// Judges a candidate, identified from rows starting at `active`, against the active parameters;
 /// `unchanged` is what the same rows say with every parameter of the robot held at them. It is
-/// acceptable when its verdict is improved, its check residual (rows that either finds beyond the
-/// noise left out of both) is better by the margin, and no parameter changes by more than its
-/// limit.
+/// acceptable when its verdict is improved, it meets the check rows better than the active
+/// parameters do (check_comparison.h) and by the margin (rows that either finds beyond the noise
+/// left out of both), and no parameter changes by more than its limit.
 AcceptanceDecision decide_on_result(const Acceptance& accept, const Robot& active,
                                     const Solution& candidate, const Solution& unchanged);
 
