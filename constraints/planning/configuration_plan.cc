@@ -121,7 +121,7 @@ void choose_units(const Robot& robot, const PlanRequest& request, const PlanSyst
          progress);
 
   plan.sigma_before = system.figures(plan.data, {}).sigma;
-  plan.sigma_beyond = system.sigma_beyond(pool.data, pool.units);
+  plan.sigma_beyond = system.sigma_beyond(pool, plan.data, plan.units);
   plan.planned = system.figures(plan.data, plan.units);
   plan.curve = curve_of(system, plan, progress);
   if (progress) progress("ordering configurations", 0);

@@ -186,13 +186,16 @@ Eigen::MatrixXd PlanSystem::priced_weight() const {
   return unit.asDiagonal() * weight_(open_, open_) * unit.asDiagonal();
 }
 
-double PlanSystem::sigma_beyond(const DataSet& data, const std::vector<Unit>& units) const {
+double PlanSystem::sigma_beyond(const Pool& pool, const DataSet& chosen_data,
+                                const std::vector<Unit>& chosen) const {
   // In units in which what is known beforehand is a one in every direction.
   const Eigen::MatrixXd L = cholesky_root(prior_);
   const auto in_units = [&](const Eigen::MatrixXd& A) -> Eigen::MatrixXd {
     return solve_lower(L, solve_lower(L, A).transpose());
   };
-  const Symmetric eigen = symmetric_eigen(in_units(priced_information(all_rows(data, units))));
+  const Symmetric eigen =
+      symmetric_eigen(in_units(priced_information(all_rows(pool.data, pool.units)) +
+                               priced_information(all_rows(chosen_data, chosen))));
   const Eigen::MatrixXd weight = in_units(priced_weight());
   double variance = 0;
   for (Eigen::Index i = 0; i < eigen.values.size() && eigen.values[i] < 1; ++i)

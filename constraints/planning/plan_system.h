@@ -45,8 +45,10 @@ class PlanSystem {
                                     Criterion criterion) const;
   PlanFigures figures(const DataSet& data, const std::vector<Unit>& units) const;
   /// The part of sigma (m) that stays however many more of such units there are: of the directions
-  /// that all of these together tell less of than is known beforehand.
-  double sigma_beyond(const DataSet& data, const std::vector<Unit>& units) const;
+  /// that the pool and those chosen of it, which have moved since, together tell less of than is
+  /// known beforehand.
+  double sigma_beyond(const Pool& pool, const DataSet& chosen_data,
+                      const std::vector<Unit>& chosen) const;
 
  private:
   Eigen::MatrixXd all_rows(const DataSet& data, const std::vector<Unit>& units) const;

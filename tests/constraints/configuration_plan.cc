@@ -169,8 +169,21 @@ TEST(ConfigurationPlan, KnowsMoreOnceItsConfigurationsAreMoved) {
   const double moved = system.figures(pool.data, units).sigma;
   std::printf("sigma %.4f mm chosen, %.4f mm after %d moves\n", 1e3 * chosen, 1e3 * moved, moves);
   EXPECT_GT(moves, request.count);
-  const double beyond = system.sigma_beyond(pool.data, pool.units);
+  const double beyond = system.sigma_beyond(pool, pool.data, units);
   EXPECT_LT(moved * moved - beyond * beyond, 0.9 * (chosen * chosen - beyond * beyond));
+}
+
+TEST(ConfigurationPlan, CallsNothingBeyondSuchRowsThatItsOwnTell) {
+  // A bed of unknown place: at the edges, where the rods lie flat, a touch tells what a thousand
+  // random ones do not.
+  const auto robot = shipped_robot("delta");
+  const ConfigurationPlan plan =
+      plan_configurations(*robot, values(*robot), planes_request(*robot, 1, 24, 1000));
+  ASSERT_EQ(plan.problem, "");
+  std::printf("sigma %.4f mm planned, %.4f mm of it beyond\n", 1e3 * plan.planned.sigma,
+              1e3 * plan.sigma_beyond);
+  EXPECT_LT(plan.sigma_beyond, plan.planned.sigma);
+  EXPECT_GT(plan.rest(plan.planned.sigma), 0);
 }
 
 TEST(ConfigurationPlan, GoesOnFromACovarianceAsFromTheRowsThatGaveIt) {
