@@ -7,13 +7,26 @@
 namespace selfcal {
 namespace {
 
-/// The own and group values that the configurations taken already have.
-State state_of(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request) {
+/// What is touched at the configurations taken already. Where an instrument stands only its
+/// readings tell, and these are not looked at.
+DataSet touched(const DataSet& all) {
+  std::vector<int> rows;
+  for (int row = 0; row < all.rows.rows(); ++row)
+    if (all.sets[all.rows.set[row]].method->constrains()) rows.push_back(row);
+  DataSet touches;
+  touches.sets = all.sets;
+  touches.rows = taken(all.rows, rows);
+  return touches;
+}
+
+/// The own and group values that the touches taken already have.
+State state_of(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request,
+               const DataSet& taken) {
   State state;
   state.xi = xi;
   state.nuisance.resize(request.sets.size());
   state.groups.resize(request.sets.size());
-  if (request.taken.rows.rows() > 0) Equations(robot, request.taken, Use::fit).start(state);
+  if (taken.rows.rows() > 0) Equations(robot, taken, Use::fit).start(state);
   return state;
 }
 
@@ -33,8 +46,8 @@ std::vector<Location> places_of(const Robot& robot, const Eigen::VectorXd& xi, c
 
 std::vector<SampleRequest> sample_requests(const Robot& robot, const Eigen::VectorXd& xi,
                                            const PoolRequest& request) {
-  const State known = state_of(robot, xi, request);
-  const DataSet& taken = request.taken;
+  const DataSet taken = touched(request.taken);
+  const State known = state_of(robot, xi, request, taken);
   std::vector<SampleRequest> list;
   const auto sets = static_cast<int>(request.sets.size());
   for (int s = 0; s < sets; ++s) {

@@ -9,6 +9,7 @@
 #include "constraints/identifiability/identifiability.h"
 #include "constraints/identifiability/observability.h"
 #include "constraints/planning/touch_rows.h"
+#include "constraints/sampling/configurations.h"
 #include "constraints/sampling/random_poses.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "constraints/statistics.h"
@@ -68,10 +69,13 @@ void PlanSystem::drop_units(Pool& pool) {
 /// Rows taken already, and those that no row of a data set carries.
 Eigen::MatrixXd PlanSystem::given(const DataSet& data) const {
   std::vector<Eigen::MatrixXd> parts{equations_.of_none(data)};
-  const DataSet& taken = request_.taken;
+  DataSet taken = request_.taken;
   Unit all(static_cast<std::size_t>(taken.rows.rows()));
   std::iota(all.begin(), all.end(), 0);
-  if (!all.empty()) parts.push_back(equations_.of_units(taken, {all}).front());
+  if (!all.empty()) {
+    measure_rows(robot_, equations_.state(), all, taken);
+    parts.push_back(equations_.of_units(taken, {all}).front());
+  }
   return stacked(parts, equations_.columns());
 }
 

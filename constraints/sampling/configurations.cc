@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "constraints/methods/shared/unit_normal.h"
 #include "constraints/sampling/newton.h"
@@ -15,6 +16,19 @@ namespace {
 constexpr int kEnough = 8;      // lanes that reach the residual before the others are given up
 constexpr double kSame = 1e-6;  // units of readings: farther apart, two configurations differ
 constexpr int kTries = 60;      // blocks of starts before a place is given up
+
+/// Columns for what instruments read, empty where they are new.
+void make_columns(DataSet& data) {
+  Observations& d = data.rows;
+  const Eigen::Index rows = d.q.rows();
+  for (const auto& [column, width] :
+       {std::pair{&d.position, 3}, {&d.orientation, 4}, {&d.normal, 3}})
+    if (column->rows() != rows) column->setConstant(rows, width, std::nan(""));
+  for (const Set& set : data.sets)
+    for (const MeasuredColumn& column : set.method->measures())
+      if (d.measured[column.name].rows() != rows)
+        d.measured[column.name].setConstant(rows, std::nan(""));
+}
 
 class Sampler {
  public:
@@ -42,12 +56,7 @@ class Sampler {
     Observations& d = data_.rows;
     d = {};
     d.q.resize(rows, static_cast<Eigen::Index>(robot_.joints().size()));
-    d.position.setConstant(rows, 3, std::nan(""));
-    d.orientation.setConstant(rows, 4, std::nan(""));
-    d.normal.setConstant(rows, 3, std::nan(""));
-    for (const Set& set : data_.sets)
-      for (const MeasuredColumn& column : set.method->measures())
-        d.measured[column.name].setConstant(rows, std::nan(""));
+    make_columns(data_);
   }
 
   void shrink() {
@@ -256,6 +265,7 @@ Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
 
 void measure_rows(const Robot& robot, const State& truth, const std::vector<int>& rows,
                   DataSet& data) {
+  make_columns(data);
   Locations X;
   Location before;
   for (std::size_t first = 0; first < rows.size();) {

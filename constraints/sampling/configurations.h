@@ -55,7 +55,7 @@ Sampled sample_rows(const Robot& robot, const Eigen::VectorXd& xi,
                     const Progress& progress = {});
 
 /// Writes into `rows` of `data`, which a robot can take, what perfect instruments read there; rows
-/// that a paired method compares come after one another.
+/// that a paired method compares come after one another. Columns that it lacks are added.
 void measure_rows(const Robot& robot, const State& truth, const std::vector<int>& rows,
                   DataSet& data);
 
