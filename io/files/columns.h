@@ -47,7 +47,7 @@ struct Layout {
   Columns<4> orientation;
   Columns<3> turn;                    ///< in place of the orientation
   std::string turn_axes;              ///< as TurnColumns has them
-  bool decimal_commas = false;        ///< commas may stand in numbers, for they part no cells
+  char separator = ',';               ///< what parts the cells
   std::vector<std::size_t> measured;  ///< places of the columns that methods bring along
 
   std::optional<std::size_t> find(std::string_view name) const;

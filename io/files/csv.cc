@@ -36,17 +36,27 @@ void pass_over(std::string_view& text, int& lines) {
   }
 }
 
+/// Those of the separators that stand in the line that `text` begins with, outside quotations, each
+/// once; nothing where it has no end.
+std::optional<std::string> separators_in(std::string_view text) {
+  bool quoted = false;
+  std::string found;
+  for (const char each : text) {
+    if (each == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (each == '\n' || each == '\r') return found;
+    if (kSeparators.find(each) != std::string_view::npos && found.find(each) == std::string::npos)
+      found += each;
+  }
+  return std::nullopt;
+}
+
 class CsvReader {
  public:
   CsvReader(const std::filesystem::path& path, const TakeHeader& header, const TakeRow& row,
-            const CsvForm& form)
-      : path_(path),
-        take_header_(header),
-        take_row_(row),
-        separator_(form.separator),
-        lines_above_(form.header - 1) {
+            int header_line)
+      : path_(path), take_header_(header), take_row_(row), lines_above_(header_line - 1) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
-    csv_set_delim(&parser_, static_cast<unsigned char>(form.separator));
     csv_set_blk_size(&parser_, kBlock);
   }
   CsvReader(const CsvReader&) = delete;
@@ -64,8 +74,12 @@ class CsvReader {
       if (*got == 0) break;
       std::string_view text = pieces.take({block.data(), *got});
       pass_over(text, lines_above_);
-      parse(text);
+      if (begun_)
+        parse(text);
+      else
+        begin(text, false);
     }
+    if (!begun_) begin("", true);
     if (!fault_ && !pieces.whole()) complain({"the file ends inside a character"});
     if (!fault_) finish();
     if (!fault_) return {};
@@ -73,6 +87,21 @@ class CsvReader {
   }
 
  private:
+  /// Keeps what there is of the file until the header's line is whole.
+  void begin(std::string_view text, bool ends) {
+    head_ += text;
+    const std::optional<std::string> separators = separators_in(head_);
+    if (!separators && !ends && head_.size() <= kMostBytesInRow) return;
+    begun_ = true;
+    const std::string found = separators.value_or(separators_in(head_ + "\n").value_or(""));
+    if (found.size() == 1)
+      separator_ = found[0];
+    else if (found.size() > 1)
+      separator_ = std::nullopt;
+    csv_set_delim(&parser_, static_cast<unsigned char>(separator_.value_or(',')));
+    parse(head_);
+  }
+
   void parse(std::string_view text) {
     const std::size_t done = csv_parse(&parser_, text.data(), text.size(), on_cell, on_row, this);
     if (fault_) return;
@@ -125,7 +154,8 @@ class CsvReader {
     if (rows_ == std::numeric_limits<int>::max() - 1) return complain({"too many rows"});
     if (cells_.size() != names_.size()) {
       // Half of the numbers and more are in two pieces.
-      const bool decimals = separator_ == ',' && 2 * cells_.size() > 3 * names_.size();
+      const bool decimals =
+          separator_.value_or(',') == ',' && 2 * cells_.size() > 3 * names_.size();
       return complain({"expected " + count_of_cells(names_.size()) + " as in the header, got " +
                        std::to_string(cells_.size()) +
                        (decimals ? " (decimal commas? then semicolons between the columns)" : "")});
@@ -145,11 +175,7 @@ class CsvReader {
       }
       names_.emplace_back(cells_[i]);
     }
-    if (parser_.delim_char == CSV_COMMA && names_.size() == 1 &&
-        names_.front().find(';') != std::string::npos) {
-      return complain({"expected commas between the columns, got semicolons"});
-    }
-    if (const auto fault = take_header_(cells_)) return complain(*fault);
+    if (const auto fault = take_header_(cells_, separator_)) return complain(*fault);
     header_taken_ = true;
   }
 
@@ -162,8 +188,10 @@ class CsvReader {
   const std::filesystem::path& path_;
   const TakeHeader& take_header_;
   const TakeRow& take_row_;
-  const char separator_;
+  std::optional<char> separator_ = ',';
   int lines_above_ = 0;  // the header, to be passed over
+  bool begun_ = false;   // what parts the cells is known
+  std::string head_;     // until then
   csv_parser parser_{};
   std::string buffer_;             // the row's cells, end to end
   std::vector<std::size_t> ends_;  // where each of them ends
@@ -179,35 +207,8 @@ class CsvReader {
 }  // namespace
 
 Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
-                      const TakeRow& row, const CsvForm& form) {
-  return CsvReader(path, header, row, form).read();
-}
-
-Result<std::optional<char>> separator_of(const std::filesystem::path& path, int header) {
-  Result<InputFile> file = InputFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  std::array<char, kBlock> block;
-  std::string line;
-  Utf8Pieces pieces;
-  for (int above = header - 1; line.find('\n') == std::string::npos;) {
-    const Result<std::size_t> got = file->read(block);
-    if (!got) return tl::unexpected(got.error());
-    if (*got == 0 || line.size() > kMostBytesInRow) break;
-    std::string_view text = pieces.take({block.data(), *got});
-    pass_over(text, above);
-    line += text;
-  }
-  bool quoted = false;
-  std::string found;  // of those that may separate, each once
-  for (const char each : line) {
-    if (each == '"') quoted = !quoted;
-    if (quoted) continue;
-    if (each == '\n' || each == '\r') break;
-    if (kSeparators.find(each) != std::string_view::npos && found.find(each) == std::string::npos)
-      found += each;
-  }
-  if (found.size() > 1) return std::optional<char>();
-  return std::optional(found.empty() ? ',' : found[0]);
+                      const TakeRow& row, int header_line) {
+  return CsvReader(path, header, row, header_line).read();
 }
 
 }  // namespace selfcal

@@ -54,17 +54,16 @@ class RowReader {
         labels_(data.sets),
         numbers_(robot, readings) {}
 
-  const ColumnMap& map() const { return map_; }
-  /// Of the file, before its header.
-  void begin(bool decimal_commas) { decimal_commas_ = decimal_commas; }
-
-  std::optional<RowFault> take_header(Cells names) {
+  std::optional<RowFault> take_header(Cells names, std::optional<char> separator) {
+    if (!separator && map_.any())
+      return RowFault{
+          "more than one of comma, semicolon and tab: put names with one of them between quotes"};
     auto layout = read_header(
         names, joints_,
         configurations_ ? std::vector<MeasuredColumn>() : measured_columns(data_.sets), map_);
     if (!layout) return layout.error();
     layout_ = std::move(*layout);
-    layout_.decimal_commas = decimal_commas_;
+    layout_.separator = separator.value_or(',');
     labels_.begin(layout_);
     numbers_.begin(layout_);
     for (const Set& set : data_.sets) {
@@ -212,7 +211,6 @@ class RowReader {
   const ColumnMap& map_;
   const bool configurations_;
   const std::vector<Joint>& joints_;
-  bool decimal_commas_ = false;
   Layout layout_;
   LabelReader labels_;
   NumberReader numbers_;
@@ -227,19 +225,13 @@ class RowReader {
   std::vector<std::size_t> copies_;
 };
 
-Result<void> read_rows(const std::filesystem::path& path, RowReader& reader) {
-  const ColumnMap& map = reader.map();
-  const auto separator = separator_of(path, map.header);
-  if (!separator) return tl::unexpected(separator.error());
-  if (!*separator && map.any())
-    return bad_input(
-        path.string() + ": line " + std::to_string(map.header) +
-        ": more than one of comma, semicolon and tab: put names with one of them between quotes");
-  const CsvForm form{map.header, separator->value_or(',')};
-  reader.begin(form.separator != ',');
+Result<void> read_rows(const std::filesystem::path& path, RowReader& reader, int header) {
   Result<void> read = read_csv(
-      path, [&](Cells names) { return reader.take_header(names); },
-      [&](Cells cells, int row) { return reader.take_row(cells, row); }, form);
+      path,
+      [&](Cells names, std::optional<char> separator) {
+        return reader.take_header(names, separator);
+      },
+      [&](Cells cells, int row) { return reader.take_row(cells, row); }, header);
   if (!read) return read;
   if (const auto fault = reader.fault()) return bad_input(path.string() + ": " + *fault);
   return {};
@@ -251,7 +243,7 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
                                const ColumnMap& map, Readings readings, DataSet& data,
                                std::vector<std::string>& notices) {
   RowReader reader(robot, map, data, false, readings);
-  if (Result<void> done = read_rows(path, reader); !done) return done;
+  if (Result<void> done = read_rows(path, reader, map.header); !done) return done;
   for (const std::string& notice : reader.notices()) {
     notices.push_back(path.string() + ": " + notice);
   }
@@ -263,7 +255,7 @@ Result<void> read_configurations(const std::filesystem::path& path, const Robot&
                                  DataSet& data) {
   const ColumnMap map;
   RowReader reader(robot, map, data, true, Readings::within_limits);
-  if (Result<void> done = read_rows(path, reader); !done) return done;
+  if (Result<void> done = read_rows(path, reader, map.header); !done) return done;
   reader.hand_over();
   return {};
 }

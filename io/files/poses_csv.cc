@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "constraints/methods/maker.h"
+#include "io/files/cell_numbers.h"
 #include "io/files/csv.h"
 
 namespace selfcal {
@@ -18,7 +19,8 @@ class PoseReader {
  public:
   explicit PoseReader(int joints) : joints_(joints) {}
 
-  std::optional<RowFault> take_header(Cells names) {
+  std::optional<RowFault> take_header(Cells names, char separator) {
+    cells_.begin(separator);
     static constexpr const char* kNames[kPose] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
     for (const char* name : kNames) {
       const auto place = find(names, name);
@@ -38,12 +40,15 @@ class PoseReader {
     Eigen::VectorXd numbers(static_cast<Eigen::Index>(places_.size()));
     WantedPose pose;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      const auto number = parse_number(cells[places_[i]]);
-      if (!number) return RowFault{"expected a number", places_[i]};
+      const auto number = cells_.read(cells[places_[i]]);
+      if (!number) return RowFault{number.error(), places_[i]};
       if (i < 3 && std::abs(*number) > kFarthestPlace)
         return RowFault{"expected metres (millimetres?)", places_[i]};
       numbers[static_cast<Eigen::Index>(i)] = *number;
-      if (i < kPose) pose.text += (i > 0 ? "," : "") + std::string(cells[places_[i]]);
+      if (i >= kPose) continue;
+      std::string text(cells[places_[i]]);
+      std::ranges::replace(text, ',', '.');
+      pose.text += (i > 0 ? "," : "") + text;
     }
     const Eigen::Quaterniond turn(numbers[3], numbers[4], numbers[5], numbers[6]);
     if (!(std::abs(turn.norm() - 1) < kUnit))
@@ -65,6 +70,7 @@ class PoseReader {
   }
 
   int joints_;
+  CellNumbers cells_;
   std::vector<std::size_t> places_;
   std::vector<WantedPose> poses_;
 };
@@ -74,7 +80,10 @@ class PoseReader {
 Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path, int joints) {
   PoseReader reader(joints);
   const auto done = read_csv(
-      path, [&](Cells names) { return reader.take_header(names); },
+      path,
+      [&](Cells names, std::optional<char> separator) {
+        return reader.take_header(names, separator.value_or(','));
+      },
       [&](Cells cells, int) { return reader.take_row(cells); });
   if (!done) return tl::unexpected(done.error());
   std::vector<WantedPose> poses = reader.hand_over();

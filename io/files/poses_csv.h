@@ -16,7 +16,7 @@ inline constexpr std::string_view kPoseColumns = "x,y,z,qw,qx,qy,qz";
 struct WantedPose {
   Location location;     ///< of the tool, in the world
   Eigen::VectorXd near;  ///< readings to stay near (rad or m); empty where the file has none
-  std::string text;      ///< the cells of kPoseColumns, as the file has them
+  std::string text;      ///< the cells of kPoseColumns, as the file has them, with decimal points
 };
 
 /// The rows of a CSV file with the columns x y z (m) and qw qx qy qz (unit), and q1 … of all joints

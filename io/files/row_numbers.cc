@@ -13,6 +13,7 @@ namespace selfcal {
 void NumberReader::begin(const Layout& layout) {
   layout_ = &layout;
   values_.resize(layout.columns.size());
+  numbers_.begin(layout.separator);
 }
 
 std::optional<RowFault> NumberReader::read(Cells cells, int row) {
@@ -26,13 +27,8 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
     const CellKind kind = layout_->columns[i].kind;
     values_[i] = std::numeric_limits<double>::quiet_NaN();
     if (kind == CellKind::ignored || kind == CellKind::text || cells[i].empty()) continue;
-    const std::optional<double> number =
-        layout_->decimal_commas ? number_in(cells[i]) : parse_number(cells[i]);
-    if (!number) return RowFault{"expected a number, got '" + std::string(cells[i]) + "'", i};
-    if (commas_ && points_)
-      return RowFault{"decimal commas and decimal points in one file: '" + std::string(cells[i]) +
-                          "' may be thousands",
-                      i};
+    const auto number = numbers_.read(cells[i]);
+    if (!number) return RowFault{number.error(), i};
     const Unit& unit = layout_->columns[i].unit;
     values_[i] = *number * unit.factor + unit.offset;
     if (kind == CellKind::number) continue;
@@ -45,17 +41,6 @@ std::optional<RowFault> NumberReader::read_cells(Cells cells) {
       return RowFault{"a distance is never negative", i};
   }
   return std::nullopt;
-}
-
-/// Between semicolons or tabs the comma of a number is a decimal one.
-std::optional<double> NumberReader::number_in(std::string_view cell) {
-  const std::size_t comma = cell.find(',');
-  points_ = points_ || cell.find('.') != std::string_view::npos;
-  if (comma == std::string_view::npos) return parse_number(cell);
-  commas_ = true;
-  with_point_ = cell;
-  with_point_[comma] = '.';
-  return parse_number(with_point_);
 }
 
 std::optional<RowFault> NumberReader::check_joints(int row) {

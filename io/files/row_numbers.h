@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/cell_numbers.h"
 #include "io/files/columns.h"
 #include "io/files/csv.h"
 #include "io/files/plausible.h"
@@ -36,7 +37,6 @@ class NumberReader {
 
  private:
   std::optional<RowFault> read_cells(Cells cells);
-  std::optional<double> number_in(std::string_view cell);
   std::optional<RowFault> check_joints(int row);
   std::optional<RowFault> read_vectors();
   std::optional<RowFault> read_turn();
@@ -46,12 +46,11 @@ class NumberReader {
   const Robot& robot_;
   Readings readings_;
   const Layout* layout_ = nullptr;
+  CellNumbers numbers_;
   std::vector<double> values_;  // per column
   std::array<double, 3> position_{}, normal_{}, turn_{};
   std::array<double, 4> orientation_{};
   std::array<double, 6> wrench_{};
-  std::string with_point_;                // a number with a decimal comma, rewritten
-  bool commas_ = false, points_ = false;  // seen in numbers where both may stand
   int outside_ = 0;
   std::string first_outside_;
 };

@@ -69,10 +69,8 @@ struct Column {
 
 class Table {
  public:
-  /// `decimal_commas`: commas may stand in numbers, for they part no cells.
-  explicit Table(bool decimal_commas) : decimal_commas_(decimal_commas) {}
-
-  std::optional<RowFault> take_header(Cells cells) {
+  std::optional<RowFault> take_header(Cells cells, char separator) {
+    decimal_commas_ = separator != ',';
     std::vector<Heading> headings;
     for (const std::string_view cell : cells) headings.push_back(heading_of(cell));
     const bool has_a = std::ranges::find(headings, "a", &Heading::name) != headings.end();
@@ -168,7 +166,7 @@ class Table {
     return *number * unit->factor;
   }
 
-  bool decimal_commas_;
+  bool decimal_commas_ = false;  ///< commas may stand in numbers, for they part no cells
   std::vector<Column> columns_;
   std::vector<Node> frames_;
 };
@@ -193,13 +191,13 @@ Result<int> header_line(const std::filesystem::path& path) {
 Result<Node> read_dh_table(const std::filesystem::path& path, const std::string& convention) {
   const auto header = header_line(path);
   if (!header) return tl::unexpected(header.error());
-  const auto separator = separator_of(path, *header);
-  if (!separator) return tl::unexpected(separator.error());
-  const char parted_by = separator->value_or(',');
-  Table table(parted_by != ',');
+  Table table;
   const Result<void> read = read_csv(
-      path, [&](Cells cells) { return table.take_header(cells); },
-      [&](Cells cells, int row) { return table.take_row(cells, row); }, {*header, parted_by});
+      path,
+      [&](Cells cells, std::optional<char> separator) {
+        return table.take_header(cells, separator.value_or(','));
+      },
+      [&](Cells cells, int row) { return table.take_row(cells, row); }, *header);
   if (!read) return tl::unexpected(read.error());
   Node frames = Node::list();
   frames.items = std::move(table).frames();

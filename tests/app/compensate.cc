@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -128,6 +129,19 @@ TEST_F(CompensateProgram, WritesCommandsThatPutTheCalibratedRobotThere) {
     EXPECT_GE(std::stoi(rows[row][13]), 1);
     EXPECT_EQ(rows[row].back(), "reached");
   }
+}
+
+TEST_F(CompensateProgram, ReadsPosesBetweenSemicolonsWithDecimalCommas) {
+  write_poses_at({0, 0.4});
+  ASSERT_EQ(compensate().status, 0);
+  const auto between_commas = answer();
+  std::string text = text_of(at("poses.csv"));
+  std::ranges::replace(text, ',', ';');
+  std::ranges::replace(text, '.', ',');
+  std::ofstream(at("poses.csv")) << text;
+  const Ran ran = compensate();
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_EQ(answer(), between_commas);
 }
 
 TEST_F(CompensateProgram, SaysThatTheMakersRobotNeedsNoCompensation) {

@@ -98,7 +98,7 @@ TEST_F(ColumnNames, MayStandBetweenSemicolonsWithDecimalCommas) {
               HasSubstr("expected a number, got '1,250,000'"));
   EXPECT_EQ(
       why("header: 1\ncolumns: {q1: pan}\n", "pan, left;q2;x;y;z\n1;0;1;2;3\n"),
-      "observations.csv: line 1: more than one of comma, semicolon and tab: put names with one "
+      "observations.csv: header: more than one of comma, semicolon and tab: put names with one "
       "of them between quotes");
 }
 
