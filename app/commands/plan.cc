@@ -20,6 +20,8 @@
 namespace selfcal {
 namespace {
 
+constexpr double kTarget = 1e-3;  // m, where none is given
+
 /// The rows without what an instrument will only read there.
 std::string rows_text(const ConfigurationPlan& plan) {
   DataSet data = plan.data;
@@ -57,11 +59,12 @@ int plan_for_robot(const PlanArguments& arguments) {
   if (!plan.problem.empty()) return tell({kAnswerIsNo, plan.problem});
   if (const auto written = write_rows(arguments, rows_text(plan)); !written)
     return tell(written.error());
+  const double target = arguments.target.value_or(kTarget);
   nlohmann::ordered_json json;
   if (arguments.json)
-    json = plan_json(**robot, *request, plan, arguments.target);
+    json = plan_json(**robot, *request, plan, target);
   else
-    std::fputs(plan_report(**robot, *request, plan, arguments.target).c_str(), stdout);
+    std::fputs(plan_report(**robot, *request, plan, target).c_str(), stdout);
   if (!arguments.further.empty()) {
     auto next = next_request(**robot, arguments, plan.data);
     if (!next) return tell(next.error());
@@ -75,7 +78,8 @@ int plan_for_robot(const PlanArguments& arguments) {
       std::fputs(next_place_report(*next, places).c_str(), stdout);
   }
   if (arguments.json) std::printf("%s\n", json.dump(1).c_str());
-  return kDone;
+  // Who names no target asks for the best of so many, whatever that comes to.
+  return arguments.target && plan.curve.back() > *arguments.target ? kAnswerIsNo : kDone;
 }
 
 int plan_for_cell(const PlanArguments& arguments) {
@@ -210,9 +214,12 @@ void add_plan(CLI::App& app, int& status) {
       ->add_option("--speed", arguments->speed,
                    "Joint speeds, one or one each (rad/s, m/s; default 1 and 0.25)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--target", arguments->target, "End-position accuracy wanted (m, 1 sigma)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  command
+      ->add_option(
+          "--target", arguments->target,
+          "End-position accuracy wanted (m, 1 sigma; default 1e-3); exit status 1 where it "
+          "is given and not reached")
+      ->check(CLI::PositiveNumber);
   command->add_option("--seed", arguments->seed, "Seed of all that is drawn")
       ->capture_default_str();
   for (CLI::Option* each : command->get_options())

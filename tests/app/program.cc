@@ -306,6 +306,14 @@ TEST_F(Program, SaysNoToACellWhosePlanMissesItsTarget) {
   EXPECT_EQ(nlohmann::json::parse(plan.out)["reached"], false);
 }
 
+TEST_F(Program, SaysNoToAPlanThatMissesTheTargetItIsGiven) {
+  const std::string plan =
+      "plan " SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml --method position --candidates 60";
+  EXPECT_EQ(run_selfcal(plan + " --target 1e-9").status, 1);
+  EXPECT_EQ(run_selfcal(plan + " --target 0.01").status, 0);
+  EXPECT_EQ(run_selfcal(plan + " --count 2").status, 0) << "the best two, as asked for";
+}
+
 TEST_F(Program, NamesNobodyWhoCarriesAMillionthOfAParameter) {
   const Ran ran = run_selfcal("identifiable " SELFCAL_SOURCE_DIR
                               "/app/examples/delta.robot.yaml --method plane --unknown",

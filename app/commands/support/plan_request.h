@@ -1,6 +1,7 @@
 // What `selfcal plan` is asked, as the planning takes it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct PlanArguments {
   MethodOptions options;
   int count = 30, candidates = 1000, groups = 2, step = 1;
   std::vector<double> speed, workspace;
-  double target = 1e-3, spacing = 0, longest = 0;
+  std::optional<double> target;
+  double spacing = 0, longest = 0;
   unsigned long long seed = 1;
   bool json = false;
 };
