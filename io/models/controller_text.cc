@@ -158,20 +158,19 @@ std::string controller_offsets_text(const serial::Model& robot, const std::strin
          "\n  tool: " + pose_entry(tool.nominal) + "\n";
 }
 
-Result<std::string> dh_table_text(const serial::Model& robot, const std::string& convention,
-                                  const std::string& head, const std::string& file) {
+Result<std::string> dh_table_text(const serial::Model& robot, const serial::Model& before,
+                                  const std::string& convention, const std::string& head,
+                                  const std::string& file) {
   const std::vector<int> moving = serial::moving_frames(robot);
   for (int i = moving.front(); i <= moving.back(); ++i)
     if (robot.frames[i].whole)
       return bad_input(file + ": frame " + robot.frames[i].name +
                        " between the joints is a whole pose, which no row of a table is");
   const bool standard = convention == "standard";
-  const serial::Model before = as_maker_says(robot);
-  const ToolFrame tool = tool_frame(robot);
   const DhRows now = dh_rows(robot, standard), undone = dh_rows(before, standard);
   return commented(head + "Rows are of the " + convention + " convention.\n" +
-                   frames_in_words(now.base, tool.pose) + "To undo it, the maker's:\n" +
-                   undone.text + frames_in_words(undone.base, tool.nominal)) +
+                   frames_in_words(now.base, tool_of_chain(robot)) + "To undo it, the maker's:\n" +
+                   undone.text + frames_in_words(undone.base, tool_of_chain(before))) +
          now.text;
 }
 

@@ -29,9 +29,11 @@ std::string pose_in_words(const Eigen::Isometry3d& X);
 std::string controller_offsets_text(const serial::Model& robot, const std::string& head);
 
 /// The table that read_dh_table reads, in `convention`, a row a frame from the first joint to the
-/// last, behind comment lines with `head`, the frames of base and tool and the maker's table.
-/// Refuses (`file` in the message) a robot with a whole pose between its joints. beta is not in it.
-Result<std::string> dh_table_text(const serial::Model& robot, const std::string& convention,
-                                  const std::string& head, const std::string& file);
+/// last, behind comment lines with `head`, the frames of base and tool and the same of `before`,
+/// which undoes it. Refuses (`file` in the message) a robot with a whole pose between its joints.
+/// beta is not in it.
+Result<std::string> dh_table_text(const serial::Model& robot, const serial::Model& before,
+                                  const std::string& convention, const std::string& head,
+                                  const std::string& file);
 
 }  // namespace selfcal

@@ -31,6 +31,14 @@ serial::Model model_of(const std::string& text) {
   return model;
 }
 
+serial::Model makers_model_of(const std::string& text) {
+  Problems problems;
+  const auto robot = robot_of(text, "arm.yaml");
+  serial::Model model = serial::read((*robot)->text().describe(nominal_values(**robot)), problems);
+  EXPECT_FALSE(problems.any()) << problems.list.front();
+  return model;
+}
+
 class ControllerText : public testing::TestWithParam<const char*> {
  protected:
   /// The robot that the table comes to.
@@ -46,7 +54,8 @@ class ControllerText : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(ControllerText, OfATableIsReadBackAsTheRobot) {
-  const auto table = dh_table_text(model_of(kTableArm), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto table = dh_table_text(model_of(kTableArm), makers_model_of(kTableArm), GetParam(),
+                                   "Of arm.\n", "arm.yaml");
   ASSERT_TRUE(table) << table.error().what;
   const auto robot = robot_of(kTableArm, "arm.yaml");
   const auto back = read_back(*table);
@@ -61,7 +70,8 @@ TEST_P(ControllerText, OfATableIsReadBackAsTheRobot) {
 }
 
 TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
-  const auto table = dh_table_text(model_of(kTableArm), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto table = dh_table_text(model_of(kTableArm), makers_model_of(kTableArm), GetParam(),
+                                   "Of arm.\n", "arm.yaml");
   const auto at = table->find("# To undo it, the maker's:\n");
   ASSERT_NE(at, std::string::npos);
   std::string undo;
@@ -85,7 +95,8 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
   text += "  - {name: tool, joint: fixed, xyz: [0.01, 0, 0.1], rpy: [0, 0, pi/2]}\n";
   text.insert(text.find("  - {name: j1"),
               "  - {name: base, joint: fixed, xyz: [1, 2, 3], rpy: [0, 0, 0]}\n");
-  const auto table = dh_table_text(model_of(text), "modified", "", "arm.yaml");
+  const auto table =
+      dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
   ASSERT_TRUE(table);
   EXPECT_THAT(*table, HasSubstr("# the first row stands in the world at x y z 1000 2000 3000 mm, "
                                 "roll pitch yaw 0 0 0 degrees"));
@@ -93,7 +104,8 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
                                 "roll pitch yaw 0 0 90 degrees"));
   text.insert(text.find("  - {name: slide"),
               "  - {name: bracket, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}\n");
-  const auto refused = dh_table_text(model_of(text), "modified", "", "arm.yaml");
+  const auto refused =
+      dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("arm.yaml: frame bracket between the joints"));
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "io/files/robot_file.h"
+#include "io/files/yaml.h"
+#include "io/models/dh_table.h"
 #include "tests/io/scratch.h"
 #include "tests/support/program.h"
 #include "tests/support/text.h"
@@ -81,6 +83,51 @@ TEST_F(ForControllers, LeavesACalibrationWithoutEffectsAsItStands) {
   ASSERT_EQ(ran.status, 0) << ran.out;
   EXPECT_EQ(figures_in(ran.out).written, 0) << ran.out;
   EXPECT_THAT(ran.out, HasSubstr("\nj3,0,601,0,0.171887339,revolute\n"));
+}
+
+/// What the rows that undo a table come to.
+std::unique_ptr<Robot> robot_of_rows(const Scratch& scratch, const std::string& text,
+                                     const std::string& convention) {
+  std::string rows;
+  std::istringstream lines(text.substr(text.find("# To undo it, the maker's:\n")));
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line) && !line.starts_with("# the first");)
+    rows += line.substr(2) + "\n";
+  const auto table = read_dh_table(scratch.write("undo.csv", rows), convention);
+  EXPECT_TRUE(table) << rows;
+  auto robot = robot_of(write_yaml(*table), "undo");
+  EXPECT_TRUE(robot) << robot.error().what;
+  return *std::move(robot);
+}
+
+TEST_F(ForControllers, GivesTheMakersBetaInRowsThatUndoATable) {
+  const std::string robot = R"(robot: arm
+kind: serial
+frames:
+  - {name: j1, joint: revolute, r: 0.4}
+  - {name: j2, joint: revolute, alpha: -1.571, d: 0.15, nominal: {alpha: -pi/2}}
+  - {name: j3, joint: revolute, alpha: 0.5, d: 0.601, beta: 0.011, nominal: {d: 0.6, beta: 0.01}}
+  - {name: j4, joint: revolute, alpha: -pi/2, d: 0.1, r: 0.6}
+)";
+  const Eigen::Vector4d q(0.3, -1.2, 0.4, 2);
+  const auto arm = robot_of(robot, "arm");
+  const Eigen::Vector3d wanted = locate(**arm, nominal_values(**arm), q).p;
+  for (const std::string convention : {"standard", "modified"}) {
+    const Ran ran = convert(robot, "--to dh --convention " + convention);
+    ASSERT_EQ(ran.status, 0) << ran.out;
+    const auto undone = robot_of_rows(scratch_, ran.out, convention);
+    EXPECT_LT((locate(*undone, values(*undone), q).p - wanted).norm(), 1e-6) << ran.out;
+    EXPECT_THAT(ran.out, Not(HasSubstr("The maker's angles beta are in no row")));
+  }
+}
+
+TEST_F(ForControllers, SaysHowFarRowsThatUndoATableAreOffWhereTheMakersBetaIsInNone) {
+  std::string text = kFound;
+  text.resize(text.find("effects:"));
+  replace(text, "d: 0.6, theta: 0, beta: 0}", "d: 0.6, theta: 0, beta: 0.001}");
+  const Ran ran = convert(text, "--to dh --convention standard");
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("# The maker's angles beta are in no row: those that undo it"));
 }
 
 constexpr const char* kUrFile = R"(kinematics:

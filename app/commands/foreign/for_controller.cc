@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kFitPoses = 500;  // half of them judge
 constexpr unsigned long long kFitSeed = 1;
+constexpr double kSameEnd = 1e-7;  // m: beyond what a fit leaves
 constexpr std::size_t kMostKinematicsBytes = std::size_t{1} << 20;
 
 /// A robot file's robot, and the same without its effects.
@@ -50,6 +51,25 @@ Told fitted(const RobotPair& robots, const ControllerNumbers& numbers) {
   return told;
 }
 
+/// The maker's figures as a table holds them, which has no beta, and how far off the maker's robot
+/// they are.
+struct MakersTable {
+  Eigen::VectorXd xi;
+  EndsApart off;
+};
+
+Result<MakersTable> makers_table(const Robot& geometry, ControllerNumbers numbers) {
+  Problems problems;
+  const auto maker = make_robot(geometry.text().describe(numbers.start), problems);
+  if (problems.any()) return bad_input(problems);
+  for (std::size_t i = 0; i < geometry.parameters().size(); ++i)
+    if (const Parameter& p = geometry.parameters()[i]; p.part == Part::link && p.field == "beta")
+      numbers.start[static_cast<Eigen::Index>(i)] = 0;
+  const Eigen::MatrixXd q = random_poses(geometry, nullptr, kFitPoses, kFitSeed);
+  const Eigen::VectorXd xi = fit_controller(geometry, numbers, *maker, q);
+  return MakersTable{xi, ends_apart(geometry, xi, *maker, q)};
+}
+
 /// What a person wants to know of it before it is typed in.
 std::string head_of(const std::string& what, const Told& fit) {
   return what + "\n" +
@@ -75,10 +95,11 @@ std::vector<int> taken_by(const std::string& to, const Robot& robot) {
   return taken;
 }
 
-/// The serial robot of a file with what its controller is best told.
+/// The serial robot of a file with what its controller is best told, and with what undoes that.
 struct ToldRobot {
-  serial::Model model;
+  serial::Model model, before;
   Told fit;
+  EndsApart before_off;  ///< of `before` from the maker's robot
 };
 
 Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) {
@@ -90,14 +111,17 @@ Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) 
   if (!robots) return tl::unexpected(robots.error());
   ControllerNumbers numbers =
       numbers_of_parameters(*robots->geometry, taken_by(format.to, *robots->geometry));
-  if (format.to == "dh")
-    for (std::size_t i = 0; i < robots->geometry->parameters().size(); ++i)
-      if (const Parameter& p = robots->geometry->parameters()[i];
-          p.part == Part::link && p.field == "beta")
-        numbers.start[static_cast<Eigen::Index>(i)] = 0;
-  ToldRobot told{{}, fitted(*robots, numbers)};
+  ToldRobot told;
+  if (format.to == "dh") {
+    const auto table = makers_table(*robots->geometry, numbers);
+    if (!table) return tl::unexpected(table.error());
+    numbers.start = table->xi;
+    told.before_off = table->off;
+  }
+  told.fit = fitted(*robots, numbers);
   Problems problems;
   told.model = serial::read(robots->geometry->text().describe(told.fit.xi), problems);
+  told.before = serial::read(robots->geometry->text().describe(numbers.start), problems);
   if (problems.any()) return bad_input(problems);
   return told;
 }
@@ -114,10 +138,14 @@ Result<std::string> to_offsets(const Node& robot, const ControllerFormat& format
 Result<std::string> to_dh(const Node& robot, const ControllerFormat& format) {
   const auto told = told_robot(robot, format);
   if (!told) return tl::unexpected(told.error());
-  return dh_table_text(
-      told->model, format.convention,
-      head_of("Denavit and Hartenberg's numbers of " + told->model.name + ".", told->fit),
-      format.file);
+  std::string head =
+      head_of("Denavit and Hartenberg's numbers of " + told->model.name + ".", told->fit);
+  if (told->before_off.most > kSameEnd)
+    head += printed(
+        "The maker's angles beta are in no row: those that undo it leave the end %s mm (rms; %s at "
+        "most) off the maker's robot.\n",
+        mm(told->before_off.rms).c_str(), mm(told->before_off.most).c_str());
+  return dh_table_text(told->model, told->before, format.convention, head, format.file);
 }
 
 Result<std::string> to_ur(const Node& robot, const ControllerFormat& format) {
