@@ -89,28 +89,35 @@ const DbcSignal* read_signal(Fields& f, const Dbc* dbc, CanJoint& joint) {
 constexpr double kFinestCount = 1e-15, kCoarsestCount = 1e3;  // rad or m for a count
 constexpr double kMostCounts = 0x1p52;                        // that a double holds exactly
 
-double turn(Fields& f) {
-  if (!f.has("pitch")) return 2 * std::numbers::pi;
-  return f.positive("pitch", 1);
+/// What one turn behind the gear moves the joint by (rad or m).
+double turn(Fields& f, Quantity quantity, bool counts) {
+  const bool turns = quantity == Quantity::angle;
+  if (turns && f.has("pitch")) f.fail("pitch", "no pitch of a joint that turns");
+  if (!turns && counts && !f.has("pitch"))
+    f.fail("pitch", "of a joint that slides the metres for one turn");
+  return turns ? 2 * std::numbers::pi : f.positive("pitch", 1);
 }
 
-double read_step(Fields& f, const DbcSignal* signal) {
+double read_step(Fields& f, const DbcSignal* signal, Quantity quantity) {
   const double gear = f.positive("gear", 1);
-  const double per_turn = turn(f);
   const std::string unit = signal ? f.text("unit") : "counts";
+  const double per_turn = turn(f, quantity, unit == "counts");
   const double factor = signal ? signal->factor : 1;
-  if (unit == "rad" || unit == "m") return factor / gear;
-  if (unit == "deg") return factor * std::numbers::pi / 180 / gear;
-  if (unit == "mm") return factor * 1e-3 / gear;
-  if (unit != "counts") f.fail("unit", "deg, rad, m, mm or counts");
+  const bool turns = quantity == Quantity::angle;
+  if (unit == (turns ? "rad" : "m")) return factor / gear;
+  if (turns && unit == "deg") return factor * std::numbers::pi / 180 / gear;
+  if (!turns && unit == "mm") return factor * 1e-3 / gear;
+  if (unit != "counts")
+    f.fail("unit", turns ? "deg, rad or counts, for the joint turns"
+                         : "m, mm or counts, for the joint slides");
   if (!f.has("counts_per_turn")) f.fail("counts_per_turn", "a positive number");
   return factor * per_turn / (f.positive("counts_per_turn", 1) * gear);
 }
 
-void read_decoding(Fields& f, const DbcSignal* signal, CanJoint& joint) {
+void read_decoding(Fields& f, const DbcSignal* signal, Quantity quantity, CanJoint& joint) {
   const int sign = f.integer("sign", 1, -1, 1);
   if (sign == 0) f.fail("sign", "1 or -1");
-  const double step = read_step(f, signal);
+  const double step = read_step(f, signal, quantity);
   if (!(std::abs(step) >= kFinestCount && std::abs(step) <= kCoarsestCount))
     f.fail(signal ? "signal" : "counts_per_turn", "a count of 1e-15 to 1000 rad or m");
   joint.scale.step = step * (sign < 0 ? -1 : 1);
@@ -142,8 +149,8 @@ CanId read_can_id(Fields& fields, CanId fallback) {
   return id;
 }
 
-CanJoint read_can_joint(const Node& node, const std::string& name, const Dbc* dbc, bool& cia402,
-                        Problems& problems) {
+CanJoint read_can_joint(const Node& node, const std::string& name, Quantity quantity,
+                        const Dbc* dbc, bool& cia402, Problems& problems) {
   CanJoint joint;
   joint.name = name;
   Fields f(node, "joint " + name, problems);
@@ -162,7 +169,7 @@ CanJoint read_can_joint(const Node& node, const std::string& name, const Dbc* db
   cia402 = cia402 || ready;
   // Without its signal nothing can be said of what its counts mean.
   if (problems.any()) return joint;
-  read_decoding(f, signal, joint);
+  read_decoding(f, signal, quantity, joint);
   f.refuse_unknown();
   return joint;
 }

@@ -20,7 +20,7 @@ class CanSettingsReader {
   CanSettingsReader(const Node& node, Problems& problems)
       : f_(node, "encoders on CAN", problems), problems_(problems) {}
 
-  CanSettings read(const std::vector<std::string>& joints, const std::filesystem::path& folder) {
+  CanSettings read(const std::vector<Joint>& joints, const std::filesystem::path& folder) {
     s_.interface = f_.text("interface");
     if (f_.has("interface") && (s_.interface.empty() || s_.interface.size() > kMostName))
       f_.fail("interface", "a name of 1 to 15 characters");
@@ -45,19 +45,19 @@ class CanSettingsReader {
       problems_.list.push_back(dbc.error().what);
   }
 
-  void read_joints(const std::vector<std::string>& names) {
+  void read_joints(const std::vector<Joint>& robot) {
     const Node* entries = f_.node("joints");
     if (!entries || entries->kind != Node::Kind::map)
       return f_.fail("joints", "an entry for each joint, as `NAME: {...}`");
     Fields joints(*entries, f_.what() + " joints", problems_);
-    for (const std::string& name : names) {
-      const Node* entry = joints.node(name);
+    for (const Joint& joint : robot) {
+      const Node* entry = joints.node(joint.name);
       if (!entry) {
-        joints.fail(name, "where its count stands");
+        joints.fail(joint.name, "where its count stands");
         continue;
       }
-      s_.map.joints.push_back(
-          read_can_joint(*entry, name, dbc_ ? &*dbc_ : nullptr, cia402_, problems_));
+      s_.map.joints.push_back(read_can_joint(*entry, joint.name, joint.quantity,
+                                             dbc_ ? &*dbc_ : nullptr, cia402_, problems_));
     }
     joints.refuse_unknown();
   }
@@ -96,7 +96,7 @@ class CanSettingsReader {
 
 }  // namespace
 
-CanSettings read_can_settings(const Node& node, const std::vector<std::string>& joints,
+CanSettings read_can_settings(const Node& node, const std::vector<Joint>& joints,
                               const std::filesystem::path& folder, Problems& problems) {
   return CanSettingsReader(node, problems).read(joints, folder);
 }

@@ -53,6 +53,7 @@
 #include "io/can/map.h"
 #include "io/can/timing.h"
 #include "kinematics/description.h"
+#include "kinematics/robot.h"
 
 namespace selfcal {
 
@@ -64,9 +65,10 @@ struct CanSettings {
   int receive_buffer = 1 << 20;  ///< bytes asked for; the kernel gives what it may
 };
 
-/// Reads the mapping; `joints` are the names in the order of the samples, 1 to kMostJoints, and
-/// `folder` the one that a DBC file's name is relative to. What is wrong goes to `problems`.
-CanSettings read_can_settings(const Node& node, const std::vector<std::string>& joints,
+/// Reads the mapping; `joints` are those of the robot in the order of the samples, 1 to
+/// kMostJoints, and `folder` the one that a DBC file's name is relative to. What is wrong goes to
+/// `problems`.
+CanSettings read_can_settings(const Node& node, const std::vector<Joint>& joints,
                               const std::filesystem::path& folder, Problems& problems);
 
 }  // namespace selfcal

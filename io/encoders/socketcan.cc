@@ -36,7 +36,8 @@ class SocketCan final : public EncoderKind {
 }  // namespace
 
 EncoderKindPtr make_socketcan(const EncoderEntry& entry) {
-  CanSettings settings = read_can_settings(entry.node, entry.joints, entry.folder, entry.problems);
+  CanSettings settings =
+      read_can_settings(entry.node, entry.of_robot, entry.folder, entry.problems);
   for (size_t j = 0; j < settings.map.joints.size() && j < entry.of_robot.size(); ++j) {
     CanJoint& joint = settings.map.joints[j];
     joint.within_one_turn = lies_within_one_turn(joint, entry.of_robot[j]);

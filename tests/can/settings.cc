@@ -21,11 +21,16 @@ struct Read {
   Problems problems;
 };
 
-Read read(const std::string& text, const std::filesystem::path& folder = {}) {
+constexpr Quantity kTurns = Quantity::angle, kSlides = Quantity::length;
+
+Read read(const std::string& text, const std::filesystem::path& folder = {},
+          Quantity first = kTurns, Quantity second = kTurns) {
+  const std::vector<Joint> joints = {{.name = "j1", .quantity = first},
+                                     {.name = "j2", .quantity = second}};
   Read read;
   const auto node = parse_yaml(text, "cell.yaml");
   EXPECT_TRUE(node) << node.error().what;
-  if (node) read.settings = read_can_settings(*node, {"j1", "j2"}, folder, read.problems);
+  if (node) read.settings = read_can_settings(*node, joints, folder, read.problems);
   return read;
 }
 
@@ -66,7 +71,8 @@ interface: can0
 joints:
   j1: {cia402: {node: 1}, counts_per_turn: 65536}
   j2: {cia402: {node: 2, tpdo: 3, byte: 2}, counts_per_turn: 65536, pitch: 0.005}
-)");
+)",
+                      {}, kTurns, kSlides);
   ASSERT_THAT(r.problems.list, IsEmpty());
   const CanMap& map = r.settings.map;
   EXPECT_EQ(map.sync, (CanId{.value = 0x80, .extended = false}));
@@ -130,6 +136,7 @@ struct WrongSettings {
   const char* name;
   const char* joint;  ///< j1's entry
   const char* message;
+  Quantity of_joint = kTurns;
 };
 class CanSettingsMistake : public testing::TestWithParam<WrongSettings> {};
 
@@ -140,7 +147,7 @@ TEST_P(CanSettingsMistake, IsRefusedWithFileAndLine) {
       "interface: can0\ncycle: 0.01\ndbc: arm.dbc\njoints:\n"
       "  j2: {id: 0x182, counts_per_turn: 8}\n  j1: " +
           std::string(GetParam().joint) + "\n",
-      scratch.folder());
+      scratch.folder(), GetParam().of_joint);
   ASSERT_TRUE(r.problems.any());
   EXPECT_THAT(r.problems.list[0], HasSubstr("cell.yaml:6: joint j1"));
   EXPECT_THAT(r.problems.list[0], HasSubstr(GetParam().message));
@@ -179,7 +186,14 @@ INSTANTIATE_TEST_SUITE_P(
         WrongSettings{"CoarseStep", "{id: 1, counts_per_turn: 1.0e-300}", "1e-15 to 1000 rad"},
         WrongSettings{"NoUnit", "{message: Axes, signal: One}", "'unit' is missing"},
         WrongSettings{"Unit", "{message: Axes, signal: One, unit: grad}",
-                      "deg, rad, m, mm or counts"}),
+                      "deg, rad or counts, for the joint turns"},
+        WrongSettings{"Slide", "{message: Axes, signal: One, unit: mm}",
+                      "deg, rad or counts, for the joint turns"},
+        WrongSettings{"Turn", "{message: Axes, signal: One, unit: deg}",
+                      "m, mm or counts, for the joint slides", kSlides},
+        WrongSettings{"Pitch", "{id: 1, counts_per_turn: 8, pitch: 0.01}",
+                      "no pitch of a joint that turns"},
+        WrongSettings{"NoPitch", "{id: 1, counts_per_turn: 8}", "'pitch' is missing", kSlides}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(CanSettings, RefuseWhatConcernsTheWholeBus) {

@@ -12,13 +12,16 @@
 namespace selfcal {
 namespace {
 
-/// The names under `joints`.
-std::vector<std::string> joint_names(const Node& settings) {
-  const Node* joints = settings.find("joints");
-  if (!joints || joints->keys.empty()) return {"a"};
-  std::vector<std::string> names = joints->keys;
-  names.resize(std::min<std::size_t>(names.size(), kMostJoints));
-  return names;
+/// The joints under `joints`: those that have a pitch slide.
+std::vector<Joint> joints_of(const Node& settings) {
+  const Node* entries = settings.find("joints");
+  if (!entries || entries->keys.empty()) return {{.name = "a", .quantity = Quantity::angle}};
+  std::vector<Joint> joints;
+  for (std::size_t j = 0; j < entries->keys.size() && j < kMostJoints; ++j)
+    joints.push_back(
+        {.name = entries->keys[j],
+         .quantity = entries->items[j].find("pitch") ? Quantity::length : Quantity::angle});
+  return joints;
 }
 
 /// `raw` is what a counter that begins anew, or a field of so many bits, has of `count`.
@@ -107,7 +110,7 @@ void try_bus(std::string_view input) {
   if (!node) return;
   Problems problems;
   const CanSettings settings =
-      read_can_settings(*node, joint_names(*node), given_folder().path(), problems);
+      read_can_settings(*node, joints_of(*node), given_folder().path(), problems);
   if (problems.any()) return;
   expect_meaning(settings.map);
   Bytes bytes(reinterpret_cast<const std::uint8_t*>(parts[2].data()), parts[2].size());
