@@ -5,16 +5,19 @@ namespace selfcal {
 void read_beside(Fields& of, const std::vector<Named>& names, Problems& problems,
                  PartFigures& figures) {
   for (const Named& each : names) figures.nominal[each.at] = figures.value[each.at];
-  const auto read = [&](const char* key, Eigen::VectorXd& into) {
+  const auto read = [&](const char* key, const auto& take) {
     const Node* node = of.node(key);
     if (!node) return;
     Fields fields(*node, of.what() + " " + key, problems);
     for (const Named& each : names)
-      if (const auto value = fields.optional_number(each.name)) into[each.at] = *value;
+      if (const auto value = fields.optional_number(each.name)) take(each.at, *value);
     fields.refuse_unknown();
   };
-  read("tolerance", figures.tolerance);
-  read("nominal", figures.nominal);
+  read("tolerance", [&](int at, double value) {
+    figures.tolerance[at] = value;
+    if (!(value > 0 && value < 1)) of.fail("tolerance", "1 sigma each, above 0 and below 1");
+  });
+  read("nominal", [&](int at, double value) { figures.nominal[at] = value; });
 }
 
 bool write_beside(const PartFigures& figures, const std::vector<Named>& names, Node& into) {

@@ -26,28 +26,53 @@ std::span<const char* const> read_fields(const Frame& frame, Convention conventi
   return convention == Convention::standard && !frame.whole ? names.first(kBeta) : names;
 }
 
-/// `tolerance`, or `nominal` of numbers: a mapping from the names of a frame's parameters to
-/// numbers.
-void read_named(Fields& frame_fields, const char* key, std::span<const char* const> names,
-                bool moves, Problems& problems, const std::function<void(int, double)>& take,
-                const std::function<void(double)>& take_gear) {
-  const Node* node = frame_fields.node(key);
+/// 1 sigma of the parameters that the frame's maker gives one.
+void read_tolerance(Fields& frame_fields, std::span<const char* const> names, Problems& problems,
+                    Frame& frame) {
+  const Node* node = frame_fields.node("tolerance");
   if (!node) return;
-  Fields fields(*node, frame_fields.what() + " " + key, problems);
-  for (size_t i = 0; i < names.size(); ++i)
-    if (const auto value = fields.optional_number(names[i])) take(static_cast<int>(i), *value);
-  if (moves)
-    if (const auto value = fields.optional_number("gear")) take_gear(*value);
+  Fields fields(*node, frame_fields.what() + " tolerance", problems);
+  const auto sigma = [&](double value) {
+    if (!(value > 0 && value < 1))
+      frame_fields.fail("tolerance", "1 sigma each, above 0 and below 1 (m or rad)");
+    return value;
+  };
+  for (int i = 0; i < static_cast<int>(names.size()); ++i)
+    if (const auto value = fields.optional_number(names[i])) frame.tolerance[i] = sigma(*value);
+  if (frame.motion != Motion::fixed)
+    if (const auto value = fields.optional_number("gear"))
+      frame.gear_tolerance = *value == 0 ? 0 : sigma(*value);  // 0: a ratio of exact teeth
   fields.refuse_unknown();
 }
 
+/// What `fields` have of the frame's parameters; the others stay as they are in `into`.
 void read_numbers(Fields& fields, std::span<const char* const> names, double farthest,
-                  Frame& frame) {
-  frame.value.setZero(kFields);
+                  const Frame& frame, Eigen::VectorXd& into) {
   for (int i = 0; i < static_cast<int>(names.size()); ++i)
-    frame.value[i] =
-        is_angle(frame, i) ? fields.angle(names[i], 0) : fields.length(names[i], 0, farthest);
+    into[i] = is_angle(frame, i) ? fields.angle(names[i], into[i])
+                                 : fields.length(names[i], into[i], farthest);
+}
+
+double read_gear(Fields& fields, double otherwise) {
+  const double gear = fields.number("gear", otherwise);
+  if (gear == 0) fields.fail("gear", "a ratio other than 0");
+  return gear;
+}
+
+/// The parameters, and what the maker says of those that a calibration has moved.
+void read_figures(Fields& fields, std::span<const char* const> names, double farthest,
+                  Problems& problems, Frame& frame) {
+  frame.value.setZero(kFields);
+  read_numbers(fields, names, farthest, frame, frame.value);
   frame.nominal = frame.value;
+  const bool moves = frame.motion != Motion::fixed;
+  if (moves) frame.gear = frame.gear_nominal = read_gear(fields, 1);
+  const Node* node = fields.node("nominal");
+  if (!node) return;
+  Fields nominal(*node, fields.what() + " nominal", problems);
+  read_numbers(nominal, names, farthest, frame, frame.nominal);
+  if (moves) frame.gear_nominal = read_gear(nominal, frame.gear);
+  nominal.refuse_unknown();
 }
 
 /// [x, y, z] or [roll, pitch, yaw], each up to `most`.
@@ -84,9 +109,7 @@ void read_pose(Fields& fields, double farthest, Problems& problems, Frame& frame
         log_rotation(rpy_rotation(frame.rpy_nominal).transpose() * rpy_rotation(frame.rpy));
 }
 
-void read_joint(Fields& fields, Frame& frame) {
-  frame.gear = frame.gear_nominal = fields.number("gear", 1.0);
-  if (frame.gear == 0) fields.fail("gear", "a ratio other than 0");
+void read_limits(Fields& fields, Frame& frame) {
   const auto limits = fields.numbers("limits", 2);
   if (!limits) return;
   frame.lower = (*limits)[0];
@@ -107,30 +130,14 @@ void read_mass(Fields& fields, Frame& frame) {
 /// Where the frame stands, and how surely its maker knows.
 void read_place(Fields& fields, Convention convention, double farthest, Problems& problems,
                 Frame& frame) {
-  const bool moves = frame.motion != Motion::fixed;
   const std::span<const char* const> names = read_fields(frame, convention);
   if (frame.whole)
     read_pose(fields, farthest, problems, frame);
   else
-    read_numbers(fields, names, farthest, frame);
-  if (moves) read_joint(fields, frame);
+    read_figures(fields, names, farthest, problems, frame);
+  if (frame.motion != Motion::fixed) read_limits(fields, frame);
   frame.tolerance.setConstant(frame.fields(), -1);
-  const auto positive = [&](double value) {
-    if (!(value > 0 && value < 1))
-      fields.fail("tolerance", "1 sigma each, above 0 and below 1 (m or rad)");
-    return value;
-  };
-  read_named(
-      fields, "tolerance", names, moves, problems,
-      [&](int i, double value) { frame.tolerance[i] = positive(value); },
-      [&](double value) {
-        frame.gear_tolerance = value == 0 ? 0 : positive(value);  // 0: a ratio of exact teeth
-      });
-  if (frame.whole) return;
-  read_named(
-      fields, "nominal", names, moves, problems,
-      [&](int i, double value) { frame.nominal[i] = value; },
-      [&](double value) { frame.gear_nominal = value; });
+  read_tolerance(fields, names, problems, frame);
 }
 
 Node named(std::span<const char* const> names, const Eigen::VectorXd& values,

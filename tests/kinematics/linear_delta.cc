@@ -96,6 +96,13 @@ TEST(LinearDelta, RefusesWhatIsNoDelta) {
               HasSubstr("millimetres"));
   EXPECT_THAT(problem(good + good + "  - {radius: 0.1, angle: 0, rod: 0.2, endstop: 0.4, x: 1}\n"),
               HasSubstr("unknown key 'x'"));
+  for (const char* tolerance : {"-1.0e-3", "0", "1"})
+    EXPECT_THAT(problem(good + good +
+                        "  - {radius: 0.1, angle: 0, rod: 0.2, endstop: 0.4, "
+                        "tolerance: {radius: " +
+                        tolerance + "}}\n"),
+                HasSubstr("tower3: key 'tolerance': expected 1 sigma each, above 0 and below 1"))
+        << tolerance;
 }
 
 TEST(LinearDelta, TellsAPersonHowFarOutAndHowHighItWorks) {

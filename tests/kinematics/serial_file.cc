@@ -166,6 +166,18 @@ TEST(SerialFile, IsRefusedForAToleranceThatIsNone) {
         << tolerance;
 }
 
+TEST(SerialFile, IsRefusedForAMakersFigureInDegreesOrMillimetres) {
+  const auto with_nominal = [](const std::string& nominal) {
+    return refusal(
+        with_frames("  - {name: j1, joint: revolute, theta: 0.1, nominal: {" + nominal + "}}\n"));
+  };
+  EXPECT_THAT(with_nominal("theta: 90"),
+              testing::AllOf(StartsWith("arm.yaml:4: frame 0 nominal: key 'theta'"),
+                             HasSubstr("degrees?")));
+  EXPECT_THAT(with_nominal("d: 400"), HasSubstr("millimetres?"));
+  EXPECT_THAT(with_nominal("gear: 0"), HasSubstr("a ratio other than 0"));
+}
+
 TEST(SerialFile, IsRefusedForAJointThatIsNoneAndAMassBelowZero) {
   EXPECT_THAT(
       refusal(with_frames("  - {name: j1, joint: spherical}\n")),
