@@ -22,7 +22,8 @@ constexpr double kMostTrim = 10;                          // degrees
 
 std::string rounded(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4f", value == 0 ? 0 : value);
+  const double to_last_digit = std::round(value * 1e4) / 1e4;
+  std::snprintf(text, sizeof text, "%.4f", to_last_digit + 0.0);  // no sign at zero
   return text;
 }
 
@@ -97,8 +98,8 @@ std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
   lack(radii > 1e-9 ? radii : 0,
        "radii of single towers, up to " + rounded(1e3 * radii) + " mm from that of all");
   lack(tilt, "tilts of towers, up to " + rounded(1e3 * tilt) + " mrad");
-  lack(scale, "scales of towers, up to " + rounded(1e6 * scale) +
-                  " ppm: multiply the steps per mm by them");
+  lack(scale,
+       "scales of towers, up to " + rounded(1e6 * scale) + " ppm: divide the steps per mm by them");
   lack(delta.value.segment<2>(kEffector).norm(), "the effector's tilt");
   const Eigen::Vector2d across = 1e3 * delta.value.segment<2>(kTool);
   lack(across.norm(),

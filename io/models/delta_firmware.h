@@ -18,7 +18,7 @@ struct FirmwareText {
 };
 
 /// What firmwares hold of a delta: one radius of all towers, and of each its angle, rod and
-/// endstop. Its scales, which the steps per mm take, and the tool are given.
+/// endstop. Its scales, which the steps per mm are divided by, and the tool are given.
 ControllerNumbers firmware_numbers(const linear_delta::Delta& delta);
 
 /// The lines of the values `told`, of firmware_numbers, behind `head` in comments. Refuses towers

@@ -17,6 +17,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// The number behind `word` in `text`.
 double number_after(const std::string& text, const std::string& word, size_t from = 0) {
@@ -61,6 +62,22 @@ towers:
                 2e-4);
     EXPECT_NEAR(number_after(made->text, "arm_length: ", stepper), L, 1e-9);
   }
+}
+
+TEST(DeltaFirmware, HasNoSignAtZero) {
+  Problems problems;
+  const auto delta = linear_delta::read(*parse_yaml(R"(robot: d
+kind: linear-delta
+towers:
+  - {radius: 0.105, angle: 3.66519142, rod: 0.2153, endstop: 0.5821}
+  - {radius: 0.105, angle: 5.75958653, rod: 0.2153, endstop: 0.5821}
+  - {radius: 0.105, angle: 1.57079632, rod: 0.2153, endstop: 0.5821}
+)",
+                                                    "d.yaml"),
+                                        problems);
+  const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
+  ASSERT_TRUE(made);
+  EXPECT_THAT(made->text, Not(HasSubstr("-0.0000")));
 }
 
 // By Marlin's own sums (module/delta.cpp, motion.cpp): each carriage meets its endstop, backs off
@@ -113,7 +130,9 @@ TEST(DeltaFirmware, NamesWhatItLacksAndRefusesOtherTowers) {
   const auto made = delta_firmware(delta, delta.value, "", "d.yaml");
   ASSERT_TRUE(made);
   EXPECT_THAT(made->left_out, Contains(HasSubstr("up to 2.0000 mrad")));
-  EXPECT_THAT(made->left_out, Contains(HasSubstr("up to 100.0000 ppm")));
+  // A carriage goes scale times what it is told: with fewer steps to the mm as far as that.
+  EXPECT_THAT(made->left_out,
+              Contains(HasSubstr("up to 100.0000 ppm: divide the steps per mm by them")));
   std::swap(delta.value[linear_delta::index(0, linear_delta::kAngle)],
             delta.value[linear_delta::index(1, linear_delta::kAngle)]);
   EXPECT_FALSE(delta_firmware(delta, delta.value, "", "d.yaml"));
