@@ -130,6 +130,23 @@ TEST_F(ForControllers, SaysHowFarRowsThatUndoATableAreOffWhereTheMakersBetaIsInN
   EXPECT_THAT(ran.out, HasSubstr("# The maker's angles beta are in no row: those that undo it"));
 }
 
+// The numbers are fitted to a controller that turns its joints by the maker's ratios.
+TEST_F(ForControllers, NamesTheMakersGearRatiosAndThoseThatAreFoundApart) {
+  const std::string robot = R"(robot: arm
+kind: serial
+frames:
+  - {name: j1, joint: revolute, r: 0.4, gear: 1.001, nominal: {gear: 1}}
+  - {name: j2, joint: revolute, alpha: -pi/2, d: 0.15, gear: -2}
+  - {name: j3, joint: revolute, d: 0.6}
+)";
+  const Ran ran = convert(robot, "--to offsets");
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("left out: the gear ratio of j1 as it was found, 1.001: the "
+                                 "controller keeps the maker's, 1\n"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("the gear ratio of j1, ")));
+  EXPECT_THAT(ran.out, HasSubstr("left out: the gear ratio of j2, -2: positions there are"));
+}
+
 constexpr const char* kUrFile = R"(kinematics:
   shoulder: {x: 0, y: 0, z: 0.1807, roll: 0, pitch: 0, yaw: 0}
   upper_arm: {x: 0, y: 0, z: 0, roll: 1.5707963267948966, pitch: 0, yaw: 0}

@@ -30,6 +30,14 @@ void note_transmissions(const serial::Model& model, bool coupled) {
     note("left out: the coupling of joints: positions there are coupling times readings");
 }
 
+void note_gears(const serial::Model& model) {
+  for (const serial::Frame& frame : model.frames)
+    if (frame.gear != frame.gear_nominal)
+      note("left out: the gear ratio of " + frame.name + " as it was found, " +
+           format_number(frame.gear) + ": the controller keeps the maker's, " +
+           format_number(frame.gear_nominal));
+}
+
 Result<serial::Model> serial_model(const Node& robot, const std::string& file,
                                    const std::string& to) {
   if (robot.find("kind")->text != "serial")

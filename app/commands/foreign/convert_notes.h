@@ -18,6 +18,9 @@ void note_effects(const Node& robot);
 /// The same of a serial robot's gears, and of its coupling unless the program has it (`coupled`).
 void note_transmissions(const serial::Model& model, bool coupled);
 
+/// Names the gears whose ratios were found to be others than the maker's, which a controller keeps.
+void note_gears(const serial::Model& model);
+
 /// The serial robot that a robot file describes, its effects apart; `file` and the format `to` in
 /// messages.
 Result<serial::Model> serial_model(const Node& robot, const std::string& file,

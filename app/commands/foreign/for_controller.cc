@@ -106,7 +106,7 @@ Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) 
   const auto model = serial_model(robot, format.file, format.to);
   if (!model) return tl::unexpected(model.error());
   note_effects(robot);
-  note_transmissions(*model, false);
+  note_gears(*model);
   const auto robots = robots_of(robot);
   if (!robots) return tl::unexpected(robots.error());
   ControllerNumbers numbers =
@@ -123,6 +123,7 @@ Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) 
   told.model = serial::read(robots->geometry->text().describe(told.fit.xi), problems);
   told.before = serial::read(robots->geometry->text().describe(numbers.start), problems);
   if (problems.any()) return bad_input(problems);
+  note_transmissions(told.model, false);
   return told;
 }
 
