@@ -2,8 +2,6 @@
 // besides may mean thousands by its commas, or by its points.
 #include "io/files/cell_numbers.h"
 
-#include "kinematics/description.h"
-
 namespace selfcal {
 
 void CellNumbers::begin(char separator) {
@@ -23,7 +21,7 @@ tl::expected<double, std::string> CellNumbers::read(std::string_view cell) {
       text = with_point_;
     }
   }
-  const auto number = parse_number(text);
+  const auto number = parse_(text);
   if (!number) return tl::unexpected("expected a number, got '" + std::string(cell) + "'");
   if (commas_ && points_)
     return tl::unexpected("decimal commas and decimal points in one file: '" + std::string(cell) +

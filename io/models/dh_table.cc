@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/cell_numbers.h"
 #include "io/files/csv.h"
 #include "io/files/file.h"
 #include "io/files/units.h"
@@ -70,7 +71,7 @@ struct Column {
 class Table {
  public:
   std::optional<RowFault> take_header(Cells cells, char separator) {
-    decimal_commas_ = separator != ',';
+    numbers_.begin(separator);
     std::vector<Heading> headings;
     for (const std::string_view cell : cells) headings.push_back(heading_of(cell));
     const bool has_a = std::ranges::find(headings, "a", &Heading::name) != headings.end();
@@ -114,6 +115,8 @@ class Table {
       if (!value) return value.error();
       number[columns_[i].place] = *value;
     }
+    if (number.contains(Place::least) != number.contains(Place::most))
+      return RowFault{"has one of min and max, where limits are both"};
     number[type == "prismatic" ? Place::along_z : Place::theta] += number[Place::offset];
     Node frame = Node::map();
     frame.set("name", Node::of(name)).set("joint", Node::of(type));
@@ -145,12 +148,9 @@ class Table {
   }
 
   tl::expected<double, RowFault> value_of(std::string_view cell, const Column& column, bool slides,
-                                          std::size_t at) const {
-    std::string with_point(cell);
-    if (decimal_commas_) std::ranges::replace(with_point, ',', '.');
-    const auto number = written_number(with_point);
-    if (!number)
-      return tl::unexpected(RowFault{"expected a number, got '" + std::string(cell) + "'", at});
+                                          std::size_t at) {
+    const auto number = numbers_.read(cell);
+    if (!number) return tl::unexpected(RowFault{number.error(), at});
     const bool of_variable = column.place == Place::least || column.place == Place::most ||
                              column.place == Place::offset;
     const bool length =
@@ -166,7 +166,7 @@ class Table {
     return *number * unit->factor;
   }
 
-  bool decimal_commas_ = false;  ///< commas may stand in numbers, for they part no cells
+  CellNumbers numbers_{written_number};
   std::vector<Column> columns_;
   std::vector<Node> frames_;
 };

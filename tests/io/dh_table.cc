@@ -108,6 +108,10 @@ TEST_F(DhTable, NamesWhatItCannotRead) {
   EXPECT_THAT(fault("alpha,a,d,colour\n0,0,0,0\n"), HasSubstr("is none of joint"));
   EXPECT_THAT(fault("alpha [mm],a,d\n1,0,0\n"), HasSubstr("the unit mm is none of"));
   EXPECT_THAT(fault("alpha,a,d,theta\n0,0,0,q1\n"), HasSubstr("row 1: column theta"));
+  EXPECT_THAT(fault("alpha,a,d,min [deg]\n0,0,0,-170\n"),
+              HasSubstr("row 1: has one of min and max, where limits are both"));
+  EXPECT_THAT(fault("alpha;a [mm];d [mm]\n0;1,000;0.5\n"),
+              HasSubstr("decimal commas and decimal points in one file"));
   EXPECT_THAT(fault("alpha,a,d,type\n0,0,0,ball\n"), HasSubstr("revolute, prismatic or fixed"));
 }
 
