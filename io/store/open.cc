@@ -122,16 +122,28 @@ Result<std::int64_t> make_store(const fs::path& folder, sqlite3* damaged) {
   return damaged == nullptr ? Result<std::int64_t>(0) : salvage(damaged, database);
 }
 
+/// Whether a store was made whole and has not got its name: the power went between the setting
+/// aside of a damaged one and that, and it has all that could be read.
+bool is_made(const fs::path& folder) {
+  const fs::path path = unnamed_store_in(folder);
+  if (std::error_code error; !fs::exists(path, error)) return false;
+  const Result<Connection> made = connect(path, SQLITE_OPEN_READWRITE);
+  if (!made || version(made->get()) != static_cast<int>(migrations().size())) return false;
+  return is_sound(made->get()).value_or(false);
+}
+
 /// Begins a new store in the place of what is there, with what can be read of `damaged`; what is
 /// said of it.
 Result<std::string> begin_anew(const fs::path& folder, const std::string& why, Connection damaged) {
-  const Result<std::int64_t> rows = make_store(folder, damaged.get());
+  const bool made = damaged == nullptr && is_made(folder);
+  const Result<std::int64_t> rows = made ? 0 : make_store(folder, damaged.get());
   if (!rows) return tl::unexpected(rows.error());
   damaged.reset();
   const Result<std::string> aside = set_store_aside(folder);
   if (!aside) return tl::unexpected(aside.error());
   if (auto named = name_store(folder); !named) return tl::unexpected(named.error());
   if (why.empty()) return std::string();
+  if (made) return why + "; the one that was made in its place is used";
   return why + (aside->empty() ? "" : " and is now " + *aside) + "; a new store was begun" +
          (*rows == 0 ? "" : " with " + std::to_string(*rows) + " rows that could be read");
 }
@@ -150,7 +162,10 @@ Result<Connection> connect_to_sound(const fs::path& folder, std::string& said) {
     if (!sound) return tl::unexpected(sound.error());
     const bool emptied = *sound && had_store(folder) && version(database->get()) == 0;
     const bool writable = !is_locked_by_its_header(database->get(), path);
-    if (*sound && !emptied && writable) return database;
+    if (*sound && !emptied && writable) {
+      remove_unnamed_store(folder);
+      return database;
+    }
     begun = begin_anew(folder, emptied ? "was emptied" : "was damaged", *std::move(database));
   }
   if (!begun) return tl::unexpected(begun.error());

@@ -1,6 +1,7 @@
 // A store that was lost is not taken for that of a new robot; one that is new is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
@@ -83,6 +84,30 @@ TEST(StoreLost, AStoreThatWasNeverMadeIsNotMissed) {
   EXPECT_EQ(said_of(scratch), "");
   EXPECT_FALSE(std::filesystem::exists(scratch.folder() / "selfcal.db.new"));
   EXPECT_FALSE(std::filesystem::exists(scratch.folder() / "selfcal.db.new-journal"));
+}
+
+// A power cut between a damaged store's going aside and the naming of the one with its rows.
+TEST(StoreLost, WhatWasReadOfADamagedStoreIsNotLostBeforeItHasItsName) {
+  const Scratch scratch;
+  std::string content;
+  {
+    const auto store = opened(scratch.folder());
+    fill(*store);
+    content = content_of(*store);
+  }
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((scratch.folder() / "selfcal.db").c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  std::filesystem::rename(scratch.folder() / "selfcal.db", scratch.folder() / "selfcal.db.new");
+  scratch.write("selfcal.db.damaged-1", "what was damaged");
+
+  const auto again = Store::open(scratch.folder()).value();
+
+  EXPECT_THAT(again.set_aside, HasSubstr("the one that was made in its place is used"));
+  EXPECT_EQ(content_of(*again.store), content);
+  EXPECT_FALSE(std::filesystem::exists(scratch.folder() / "selfcal.db.new"));
 }
 
 TEST(StoreLost, AFileCutAnywhereIsSaidOrLacksNothing) {
