@@ -103,10 +103,41 @@ TiXmlElement link_element(const serial::Frame& frame) {
   return link;
 }
 
-TiXmlElement joint_element(const serial::Frame& frame, const std::string& parent) {
+/// Between what a joint's position is, rad or m.
+struct Range {
+  double lower = 0, upper = 0;
+  bool limited() const { return lower < upper; }
+};
+
+/// By frame, of those that move: coupling times gear times the readings within their limits;
+/// without limits where one of these has none.
+std::vector<Range> ranges_of(const serial::Model& robot) {
+  const std::vector<int> moving = serial::moving_frames(robot);
+  std::vector<Range> ranges(robot.frames.size());
+  for (size_t j = 0; j < moving.size(); ++j) {
+    Range range;
+    bool limited = true;
+    for (size_t k = 0; k < moving.size(); ++k) {
+      const serial::Frame& by = robot.frames[static_cast<size_t>(moving[k])];
+      const double factor =
+          by.gear * (robot.coupling.size() > 0 ? robot.coupling(static_cast<Eigen::Index>(j),
+                                                                static_cast<Eigen::Index>(k))
+                                               : (j == k ? 1 : 0));
+      if (factor == 0) continue;
+      limited = limited && by.lower < by.upper;
+      range.lower += std::min(factor * by.lower, factor * by.upper);
+      range.upper += std::max(factor * by.lower, factor * by.upper);
+    }
+    if (limited) ranges[static_cast<size_t>(moving[j])] = range;
+  }
+  return ranges;
+}
+
+TiXmlElement joint_element(const serial::Frame& frame, const Range& range,
+                           const std::string& parent) {
   using serial::Motion;
   TiXmlElement joint = named_element("joint", frame.name);
-  const bool limited = frame.lower < frame.upper;
+  const bool limited = range.limited();
   const bool moves = frame.motion != Motion::fixed;
   joint.SetAttribute("type", !moves                              ? "fixed"
                              : frame.motion == Motion::prismatic ? "prismatic"
@@ -120,10 +151,8 @@ TiXmlElement joint_element(const serial::Frame& frame, const std::string& parent
   axis.SetAttribute("xyz", "0 0 1");
   joint.InsertEndChild(axis);
   if (!limited && frame.motion == Motion::revolute) return joint;
-  const double lower = frame.gear * (frame.gear > 0 ? frame.lower : frame.upper);
-  const double upper = frame.gear * (frame.gear > 0 ? frame.upper : frame.lower);
-  limit.SetAttribute("lower", format_number(limited ? lower : -1));
-  limit.SetAttribute("upper", format_number(limited ? upper : 1));
+  limit.SetAttribute("lower", format_number(limited ? range.lower : -1));
+  limit.SetAttribute("upper", format_number(limited ? range.upper : 1));
   limit.SetAttribute("effort", "0");
   limit.SetAttribute("velocity", "0");
   joint.InsertEndChild(limit);
@@ -173,12 +202,14 @@ UrdfText urdf_of(const serial::Model& robot) {
     parent += "_";
   root.InsertEndChild(named_element("link", parent));
   bool masses = false;
-  for (const serial::Frame& frame : robot.frames) {
+  const std::vector<Range> ranges = ranges_of(robot);
+  for (size_t f = 0; f < robot.frames.size(); ++f) {
+    const serial::Frame& frame = robot.frames[f];
     root.InsertEndChild(link_element(frame));
-    root.InsertEndChild(joint_element(frame, parent));
+    root.InsertEndChild(joint_element(frame, ranges[f], parent));
     parent = frame.name;
     masses = masses || frame.mass.has_value();
-    if (frame.motion == serial::Motion::prismatic && !(frame.lower < frame.upper))
+    if (frame.motion == serial::Motion::prismatic && !ranges[f].limited())
       out.left_out.push_back("limits of joint " + frame.name +
                              ", which a URDF asks for and the robot file lacks: -1 to 1 m written");
   }

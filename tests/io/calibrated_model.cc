@@ -185,5 +185,23 @@ frames:
   EXPECT_THAT(made.left_out, Contains(HasSubstr("moments of inertia")));
 }
 
+// Its joints' positions are coupling times gear times what the robot reads.
+TEST(Urdf, OfARobotAloneHasTheLimitsOfItsPositions) {
+  const UrdfText made = urdf_of(model_in(R"(robot: r
+kind: serial
+frames:
+  - {name: j1, joint: revolute, limits: [-1, 2], gear: -1}
+  - {name: j2, joint: revolute, alpha: -pi/2, limits: [0, 0.5]}
+  - {name: j3, joint: revolute, d: 0.3}
+coupling: [[1, 0, 0], [1, 2, 0], [0, 1, 1]]
+)"));
+  const auto chain = read_urdf(made.text, "r.urdf", {});
+  ASSERT_TRUE(chain) << chain.error().what;
+  const std::vector<ChainJoint>& joints = chain->chain.joints;
+  EXPECT_EQ(std::pair(joints[0].lower, joints[0].upper), std::pair(-2.0, 1.0));
+  EXPECT_EQ(std::pair(joints[1].lower, joints[1].upper), std::pair(-2.0, 2.0));
+  EXPECT_EQ(joints[2].lower, joints[2].upper) << "j3 turns without end";
+}
+
 }  // namespace
 }  // namespace selfcal
