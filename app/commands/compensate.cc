@@ -152,7 +152,7 @@ int compensate_command(const CompensateArguments& arguments) {
     return tell({kInputIsBad, arguments.calibrated + ": is no calibration of the robot in " +
                                   arguments.nominal + ": the maker's figures differ"});
   const auto joints = static_cast<Eigen::Index>(nominal->joints().size());
-  const auto wanted = read_poses(arguments.poses, static_cast<int>(joints));
+  const auto wanted = read_poses(arguments.poses, nominal->joints());
   if (!wanted) return tell(wanted.error());
   const Compensation compensation(nominal, calibrated, operating_point(arguments));
   std::string text = std::string(kPoseColumns);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "constraints/methods/maker.h"
 #include "io/files/cell_numbers.h"
 #include "io/files/csv.h"
+#include "io/files/plausible.h"
 
 namespace selfcal {
 namespace {
@@ -17,7 +19,8 @@ constexpr double kUnit = 1e-3;  // off 1 that a quaternion's length may be
 /// Places of the columns, those of the pose first, then the joints' if there are any.
 class PoseReader {
  public:
-  explicit PoseReader(int joints) : joints_(joints) {}
+  explicit PoseReader(const std::vector<Joint>& robot)
+      : robot_(robot), joints_(static_cast<int>(robot.size())) {}
 
   std::optional<RowFault> take_header(Cells names, char separator) {
     cells_.begin(separator);
@@ -45,7 +48,11 @@ class PoseReader {
       if (i < 3 && std::abs(*number) > kFarthestPlace)
         return RowFault{"expected metres (millimetres?)", places_[i]};
       numbers[static_cast<Eigen::Index>(i)] = *number;
-      if (i >= kPose) continue;
+      if (i >= kPose) {
+        if (auto fault = joint_fault(robot_[i - kPose], *number, Readings::any))
+          return RowFault{std::move(*fault), places_[i]};
+        continue;
+      }
       std::string text(cells[places_[i]]);
       std::ranges::replace(text, ',', '.');
       pose.text += (i > 0 ? "," : "") + text;
@@ -69,6 +76,7 @@ class PoseReader {
     return static_cast<std::size_t>(at - names.begin());
   }
 
+  const std::vector<Joint>& robot_;
   int joints_;
   CellNumbers cells_;
   std::vector<std::size_t> places_;
@@ -77,7 +85,8 @@ class PoseReader {
 
 }  // namespace
 
-Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path, int joints) {
+Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path,
+                                           const std::vector<Joint>& joints) {
   PoseReader reader(joints);
   const auto done = read_csv(
       path,

@@ -21,7 +21,9 @@ struct WantedPose {
 
 /// The rows of a CSV file with the columns x y z (m) and qw qx qy qz (unit), and q1 … of all joints
 /// or of none. Refuses, with file, row and column, a file without one of these, a cell that is no
-/// number, a place outside a workshop, a quaternion whose length is not 1, and a file without rows.
-Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path, int joints);
+/// number, a place outside a workshop, readings that no joint has, a quaternion whose length is not
+/// 1, and a file without rows.
+Result<std::vector<WantedPose>> read_poses(const std::filesystem::path& path,
+                                           const std::vector<Joint>& joints);
 
 }  // namespace selfcal

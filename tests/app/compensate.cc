@@ -176,6 +176,8 @@ TEST_F(CompensateProgram, RefusesTheCalibrationOfAnotherRobotAndPosesThatAreNone
   EXPECT_EQ(turned.status, 3);
   EXPECT_THAT(turned.out, HasSubstr("poses.csv"));
   EXPECT_FALSE(std::filesystem::exists(at("joints.csv")));
+  write_poses("0.5,0,0.5,1,0,0,0,0,0,0,0,0,90\n");
+  EXPECT_THAT(compensate().out, HasSubstr("row 1: column q6: 90 is more than four turns (degrees"));
   EXPECT_EQ(compensate(" --payload-centre 0 0 0.1").status, 2) << "a centre of no payload";
 }
 

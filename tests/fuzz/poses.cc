@@ -5,7 +5,9 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace selfcal;
-  const auto poses = read_poses(given_folder().write("poses.csv", text_of(data, size)), 3);
+  const auto poses =
+      read_poses(given_folder().write("poses.csv", text_of(data, size)),
+                 std::vector<Joint>(3, Joint{.name = "j", .quantity = Quantity::angle}));
   if (!poses) return 0;
   promise(!poses->empty(), "accepted without a row");
   for (const WantedPose& pose : *poses) {
