@@ -28,8 +28,11 @@ struct SetNoise {
   const SetPlan* plan = nullptr;
   const Observations* data = nullptr;
   int lengths = 0, angles = 0;  ///< scalars of a row
-  double equations = 0, fitted = 0;
+  double equations = 0;
+  double own = 0, fitted = 0;  ///< freedoms of its own unknowns, and with its part of the robot's
 
+  /// So many equations are left to tell of the robot and of the noise.
+  double beyond_own() const { return std::max(equations - own, 0.0); }
   size_t count() const { return plan->items.size(); }
   int row(size_t i) const { return plan->items[i].row; }
   /// Length of the part over the noise of its row.
@@ -38,26 +41,49 @@ struct SetNoise {
   }
 };
 
-double robust(const SetNoise& set, bool angle) {
-  const int scalars = angle ? set.angles : set.lengths;
-  if (scalars == 0) return 1;
-  std::vector<double> norms(set.count());
-  for (size_t i = 0; i < norms.size(); ++i) norms[i] = set.part(i, angle);
-  return median(std::move(norms)) / chi_quantile(scalars, 0.5) *
-         freedom_factor(set.equations, set.fitted);
+/// Squares of what is left of rows, of one set or of several, and of how many scalars they are.
+struct Squares {
+  double length = 0, angle = 0;  ///< m^2, rad^2
+  double lengths = 0, angles = 0;
+  double fitted = 0;
+
+  void operator+=(const Squares& other) {
+    length += other.length;
+    angle += other.angle;
+    lengths += other.lengths;
+    angles += other.angles;
+    fitted += other.fitted;
+  }
+
+  /// 1 sigma of one scalar; 1 of a quantity that there is none of.
+  Scale sigma() const {
+    const double factor = freedom_factor(lengths + angles, fitted);
+    return {lengths > 0 ? std::sqrt(length / lengths) * factor : 1,
+            angles > 0 ? std::sqrt(angle / angles) * factor : 1};
+  }
+};
+
+/// What the squares would be, were all rows as good as the middle one.
+Squares robust_squares(const SetNoise& set) {
+  const auto rows = static_cast<double>(set.count());
+  const auto square = [&](int scalars, bool angle) {
+    if (scalars == 0) return 0.0;
+    std::vector<double> norms(set.count());
+    for (size_t i = 0; i < norms.size(); ++i) norms[i] = set.part(i, angle);
+    return rows * scalars * std::pow(median(std::move(norms)) / chi_quantile(scalars, 0.5), 2);
+  };
+  return {square(set.lengths, false), square(set.angles, true), rows * set.lengths,
+          rows * set.angles, set.fitted};
 }
 
-double root_mean_square(const SetNoise& set, const std::vector<char>& outlier, bool angle) {
-  double sum = 0, count = 0, kept = 0;
-  for (size_t i = 0; i < set.count(); ++i) {
-    if (outlier[set.row(i)]) continue;
-    const double part = set.part(i, angle);
-    sum += part * part;
-    count += angle ? set.angles : set.lengths;
-    kept += set.angles + set.lengths;
-  }
-  if (count == 0) return 1;
-  return std::sqrt(sum / count) * freedom_factor(kept, set.fitted);
+Squares squares(const SetNoise& set, const std::vector<char>& outlier) {
+  Squares sum;
+  sum.fitted = set.fitted;
+  for (size_t i = 0; i < set.count(); ++i)
+    if (!outlier[set.row(i)])
+      sum += {std::pow(set.part(i, false), 2), std::pow(set.part(i, true), 2),
+              static_cast<double>(set.lengths), static_cast<double>(set.angles), 0};
+  return sum;
 }
 
 Scale at_least(Scale a, double length, double angle) {
@@ -82,29 +108,17 @@ bool find_outliers(const SetNoise& set, const Scale& scale, const NoiseRule& rul
   return far.size() > most;
 }
 
-/// Root mean squares of the scales over all sets of one method and stated noise, weighed by
-/// equations.
-void pool(const std::vector<Set>& sets, const std::vector<SetNoise>& by_set,
-          std::vector<Scale>& scales) {
+/// By set, the squares of all sets of its method and stated noise together.
+std::vector<Squares> pooled(const std::vector<Set>& sets, const std::vector<Squares>& by_set) {
   using Kind = std::tuple<std::string_view, double, double>;
-  struct Sum {
-    double length = 0, angle = 0, weight = 0;
-  };
-  std::map<Kind, Sum> sums;
   const auto kind = [&](size_t s) {
     return Kind(sets[s].method->name(), sets[s].noise, sets[s].noise_angle);
   };
-  for (size_t s = 0; s < sets.size(); ++s) {
-    Sum& sum = sums[kind(s)];
-    sum.length += by_set[s].equations * scales[s].length * scales[s].length;
-    sum.angle += by_set[s].equations * scales[s].angle * scales[s].angle;
-    sum.weight += by_set[s].equations;
-  }
-  for (size_t s = 0; s < sets.size(); ++s) {
-    const Sum& sum = sums[kind(s)];
-    if (by_set[s].equations > 0)
-      scales[s] = {std::sqrt(sum.length / sum.weight), std::sqrt(sum.angle / sum.weight)};
-  }
+  std::map<Kind, Squares> sums;
+  for (size_t s = 0; s < sets.size(); ++s) sums[kind(s)] += by_set[s];
+  std::vector<Squares> list;
+  for (size_t s = 0; s < sets.size(); ++s) list.push_back(sums[kind(s)]);
+  return list;
 }
 
 }  // namespace
@@ -115,6 +129,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
                      const NoiseRule& rule) {
   const std::vector<Set>& sets = equations.data().sets;
   std::vector<SetNoise> by_set(sets.size());
+  std::vector<Squares> left(sets.size());
   double total = 0;
   const RowNorm* next = norms.data();
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -126,7 +141,9 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
       ++(quantity == Quantity::angle ? set.angles : set.lengths);
     set.equations = static_cast<double>(set.count()) * (set.lengths + set.angles);
     next += set.count();
-    total += set.equations;
+    set.own = equations.tangent_dimension(static_cast<int>(s)) +
+              equations.group_freedoms(static_cast<int>(s));
+    total += set.beyond_own();
   }
   Noise noise;
   noise.estimated.resize(sets.size());
@@ -143,19 +160,19 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
     SetNoise& set = by_set[s];
     if (set.count() == 0) continue;
     const double shared = std::max(rule.global_freedom - equations.nuisance_columns(), 0.0);
-    set.fitted = shared * set.equations / total + equations.tangent_dimension(static_cast<int>(s)) +
-                 equations.group_freedoms(static_cast<int>(s));
-    noise.estimated[s] = {robust(set, false), robust(set, true)};
+    set.fitted = set.own + (total > 0 ? shared * set.beyond_own() / total : 0);
+    left[s] = robust_squares(set);
+    noise.estimated[s] = left[s].sigma();
     if (!rule.reject) continue;
     noise.at_bound[s] = find_outliers(set, weighed(s), rule, noise.outlier);
-    noise.estimated[s] = {root_mean_square(set, noise.outlier, false),
-                          root_mean_square(set, noise.outlier, true)};
+    left[s] = squares(set, noise.outlier);
+    noise.estimated[s] = left[s].sigma();
   }
-  std::vector<Scale> pooled = noise.estimated;
-  pool(sets, by_set, pooled);
+  const std::vector<Squares> together = pooled(sets, left);
   for (size_t s = 0; s < sets.size(); ++s)
-    if (rule.pool || by_set[s].equations - by_set[s].fitted < kFewFreedoms)
-      noise.estimated[s] = pooled[s];
+    if (by_set[s].count() > 0 &&
+        (rule.pool || by_set[s].equations - by_set[s].fitted < kFewFreedoms))
+      noise.estimated[s] = together[s].sigma();
   for (size_t s = 0; s < sets.size(); ++s) {
     noise.estimated[s] = at_least(noise.estimated[s], least.length, least.angle);
     noise.used[s] = weighed(s);

@@ -1,0 +1,42 @@
+// What the rows of each set leave, over what was fitted to them: the noise of the simulated
+// machine.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "constraints/estimation/identification.h"
+#include "tests/sim/simulated_robot.h"
+
+namespace selfcal {
+namespace {
+
+/// Sets of `robots` simulated ones, every row of which identifies; root mean square of the noise
+/// that is found of the first set, over the one that it has.
+double noise_found(const std::string& sets, double noise, int robots) {
+  double squares = 0;
+  for (int seed = 1; seed <= robots; ++seed) {
+    const Simulated simulated =
+        made("robot: rx90.robot.yaml\nseed: " + std::to_string(seed) +
+             "\nerrors: {length: 1.0e-3, angle: 1.0e-3}\ncheck: 0\nsets:\n" + sets);
+    const Solution solution = identify(rx90(), simulated.data);
+    EXPECT_TRUE(solution.converged) << seed;
+    squares += std::pow(solution.sets.front().noise_sigma / noise, 2) / robots;
+  }
+  return std::sqrt(squares);
+}
+
+TEST(NoiseOfSets, ThatAreMetExactlySaysNothingOfTheOthers) {
+  // Three touches of an unknown plane leave nothing. The others have nine freedoms each, of which
+  // the robot takes a few: some ten a robot, 3 sigma of a root mean square of 20 robots.
+  const std::string few = ": {method: plane, noise_true: 1.0e-4, rows: 3}\n",
+                    many = ": {method: plane, noise_true: 1.0e-4, rows: 12}\n";
+  const double found =
+      noise_found("  a" + many + "  b" + many + "  c" + few + "  d" + few + "  e" + few + "  f" +
+                      few + "  tracker: {method: position, noise: 1.0e-4, rows: 15}\n",
+                  1e-4, 20);
+  EXPECT_NEAR(found, 1, 3 / std::sqrt(2 * 10 * 20.0));
+}
+
+}  // namespace
+}  // namespace selfcal
