@@ -183,8 +183,9 @@ class Iteration {
 
   /// The residuals are as large as the noise that they are weighed with.
   bool agrees(double freedoms) const {
+    const double of_groups = equations_.nuisance_dimensions() - equations_.nuisance_columns();
     const double ratio =
-        system_.passed().cost / std::max(system_.passed().equations - freedoms, 1.0);
+        system_.passed().cost / std::max(system_.passed().equations - freedoms - of_groups, 1.0);
     return ratio > 0.8 && ratio < 1.25;
   }
 

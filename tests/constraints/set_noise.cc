@@ -38,5 +38,15 @@ TEST(NoiseOfSets, ThatAreMetExactlySaysNothingOfTheOthers) {
   EXPECT_NEAR(found, 1, 3 / std::sqrt(2 * 10 * 20.0));
 }
 
+TEST(NoiseOfSets, WithSharedPointsIsEachOnesOwn) {
+  // Of one kind, one of them twenty times as noisy. Half of the equations go into the points.
+  const double found = noise_found(
+      "  quiet: {method: position-constraint, noise_true: 2.0e-5, rows: 60, rows_per_group: 2}\n"
+      "  loud: {method: position-constraint, noise_true: 4.0e-4, rows: 60, rows_per_group: 2}\n"
+      "  tracker: {method: position, noise: 1.0e-3, rows: 10}\n",
+      2e-5, 5);
+  EXPECT_LT(found, 2);  // twenty, were it one noise for both
+}
+
 }  // namespace
 }  // namespace selfcal
