@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "constraints/estimation/shrinkage.h"
 #include "constraints/identifiability/gauge.h"
 #include "constraints/statistics.h"
 
@@ -81,6 +82,9 @@ class Adjustment {
     if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
     place_scale();
+    if (adjusted_.scale < 0 && options_.priors)
+      adjusted_.fitted =
+          without_shrinkage(equations_, adjusted_.prior, std::move(adjusted_.fitted));
     return std::move(adjusted_);
   }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/estimation/shrinkage.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/readable.h"
@@ -98,7 +99,7 @@ class ScaleTest {
     for (size_t k = 0; k < known_.size(); ++k) {
       const Eigen::VectorXd follows = follow(at, static_cast<Eigen::Index>(k));
       ScaleLength& length = lengths()[k];
-      length.share = length.value * scale_of(follows);
+      length.share = length.value * growth(equations_.robot(), prior_.free, follows);
       const double carried = std::abs(length.share) * static_cast<double>(known_.size());
       if (place_[k] && carried < kLeastShare) continue;
       length.moves = end_position(follows);
@@ -155,19 +156,6 @@ class ScaleTest {
   /// How the unknowns follow the length, one of it for one.
   Eigen::VectorXd follow(const Eliminated& at, Eigen::Index k) const {
     return spread(at.x.triangularView<Eigen::Upper>().solve(at.x_known.col(k)));
-  }
-
-  /// The common relative change of the link lengths in `step`, weighed as the maker knows them.
-  double scale_of(const Eigen::VectorXd& step) const {
-    const auto& parameters = equations_.robot().parameters();
-    double change = 0, squares = 0;
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      const Parameter& p = parameters[i];
-      if (!p.link_length || !prior_.free[i]) continue;
-      change += p.nominal * step[static_cast<Eigen::Index>(i)] / std::pow(p.tolerance, 2);
-      squares += std::pow(p.nominal / p.tolerance, 2);
-    }
-    return squares > 0 ? change / squares : 0;
   }
 
   double end_position(const Eigen::VectorXd& step) const {

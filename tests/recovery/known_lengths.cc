@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "constraints/statistics.h"
@@ -14,9 +16,9 @@ namespace {
 using testing::HasSubstr;
 
 /// The entry of a step of `distance` (m) from plane a.
-SetPart step(const char* name, const char* distance, int rows) {
+SetPart step(const char* name, const char* distance, int rows, const char* noise = "2e-6") {
   Node node = entry({{"method", "plane"}});
-  node.set("parallel_to", entry({{"set", "a"}, {"distance", distance}, {"noise", "2e-6"}}));
+  node.set("parallel_to", entry({{"set", "a"}, {"distance", distance}, {"noise", noise}}));
   return {name, node, rows};
 }
 
@@ -62,6 +64,30 @@ TEST(KnownLength, IsNotCheckedByWhatTouchesLeave) {
   EXPECT_NEAR(found.scale.excess, 0.5, 2 * found.scale.excess_sigma);
   EXPECT_THAT(found.scale.contradictions, testing::IsEmpty());
   EXPECT_FALSE(found.scale.against_maker);
+}
+
+// A robot smaller by a share leaves as much less of every touch. Where the size is known to
+// s = 0.1 mm / 200 mm alone, n touches that were believed in that would shrink it by n s of its
+// sigmas: 1.5.
+TEST(KnownLength, ThatIsCoarseIsNotOutvotedByTheScatterOfManyTouches) {
+  const auto robot = robot_of(kRx90);
+  const auto longest = static_cast<std::size_t>(find_parameter(*robot, "r4"));
+  constexpr int kRobots = 4;
+  double off = 0;
+  for (int seed = 1; seed <= kRobots; ++seed) {
+    Random random(static_cast<unsigned>(seed));
+    const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+    std::vector<SetPart> parts = four_planes(800);
+    parts.back() = step("d", "0.2", 800, "1e-4");
+    Session session = make_session(*robot, truth, parts, 50e-6, random);
+    ASSERT_EQ(session.unreached, "");
+    std::ranges::fill(session.data.rows.check, 0);
+    const ParameterResult found = identify(*robot, session.data).parameters[longest];
+    ASSERT_EQ(found.status, Status::identified);
+    off += (found.value - truth[static_cast<Eigen::Index>(longest)]) / found.sigma / kRobots;
+  }
+  // The step is exact here: what is left is of the shape, a fifth of the sigma.
+  EXPECT_NEAR(off, 0, 3 * 0.2 / std::sqrt(kRobots));
 }
 
 TEST(KnownLength, ThatIsRightIsSaidToCarryTheScaleAlone) {
