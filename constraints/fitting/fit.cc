@@ -14,6 +14,8 @@
 namespace selfcal {
 namespace {
 
+/// Changes of the rows put aside, the noise being kept, until these are kept, too: a row may be far
+/// without itself and near with itself.
 constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
 constexpr int kBarred = 3;           ///< of them barred by a loop that does not close
@@ -156,14 +158,18 @@ class Iteration {
     const Noise noise =
         estimate_noise(equations_, system_.passed().norms, noise_rule(stage_, freedoms));
     const bool keep = before == NoiseStage::nuisance;
-    const bool same_rows = noise.outlier == noise_.outlier;
+    const bool same_rows =
+        noise.outlier == noise_.outlier || (keep && regroupings_ == kRegroupings);
     const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
     if (arrived && same_rows && same_noise) {
       if (put_masked_outlier_aside()) return;
       return stop(true, *arrived);
     }
-    if (keep && (same_rows || ++regroupings_ > kRegroupings)) return;
-    if (!keep) noise_.used = noise.used;
+    if (keep && same_rows) return;
+    if (keep)
+      ++regroupings_;
+    else
+      noise_.used = noise.used;
     noise_.outlier = noise.outlier;
     noise_.at_bound = noise.at_bound;
     system_.weigh(weighting());

@@ -161,6 +161,24 @@ TEST(Repeats, ThatShareTheirErrorMakeNothingSurer) {
   EXPECT_GT(tally.errors, 10 * kRobots);
 }
 
+// With this seed a touch is beyond the noise of the others without itself, and within it with
+// itself: put aside and taken back for ever, it would keep the fit from its end.
+TEST(RowAtTheBound, LetsTheFitEnd) {
+  const auto robot = robot_of(kRx90);
+  constexpr int kSeed = 38;
+  std::string text = "robot: r\nseed: " + std::to_string(kSeed) +
+                     "\nerrors: " + drawn_errors_of(*robot, kSeed) + "\ncheck: 0\nsets:\n";
+  for (const char* name : {"a", "b", "c"})
+    text += std::string("  ") + name + ": {method: plane, noise_true: 1.0e-4, rows: 20}\n";
+  Problems problems;
+  const Scenario scenario = read_scenario(*parse_yaml(text, "scenario"), problems);
+  const Simulated made = make_data_set(scenario, *robot, problems);
+  ASSERT_FALSE(problems.any()) << problems.list.front();
+  const Solution solution = identify(*robot, made.data);
+  EXPECT_TRUE(solution.converged) << solution.stop_reason;
+  EXPECT_LT(solution.iterations, 100);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Stated, Coverage,
     testing::Values(
