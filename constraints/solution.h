@@ -74,15 +74,15 @@ struct AngleFigures {
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
 };
 
-/// Figures of row residuals (m; rad of a row that has angles alone; app/selfcal-data.5 says what
-/// the residual of a row is).
+/// Figures of row residuals: of the rows with lengths (m), or where every row has angles alone, of
+/// these (rad). app/selfcal-data.5 says what the residual of a row is.
 struct Figures {
   int rows = 0;
-  bool angle_alone = false;  ///< of all rows
+  bool angle_alone = false;
   double rms_before = 0, rms_after = 0, mean_after = 0, max_after = 0;
   double rms_without_outliers = 0;
   AngleFigures angle;
-  int configurations = 0;  ///< repeats of one count once
+  int configurations = 0;  ///< of them; repeats of one count once
 };
 
 struct SetFigures {
@@ -93,14 +93,15 @@ struct SetFigures {
 
 /// One row that judges, as a model meets it.
 struct CheckRow {
-  double residual = 0;    ///< m; rad of a row that has angles alone
-  bool outlier = false;   ///< beyond the noise
-  int configuration = 0;  ///< from 0 on; repeats have the same
-  int set = 0;            ///< from 0
-  bool aligned = false;   ///< unknowns of its set were fitted to rows that judge
-  double angle = 0;       ///< rad
-  double noise = 0;       ///< the most that noise alone makes of `residual`
-  int row = 0;            ///< from 0; of the data set
+  double residual = 0;       ///< m; rad of a row that has angles alone
+  bool outlier = false;      ///< beyond the noise
+  int configuration = 0;     ///< from 0 on; repeats have the same
+  int set = 0;               ///< from 0
+  bool aligned = false;      ///< unknowns of its set were fitted to rows that judge
+  double angle = 0;          ///< rad
+  double noise = 0;          ///< the most that noise alone makes of `residual`
+  int row = 0;               ///< from 0; of the data set
+  bool angle_alone = false;  ///< `residual` is one of angles
 };
 
 /// A row before (the maker's robot, placed) and after, for a person to look at.

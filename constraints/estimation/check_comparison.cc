@@ -22,12 +22,13 @@ bool is_false(const CheckRow& before, const CheckRow& after) {
 /// What became of one set's squares.
 struct SetChange {
   double gain = 0;                                       ///< of the residuals
-  bool aligned = false;                                  ///< as CheckRow
+  bool aligned = false, angle_alone = false;             ///< as CheckRow
   double angle_before = 0, angle_loss = 0, scatter = 0;  ///< of the angles; of their losses
 
   void add(const CheckRow& before, const CheckRow& after) {
     gain += std::pow(before.residual, 2) - std::pow(after.residual, 2);
     aligned = after.aligned;
+    angle_alone = after.angle_alone;
     const double b = std::pow(before.angle, 2), a = std::pow(after.angle, 2);
     angle_before += b;
     angle_loss += a - b;
@@ -54,12 +55,13 @@ void for_each_pair(const std::vector<CheckRow>& before, const std::vector<CheckR
   }
 }
 
-/// Of each configuration, on average over its repeats.
-std::vector<double> gains(const std::vector<CheckRow>& before, const std::vector<CheckRow>& after) {
+/// Of each configuration, on average over its repeats; `by_noise` in units of each row's noise.
+std::vector<double> gains(const std::vector<CheckRow>& before, const std::vector<CheckRow>& after,
+                          bool by_noise) {
   std::map<int, std::pair<double, double>> gain_and_rows;
   for_each_pair(before, after, [&](const CheckRow& b, const CheckRow& a) {
     auto& [gain, rows] = gain_and_rows[a.configuration];
-    gain += b.residual - a.residual;
+    gain += (b.residual - a.residual) / (by_noise ? b.noise : 1);
     ++rows;
   });
   std::vector<double> list;
@@ -77,10 +79,12 @@ bool CheckComparison::better() const {
 CheckComparison compare_check_rows(const std::vector<CheckRow>& before,
                                    const std::vector<CheckRow>& after) {
   CheckComparison compared;
+  const bool alone = std::ranges::all_of(after, &CheckRow::angle_alone);
+  const bool alike = alone || std::ranges::none_of(after, &CheckRow::angle_alone);
   double rows = 0, gain = 0;
   std::map<int, SetChange> sets;
   for_each_pair(before, after, [&](const CheckRow& b, const CheckRow& a) {
-    if (!b.outlier && !a.outlier) {
+    if (a.angle_alone == alone && !b.outlier && !a.outlier) {
       compared.rms_before += b.residual * b.residual;
       compared.rms_after += a.residual * a.residual;
       ++rows;
@@ -91,14 +95,15 @@ CheckComparison compare_check_rows(const std::vector<CheckRow>& before,
     compared.rms_before = std::sqrt(compared.rms_before / rows);
     compared.rms_after = std::sqrt(compared.rms_after / rows);
   }
-  compared.p_value = signed_rank_p(gains(before, after));
+  compared.p_value = signed_rank_p(gains(before, after, !alike));
   // Of all, and of each set that only judges: many small gains must not outvote one great loss.
   const auto change_of = [](const auto& each) -> const SetChange& { return each.second; };
-  for (const auto& [set, change] : sets) gain += change.gain;
-  compared.lengths_fall =
-      gain > 0 &&
-      std::ranges::none_of(
-          sets, [](const SetChange& each) { return each.aligned && each.gain < 0; }, change_of);
+  const auto counts = [&](const SetChange& each) { return each.angle_alone == alone; };
+  for (const auto& [set, change] : sets) gain += counts(change) ? change.gain : 0;
+  const auto loses = [&](const SetChange& each) {
+    return counts(each) && each.aligned && each.gain < 0;
+  };
+  compared.lengths_fall = gain > 0 && std::ranges::none_of(sets, loses, change_of);
   compared.angles_rise = std::ranges::any_of(sets, &SetChange::angles_rise, change_of);
   return compared;
 }

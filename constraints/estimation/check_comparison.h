@@ -9,7 +9,7 @@
 namespace selfcal {
 
 struct CheckComparison {
-  /// rms (m; rad of rows that have angles alone) of the rows that neither finds beyond the noise.
+  /// rms (m; rad where all have angles alone) of the rows that neither finds beyond the noise.
   double rms_before = 0, rms_after = 0;
   double p_value = 1;         ///< of the paired test that the rows are met better
   bool lengths_fall = false;  ///< the squares of all rows, false readings left out
@@ -21,6 +21,8 @@ struct CheckComparison {
 /// Rows of one data set in its order; of those that only one model meets nothing is said (a loop
 /// may close for one alone). The paired test is Wilcoxon's, of the signed ranks of the gains
 /// |before| - |after| by configuration; repeats of one share more than their noise and count once.
+/// Where some rows have angles alone and others lengths, the gains are in units of what noise makes
+/// of the row, and the squares are those of lengths.
 /// No row is left out because the model on trial, `after`, makes it far.
 CheckComparison compare_check_rows(const std::vector<CheckRow>& before,
                                    const std::vector<CheckRow>& after);

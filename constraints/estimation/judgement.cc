@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "constraints/statistics.h"
 #include "kinematics/expects.h"
@@ -19,52 +20,57 @@ double size_before(const RowNorm& norm, const RowResidual& same) {
   return same.lengths > 0 ? norm.length : norm.angle;
 }
 
+/// Residuals of one unit that come one by one.
+struct Sums {
+  int rows = 0, kept_rows = 0;
+  double before = 0, after = 0, kept = 0;  ///< squares
+  double mean = 0, max = 0;                ///< after; mean is a sum
+
+  void add(double b, double a, bool left_out) {
+    ++rows;
+    before += b * b;
+    after += a * a;
+    mean += a;
+    max = std::max(max, a);
+    if (left_out) return;
+    kept += a * a;
+    ++kept_rows;
+  }
+  /// Into what has rms_before, rms_after, mean_after and max_after.
+  void put(auto& figures) const {
+    if (rows == 0) return;
+    figures.rms_before = std::sqrt(before / rows);
+    figures.rms_after = std::sqrt(after / rows);
+    figures.mean_after = mean / rows;
+    figures.max_after = max;
+  }
+};
+
 /// Figures of rows that come one by one.
 class Tally {
  public:
   void add(const RowNorm& before, const RowResidual& after, bool left_out) {
-    add_angle(before, after);
-    const double b = size_before(before, after), a = after.size();
-    ++f_.rows;
-    f_.rms_before += b * b;
-    f_.rms_after += a * a;
-    f_.mean_after += a;
-    f_.max_after = std::max(f_.max_after, a);
-    angle_alone_ = angle_alone_ && after.lengths == 0;
-    if (left_out) return;
-    kept_ += a * a;
-    ++kept_rows_;
+    if (after.lengths > 0) lengths_.add(before.length, after.length, left_out);
+    if (after.angles > 0) angles_.add(before.angle, after.angle, left_out);
+    ++rows_;
   }
 
   Figures figures() const {
-    Figures f = f_;
-    if (f.rows == 0) return f;
-    f.angle_alone = angle_alone_;
-    f.rms_before = std::sqrt(f.rms_before / f.rows);
-    f.rms_after = std::sqrt(f.rms_after / f.rows);
-    f.mean_after /= f.rows;
-    f.rms_without_outliers = kept_rows_ > 0 ? std::sqrt(kept_ / kept_rows_) : 0;
-    if (f.angle.rows == 0) return f;
-    f.angle.rms_before = std::sqrt(f.angle.rms_before / f.angle.rows);
-    f.angle.rms_after = std::sqrt(f.angle.rms_after / f.angle.rows);
-    f.angle.mean_after /= f.angle.rows;
+    Figures f;
+    if (rows_ == 0) return f;
+    f.rows = rows_;
+    f.angle_alone = lengths_.rows == 0;
+    const Sums& of = f.angle_alone ? angles_ : lengths_;
+    of.put(f);
+    f.rms_without_outliers = of.kept_rows > 0 ? std::sqrt(of.kept / of.kept_rows) : 0;
+    f.angle.rows = angles_.rows;
+    angles_.put(f.angle);
     return f;
   }
 
  private:
-  void add_angle(const RowNorm& before, const RowResidual& after) {
-    if (after.angles == 0) return;
-    AngleFigures& f = f_.angle;
-    ++f.rows;
-    f.rms_before += before.angle * before.angle;
-    f.rms_after += after.angle * after.angle;
-    f.mean_after += after.angle;
-    f.max_after = std::max(f.max_after, after.angle);
-  }
-
-  Figures f_;  ///< sums
-  bool angle_alone_ = true;
-  double kept_ = 0, kept_rows_ = 0;
+  int rows_ = 0;
+  Sums lengths_, angles_;
 };
 
 /// Of so many rows every one is shown; of more of them every second, third …
@@ -172,7 +178,8 @@ std::vector<CheckRow> check_rows(const Judged& judged) {
     const double sigma = r.lengths > 0 ? scale.length : scale.angle;
     const int scalars = r.lengths > 0 ? r.lengths : r.angles;
     rows.push_back({r.size(), is_outlier(r, judged), 0, r.set, judged.aligned[r.set] != 0, r.angle,
-                    chi_quantile(scalars, kOutlierQuantile) * sigma * r.factor, r.row});
+                    chi_quantile(scalars, kOutlierQuantile) * sigma * r.factor, r.row,
+                    r.lengths == 0});
   }
   return rows;
 }
@@ -200,8 +207,10 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   result.rows = row_figures(data, before, after, outlier, check_outlier);
   result.fit = fit.figures();
   result.check = check.figures();
+  std::set<int> judging;
   for (const CheckRow& each : result.check_rows)
-    result.check.configurations = std::max(result.check.configurations, each.configuration + 1);
+    if (each.angle_alone == result.check.angle_alone) judging.insert(each.configuration);
+  result.check.configurations = static_cast<int>(judging.size());
   for (size_t s = 0; s < data.sets.size(); ++s)
     if (const Figures figures = of_set[s].figures(); figures.rows > 0)
       result.check_by_set.push_back({data.sets[s].name, after.aligned[s] != 0, figures});

@@ -141,6 +141,25 @@ TEST(Verdict, IsNotImprovedWhereTheAnglesAreMetWorse) {
   EXPECT_THAT(verdict.why, testing::HasSubstr("angles are met worse"));
 }
 
+TEST(Verdict, AddsNoAnglesToLengths) {
+  // Inclinometers beside a plane: noise of 500 urad is no length of 500 um.
+  Rows rows;
+  rows.add(0, 40, 100 * kMicrometre, 30 * kMicrometre);
+  rows.add(1, 40, 0, 0);
+  rows.turn(40, 500 * kMicroradian, 505 * kMicroradian);
+  for (auto* model : {&rows.nominal, &rows.calibrated})
+    for (std::size_t i = 40; i < 80; ++i) model->check[i].length = model->check[i].lengths = 0;
+  const Figures check = rows.figures().check;
+  EXPECT_EQ(check.rows, 80);
+  EXPECT_EQ(check.configurations, 40);
+  EXPECT_FALSE(check.angle_alone);
+  EXPECT_NEAR(check.rms_before, 100 * kMicrometre, kMicrometre);
+  EXPECT_NEAR(check.rms_after, 30 * kMicrometre, kMicrometre);
+  EXPECT_EQ(check.angle.rows, 40);
+  EXPECT_NEAR(check.angle.rms_before, 500 * kMicroradian, kMicroradian);
+  EXPECT_EQ(rows.answer(), Answer::improved);
+}
+
 TEST(Verdict, IsImprovedWhereTheAnglesAreNoiseBeforeAndAfter) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
