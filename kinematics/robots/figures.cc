@@ -20,6 +20,15 @@ void read_beside(Fields& of, const std::vector<Named>& names, Problems& problems
   read("nominal", [&](int at, double value) { figures.nominal[at] = value; });
 }
 
+std::optional<Eigen::Vector2d> read_travel(Fields& drive) {
+  const auto limits = drive.numbers("limits", 2);
+  if (!limits) return std::nullopt;
+  if (!((*limits)[0] < (*limits)[1])) drive.fail("limits", "a lower and a higher reading");
+  if (!(limits->cwiseAbs().maxCoeff() <= kLongestPart))
+    drive.fail("limits", "metres, at most " + format_number(kLongestPart) + " (millimetres?)");
+  return *limits;
+}
+
 bool write_beside(const PartFigures& figures, const std::vector<Named>& names, Node& into) {
   Node tolerance = Node::map(), nominal = Node::map();
   for (const Named& each : names) {

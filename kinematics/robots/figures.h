@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ void read_beside(Fields& of, const std::vector<Named>& names, Problems& problems
                  PartFigures& figures);
 /// Adds them to the part's mapping; false when there is nothing to add.
 bool write_beside(const PartFigures& figures, const std::vector<Named>& names, Node& into);
+
+/// The lowest and the highest reading (m) of a drive, its `limits`; nothing where the file is
+/// silent.
+std::optional<Eigen::Vector2d> read_travel(Fields& drive);
 
 /// Value, nominal and tolerance (`silent` where the file gives none) of the figure at `at`.
 void take_figures(const PartFigures& figures, int at, double silent, Parameter& p);

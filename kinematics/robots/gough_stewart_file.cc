@@ -25,7 +25,7 @@ void read_leg(const Node& node, int leg, Problems& problems, GoughStewart& model
   model.value.segment<3>(index(leg, kBase)) = platform::read_centre(fields, "base");
   model.value.segment<3>(index(leg, kPlatform)) = platform::read_centre(fields, "platform");
   model.value[index(leg, kOffset)] = fields.length("offset", 0);
-  const Eigen::Vector2d limits = platform::read_limits(fields);
+  const Eigen::Vector2d limits = read_travel(fields).value_or(Eigen::Vector2d::Zero());
   const auto i = static_cast<size_t>(leg);
   if (!fields.has("limits")) fields.fail("limits", "the lowest and the highest reading in metres");
   if (fields.has("limits") && !(limits[0] + model.value[index(leg, kOffset)] > 0))

@@ -38,7 +38,7 @@ void read_chain(const Node& node, int chain, Problems& problems, Hexaslide& mode
   }
   model.value[index(chain, kLink)] = fields.length("length", 0);
   if (!(model.value[index(chain, kLink)] > 0)) fields.fail("length", "a positive number of metres");
-  const Eigen::Vector2d limits = platform::read_limits(fields);
+  const Eigen::Vector2d limits = read_travel(fields).value_or(Eigen::Vector2d::Zero());
   const auto i = static_cast<size_t>(chain);
   model.lower[i] = limits[0];
   model.upper[i] = limits[1];

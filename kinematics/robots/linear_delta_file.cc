@@ -49,10 +49,9 @@ void read_tower(const Node& node, int t, Problems& problems, Delta& model) {
   }
   at(kScale) = fields.number("scale", 1.0);
   if (at(kScale) == 0) fields.fail("scale", "a ratio other than 0");
-  if (const auto limits = fields.numbers("limits", 2)) {
+  if (const auto limits = read_travel(fields)) {
     model.lower[static_cast<size_t>(t)] = (*limits)[0];
     model.upper[static_cast<size_t>(t)] = (*limits)[1];
-    if (!((*limits)[0] < (*limits)[1])) fields.fail("limits", "a lower and a higher reading");
   }
   read_beside(fields, tower_names(t), problems, model);
   fields.refuse_unknown();

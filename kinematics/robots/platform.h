@@ -103,9 +103,8 @@ struct HomePose {
 /// `home: {xyz: [..], rpy: [..]}` of a robot's file; nothing where it is silent.
 std::optional<HomePose> read_home(Fields& robot, Problems& problems);
 Node write_home(const HomePose& home);
-/// `swing: [universal, spherical]` and `limits` (lower, upper; 0, 0 where it is silent) of a chain.
+/// `swing: [universal, spherical]` of a chain.
 Swing read_swing(Fields& chain);
-Eigen::Vector2d read_limits(Fields& chain);
 /// A point [x, y, z] (m) that a chain must have.
 Eigen::Vector3d read_centre(Fields& chain, std::string_view key);
 

@@ -44,13 +44,6 @@ Swing read_swing(Fields& chain) {
   return {(*swing)[0], (*swing)[1]};
 }
 
-Eigen::Vector2d read_limits(Fields& chain) {
-  const auto limits = chain.numbers("limits", 2);
-  if (!limits) return Eigen::Vector2d::Zero();
-  if (!((*limits)[0] < (*limits)[1])) chain.fail("limits", "a lower and a higher reading");
-  return *limits;
-}
-
 Eigen::Vector3d read_centre(Fields& chain, std::string_view key) {
   const auto centre = chain.numbers(key, 3);
   if (!centre) {

@@ -162,7 +162,7 @@ TEST(GoughStewart, RefusesAFileOfWhichItsFramesOrLimitsAreMissing) {
   EXPECT_THAT(problem(regular_hexapod("[0.05, 0.1]")),
               HasSubstr("with all readings in the middle of their limits: no location"));
   EXPECT_THAT(problem(regular_hexapod() + "tool: [0, 0, 0]\n"), HasSubstr("tool"));
-  EXPECT_THAT(problem(regular_hexapod("[400, 900]")), HasSubstr("with all readings"));
+  EXPECT_THAT(problem(regular_hexapod("[400, 900]")), HasSubstr("millimetres?"));
 }
 
 }  // namespace

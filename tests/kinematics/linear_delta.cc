@@ -94,6 +94,9 @@ TEST(LinearDelta, RefusesWhatIsNoDelta) {
               HasSubstr("tower3: key 'endstop' is missing"));
   EXPECT_THAT(problem(good + good + "  - {radius: 105, angle: 0, rod: 0.2, endstop: 0.4}\n"),
               HasSubstr("millimetres"));
+  EXPECT_THAT(problem(good + good +
+                      "  - {radius: 0.1, angle: 0, rod: 0.2, endstop: 0.4, limits: [-350, 0]}\n"),
+              HasSubstr("key 'limits': expected metres, at most 50 (millimetres?)"));
   EXPECT_THAT(problem(good + good + "  - {radius: 0.1, angle: 0, rod: 0.2, endstop: 0.4, x: 1}\n"),
               HasSubstr("unknown key 'x'"));
   for (const char* tolerance : {"-1.0e-3", "0", "1"})
