@@ -9,14 +9,12 @@
 
 #include "constraints/estimation/shrinkage.h"
 #include "constraints/identifiability/gauge.h"
-#include "constraints/statistics.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kOtherStarts = 4;
 constexpr double kClearlyBetter = 6;  // of -2 log posterior
-constexpr double kPriorTest = 0.01;   // probability under which the priors are widened
 /// Rows of a set without groups from which a fit goes over few of them first, and these few.
 constexpr int kManyRows = 20000, kFewRows = 4000;
 
@@ -271,23 +269,6 @@ class Adjustment {
 }  // namespace
 
 bool is_placed(const Parameter& p) { return p.part == Part::base || p.part == Part::tool; }
-
-Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
-                const Eigen::VectorXd& variance) {
-  Chi2 chi2;
-  for (Eigen::Index i = 0; i < xi.size(); ++i) {
-    const Parameter& p = robot.parameters()[static_cast<size_t>(i)];
-    if (!prior.free[i] || !is_own(p)) continue;
-    chi2.value += std::pow((xi[i] - p.nominal) / p.tolerance, 2);
-    chi2.freedom += 1 - variance[i] / std::pow(prior.sigma[i], 2);
-  }
-  return chi2;
-}
-
-double widening(const Chi2& chi2) {
-  if (chi2.freedom < 0.5 || !(chi_square_exceeds(chi2.value, chi2.freedom) < kPriorTest)) return 1;
-  return std::sqrt(chi2.value / chi2.freedom);
-}
 
 Adjusted adjust(const Equations& equations, const Options& options, const Progress& progress,
                 const State* near) {

@@ -12,12 +12,6 @@
 
 namespace selfcal {
 
-/// Squares of the moves of the robot's own parameters over the maker's tolerances, and how many of
-/// these directions the rows determine.
-struct Chi2 {
-  double value = 0, freedom = 0;
-};
-
 struct Adjusted {
   Fit before;  ///< base, tool and nuisance parameters alone, the robot as its maker says; from
                ///< `near` no fit, what is there
@@ -34,13 +28,6 @@ struct Adjusted {
 
 /// True for parameters of base and tool frames, whose priors say where things were put up.
 bool is_placed(const Parameter& p);
-
-/// `variance` of the parameters is that of their posterior with `prior`.
-Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
-                const Eigen::VectorXd& variance);
-/// The factor on the tolerances that makes it one a degree of freedom where it is beyond 99 %; 1
-/// where it is not.
-double widening(const Chi2& chi2);
 
 /// `near`: where the fit of the same rows by a model with fewer parameters ended, whose are the
 /// first of this one. The fits set out from there and, if they get nowhere, from the maker's

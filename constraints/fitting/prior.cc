@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -9,6 +10,8 @@ namespace {
 
 /// Prior sigma of nuisance parameters, in the robot's size or rad.
 constexpr double kHardlyKnown = 100;
+/// Probability under which the priors are widened.
+constexpr double kPriorTest = 0.01;
 
 }  // namespace
 
@@ -46,6 +49,23 @@ Eigen::MatrixXd triangle_with_priors(const Equations& equations, const Prior& pr
   }
   triangularise(A);
   return A.topRows(n + 1);
+}
+
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance) {
+  Chi2 chi2;
+  for (Eigen::Index i = 0; i < xi.size(); ++i) {
+    const Parameter& p = robot.parameters()[static_cast<size_t>(i)];
+    if (!prior.free[i] || !is_own(p)) continue;
+    chi2.value += std::pow((xi[i] - p.nominal) / p.tolerance, 2);
+    chi2.freedom += 1 - variance[i] / std::pow(prior.sigma[i], 2);
+  }
+  return chi2;
+}
+
+double widening(const Chi2& chi2) {
+  if (chi2.freedom < 0.5 || !(chi_square_exceeds(chi2.value, chi2.freedom) < kPriorTest)) return 1;
+  return std::sqrt(chi2.value / chi2.freedom);
 }
 
 }  // namespace selfcal

@@ -30,4 +30,17 @@ Eigen::MatrixXd triangle_with_priors(const Equations& equations, const Prior& pr
 /// keeps the system regular where a set has too few rows.
 double prior_weight(const Equations& equations, const Prior& prior, int column);
 
+/// Squares of the moves of the robot's own parameters over the maker's tolerances, and how many of
+/// these directions the rows determine.
+struct Chi2 {
+  double value = 0, freedom = 0;
+};
+
+/// `variance` of the parameters is that of their posterior with `prior`.
+Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& xi,
+                const Eigen::VectorXd& variance);
+/// The factor on the tolerances that makes it one a degree of freedom where it is beyond 99 %; 1
+/// where it is not.
+double widening(const Chi2& chi2);
+
 }  // namespace selfcal

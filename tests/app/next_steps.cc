@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/report/next_steps.h"
+
 #include "app/report/summary.h"
 
 namespace selfcal {

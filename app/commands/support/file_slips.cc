@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "app/report/format.h"
-#include "app/report/summary.h"
+#include "app/report/next_steps.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "kinematics/readable.h"

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/report/format.h"
+#include "app/report/next_steps.h"
 #include "app/report/page/robot_picture.h"
 #include "app/report/summary.h"
 #include "io/files/json_parts.h"

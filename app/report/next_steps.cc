@@ -1,0 +1,97 @@
+#include "app/report/next_steps.h"
+
+#include <algorithm>
+
+#include "kinematics/readable.h"
+
+namespace selfcal {
+namespace {
+
+double doubt_from(const Solution& solution, std::string_view source) {
+  const std::vector<BudgetLine>& budget = solution.uncertainty.budget;
+  const auto found = std::ranges::find(budget, source, &BudgetLine::source);
+  return found == budget.end() ? 0 : found->sigma;
+}
+
+/// Rows near each other err alike, more than by chance, or scatter more than they should.
+bool structured(const Solution& solution) {
+  return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows) ||
+         std::ranges::any_of(solution.sets, &SetResult::unexplained);
+}
+
+/// "Add rows that move j1, j2 and j4 further", of all whose further movement would help.
+std::string rows_to_add(const std::vector<Note>& unexcited) {
+  std::vector<std::string> joints;
+  for (const Note& each : unexcited)
+    if (!each.joint.empty() && std::ranges::find(joints, each.joint) == joints.end())
+      joints.push_back(each.joint);
+  if (joints.empty()) return "Add rows in other postures";
+  std::string text = "Add rows that move ";
+  for (size_t i = 0; i < joints.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == joints.size() ? " and " : ", ") + joints[i];
+  return text + " further";
+}
+
+/// Against the largest part of the end position's doubt.
+std::string what_helps(const Solution& solution) {
+  const double shared = doubt_from(solution, kSharedErrors);
+  const bool of_rows = std::ranges::all_of(
+      solution.uncertainty.budget, [&](const BudgetLine& each) { return each.sigma <= shared; });
+  if (shared > 0 && of_rows)
+    return "Most of that comes of what the geometry does not explain; more rows like these do not "
+           "help.";
+  return rows_to_add(solution.unexcited) +
+         (solution.gauge.empty() ? "." : ", and a known length for the scale.");
+}
+
+}  // namespace
+
+std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
+  for (const std::string& warning : solution.warnings)
+    if (warning.starts_with(kFilesFirst)) return {warning};
+  std::vector<std::string> steps;
+  const std::vector<char>& check = data.rows.check;
+  if (!check.empty() && std::ranges::none_of(check, [](char each) { return each == 0; }))
+    return {
+        "Leave `check` (column part) to about a third of the rows: the others are to identify."};
+  if (solution.sets.empty() && !check.empty())
+    return {"Look at rows and robot file first: `selfcal data check` says what is likely wrong."};
+  if (!solution.converged)
+    steps.push_back("Not converged: " + solution.stop_reason +
+                    ". Check that the nominal model, units and joint signs belong to these rows.");
+  if (solution.endpoint.poses == 0)
+    steps.push_back("Leave free (--fix holds) what these rows are to identify.");
+  else if (solution.residual.check.rows == 0)
+    steps.push_back(
+        "Mark about a third of the rows `check` (column part): a result is judged on rows "
+        "it has not seen.");
+  else if (solution.scale.against_maker)
+    steps.push_back(
+        "Measure the length given once more, or give another one: on a wrong one the whole robot "
+        "is "
+        "too large or too small.");
+  else if (solution.workspace.poses < kFewestPoses)
+    steps.push_back(std::string("The robot as it is ") +
+                    (solution.workspace.poses == 0 ? "does not reach" : "hardly reaches") +
+                    " the workspace that the data set gives: check its box and cone.");
+  else if (solution.workspace.rms > data.target)
+    steps.push_back(
+        with_figures("The end position is known to %.3g mm only. ", 1e3 * solution.workspace.rms) +
+        what_helps(solution));
+  else if (solution.verdict.answer == Answer::not_improved)
+    steps.push_back("The maker's figures explain the check rows as well: keep them.");
+  else if (solution.verdict.answer == Answer::not_determined)
+    steps.push_back(
+        "Mend what the verdict and the warnings name: until then nothing of it is to be used.");
+  else if (solution.converged)
+    steps.push_back(
+        "The result is a candidate: look at the changes, then use "
+        "calibrated.robot.yaml.");
+  if (solution.converged && structured(solution))
+    steps.push_back(
+        "What the geometry leaves of these rows is more than noise: see what causes it (selfcal "
+        "diagnose).");
+  return steps;
+}
+
+}  // namespace selfcal

@@ -1,0 +1,20 @@
+// What to do after an identification.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "constraints/methods/data_set.h"
+#include "constraints/solution.h"
+
+namespace selfcal {
+
+/// How the warning begins that says what is likely wrong with robot file or rows. It is all that is
+/// said of what to do next, for other advice presumes that they belong together.
+inline constexpr std::string_view kFilesFirst = "Look at the files first: ";
+
+/// What to do next, a sentence each.
+std::vector<std::string> next_steps(const DataSet& data, const Solution& solution);
+
+}  // namespace selfcal
