@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Stands at home or swings about it, and does nothing that it is asked.
+/// Stands at home or swings about it, and does nothing that it is asked, though it may say so.
 struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   Nanoseconds now() override { return time; }
   std::int64_t unix_ms() override { return 1'790'000'000'000 + time / kMillisecond; }
@@ -35,18 +35,29 @@ struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   Result<void> take(std::vector<Edge>&) override { return {}; }
   Result<void> request(const MotionRequest& request) override {
     asked.push_back(request.kind);
+    if (obeys) replies.push_back({request.id, MotionReply::Outcome::done, ""});
     return {};
   }
-  Result<void> stop(const std::string&) override { return {}; }
-  Result<void> take(std::vector<MotionReply>&) override { return {}; }
+  Result<void> stop(const std::string&) override {
+    ++stops;
+    if (when_stopped) when_stopped();
+    return {};
+  }
+  Result<void> take(std::vector<MotionReply>& out) override {
+    out.insert(out.end(), replies.begin(), replies.end());
+    replies.clear();
+    return {};
+  }
   int senders() const override { return 1; }
   std::uint64_t strange() const override { return 0; }
 
   Nanoseconds time = 1000 * kSecond;
   std::vector<EncoderScale> counts{6, EncoderScale{1e-6, 0}};
   double home[6] = {0, -0.6, 0.9, 0, 1.2, 0};
-  bool working = false, touching = false;
-  int swing = 0;
+  bool working = false, touching = false, obeys = false;
+  int swing = 0, stops = 0;
+  std::function<void()> when_stopped;
+  std::vector<MotionReply> replies;
   std::vector<MoveKind> asked;
 };
 
@@ -159,6 +170,54 @@ TEST_F(Loop, GoesOnFromAPersonOnlyWhereTheWayHomeIsOpen) {
   turn_for(kSecond);
   EXPECT_EQ(answer(), "done");
   EXPECT_EQ(robot.asked, std::vector{MoveKind::travel});
+}
+
+TEST_F(Loop, StopsTheRobotBeforeAnythingIsWritten) {
+  start(config());
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  person.say("start");
+  ASSERT_TRUE(comes_to(ServiceState::collecting));
+  const std::unique_ptr<Store> beside = opened(scratch.folder());
+  std::vector<std::string> held;
+  robot.when_stopped = [&] { held.push_back(must(beside->remembered("held"))); };
+  person.say("abort");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  ASSERT_FALSE(held.empty());
+  EXPECT_EQ(held.front(), "") << "a disk may take seconds";
+  EXPECT_EQ(must(beside->remembered("held")), "yes");
+}
+
+TEST_F(Loop, LeavesAloneWhatMovesByOthersOnceItsOwnMoveHasEnded) {
+  const Config cell = config();
+  leave_loaded_session(*opened(scratch.folder()), cell, robot.counts);
+  robot.home[0] = 0.3;  // at the touch that was in progress
+  robot.touching = robot.obeys = true;
+  start(cell);
+  ASSERT_TRUE(turning([&] { return !robot.asked.empty(); }));
+  EXPECT_EQ(robot.asked, std::vector{MoveKind::retract});
+  robot.touching = false;
+  ASSERT_TRUE(comes_to(ServiceState::awaiting_person));
+  robot.stops = 0;
+  robot.working = true;  // by the hands of the person
+  turn_for(kSecond);
+  person.say("abort");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  turn_for(kSecond);
+  EXPECT_EQ(robot.stops, 0);
+}
+
+TEST_F(Loop, StopsNoContactOfOthersAfterAnAbort) {
+  start(config());
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  person.say("start");
+  ASSERT_TRUE(comes_to(ServiceState::collecting));
+  person.say("abort");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  turn_for(kSecond);
+  robot.stops = 0;
+  robot.touching = true;
+  turn_for(kSecond);
+  EXPECT_EQ(robot.stops, 0);
 }
 
 TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {

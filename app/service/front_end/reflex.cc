@@ -42,6 +42,11 @@ Result<void> Reflex::stop(const std::string& why) {
   return ports_.motion->stop(why);
 }
 
+void Reflex::unguard() {
+  const std::lock_guard lock(motion_);
+  guarded_ = 0;
+}
+
 void Reflex::watch() {
   urgent_ = become_urgent();
   while (!ending_) {

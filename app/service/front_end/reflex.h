@@ -46,6 +46,8 @@ class Reflex {
   /// already, though the loop has not heard of it yet.
   Result<void> request(const MotionRequest& request, std::optional<bool> until);
   Result<void> stop(const std::string& why);
+  /// The last move has ended: no change of the trigger stops anything before the next one.
+  void unguard();
   /// Whether a contact stopped this move: the robot's word that it was stopped is then no refusal.
   bool has_stopped(std::uint64_t id) const { return stopped_ == id; }
 

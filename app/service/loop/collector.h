@@ -45,7 +45,7 @@ class Collector {
   /// A move of an earlier life may be under way.
   void expect_motion() { outstanding_ = true; }
   /// The last move has ended as asked.
-  void arrived() { reached_ = target_; }
+  void arrived();
 
   // collector.cc: from the plan to the last touch
   /// Begins with what is planned or stored; an event says where, or why not.
@@ -83,6 +83,8 @@ class Collector {
   /// No free way leads home.
   bool is_shut_in(const Eigen::VectorXd& here) const;
   void move(MoveKind kind, const std::vector<double>& q, double speed);
+  /// No move of ours is under way: what moves now is not ours to stop.
+  void leave_alone();
   double touch_speed(const StepRecord& step) const;
   std::string label() const;
   void announce_plan();

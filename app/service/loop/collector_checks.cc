@@ -118,10 +118,9 @@ void Collector::check_rest() {
 void Collector::check_stop() {
   if (stopped_ == 0) return;
   if (front_end_.encoders_alive(c_.now) && front_end_.at_rest() == true &&
-      c_.now - stopped_ > kStopAgain) {
+      c_.now - stopped_ >= kStopAgain) {
     stopped_ = 0;
-    outstanding_ = false;
-    return;
+    return leave_alone();
   }
   // Where the robot may move only the stop of a touch is still wanted; a move takes it back.
   const bool touching = c_.extended_state.state == ServiceState::collecting &&

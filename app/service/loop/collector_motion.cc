@@ -88,6 +88,16 @@ void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) 
     c_.put(Event::What::broken, false, sent.error().what);
 }
 
+void Collector::arrived() {
+  reached_ = target_;
+  leave_alone();
+}
+
+void Collector::leave_alone() {
+  outstanding_ = false;
+  reflex_.unguard();
+}
+
 void Collector::release() {
   if (c_.extended_state.state == ServiceState::collecting)
     return move(MoveKind::release, reached_, c_.config.speeds.travel);

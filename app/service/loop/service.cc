@@ -1,7 +1,9 @@
 #include "app/service/loop/service.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 namespace selfcal {
 namespace {
@@ -70,12 +72,16 @@ void Service::handle_events() {
     const bool held = c_.extended_state.held;
     const auto wanted = c_.extended_state.wanted;
     c_.extended_state = std::move(transition.next);
+    // Before anything is written, which may take long.
+    const auto others = std::ranges::stable_partition(
+        transition.actions, [](const Action& each) { return each.what == Action::Do::stop; });
+    for (const Action& stop : std::span(transition.actions.begin(), others.begin())) act(stop);
     if (c_.extended_state.held != held)
       c_.stored(c_.store.remember("held", c_.extended_state.held ? "yes" : ""));
     // Before the command is answered: what was granted is not lost.
     if (const auto& now = c_.extended_state.wanted; now != wanted)
       c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
-    for (const Action& action : transition.actions) act(action);
+    for (const Action& action : others) act(action);
   }
 }
 
