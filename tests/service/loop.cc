@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include "app/service/loop/service.h"
+#include "io/files/robot_file.h"
+#include "tests/io/store_content.h"
 #include "tests/io/store_records.h"
 #include "tests/service/cell.h"
 #include "tests/support/domain.h"
@@ -117,6 +119,11 @@ class Loop : public testing::Test {
     for (const Nanoseconds end = robot.time + time; robot.time < end;) service->turn();
   }
 
+  /// Beside the service, which may be writing.
+  void change_store(const std::string& sql) const {
+    with_sqlite(scratch.folder() / "selfcal.db", "PRAGMA busy_timeout = 5000;" + sql);
+  }
+
   const Scratch scratch;
   BusyRobot robot;
   Person person;
@@ -138,6 +145,16 @@ void leave_loaded_session(Store& store, const Config& config,
   step.loaded = true;
   step.start = step.touch = step.end = {0.3, -0.6, 0.9, 0, 1.2, 0};
   must(store.begin(record, {step}));
+}
+
+/// A result that an earlier life has left to be accepted.
+void leave_candidate(Store& store, const Robot& robot) {
+  const std::int64_t id = must(store.begin(some_session(), some_plan(2, 6)));
+  ResultRecord result = some_result(id);
+  result.decision = ResultDecision::candidate;
+  result.robot_text = robot_text(robot, values(robot));
+  const SlotRecord candidate{id, id, model_hash(robot), result.robot_text};
+  must(store.finish(result, &candidate));
 }
 
 TEST_F(Loop, GoesOnFromAPersonOnlyWhereTheWayHomeIsOpen) {
@@ -218,6 +235,28 @@ TEST_F(Loop, StopsNoContactOfOthersAfterAnAbort) {
   robot.touching = true;
   turn_for(kSecond);
   EXPECT_EQ(robot.stops, 0);
+}
+
+TEST_F(Loop, KeepsAResultWaitingThatTheStoreCouldNotAcceptOrReject) {
+  const Config cell = config({{"commands.allow", "[accept, reject]"}});
+  leave_candidate(*opened(scratch.folder()), *cell.robot);
+  start(cell);
+  for (const std::string verb : {"accept", "reject"}) {
+    ASSERT_TRUE(comes_to(ServiceState::awaiting_acceptance));
+    const std::string full = " ON slot BEGIN SELECT RAISE(FAIL, 'disk is full'); END;";
+    change_store("CREATE TRIGGER a BEFORE UPDATE" + full + "CREATE TRIGGER b BEFORE DELETE" + full);
+    person.replies.clear();
+    person.say(verb);
+    ASSERT_TRUE(comes_to(ServiceState::fault));
+    ASSERT_EQ(person.replies.size(), 1) << verb;
+    EXPECT_FALSE(person.replies.front().accepted) << verb;
+    EXPECT_THAT(person.replies.front().why, HasSubstr("disk is full"));
+    change_store("DROP TRIGGER a; DROP TRIGGER b");
+  }
+  ASSERT_TRUE(comes_to(ServiceState::awaiting_acceptance));
+  person.say("accept");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  EXPECT_EQ(service->models().session(), 1);
 }
 
 TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {

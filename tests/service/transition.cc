@@ -143,7 +143,7 @@ TEST(Transition, ShowsACandidateToAPersonAndAppliesItWhenAccepted) {
   Script script = script_at(ServiceState::judging);
   EXPECT_EQ(script.decided(Decision::ask).done(), "publish");
   EXPECT_EQ(script.on(What::published).s.state, ServiceState::awaiting_acceptance);
-  EXPECT_EQ(script.ask(Verb::accept).done(), "grant, apply");
+  EXPECT_EQ(script.ask(Verb::accept).done(), "apply");
   EXPECT_EQ(script.s.state, ServiceState::applying);
   EXPECT_EQ(script.on(What::applied).done(), "publish");
   EXPECT_EQ(script.on(What::published).s.state, ServiceState::idle);
@@ -151,7 +151,7 @@ TEST(Transition, ShowsACandidateToAPersonAndAppliesItWhenAccepted) {
 
 TEST(Transition, DropsACandidateThatIsRejectedAndPublishesThat) {
   Script script = script_at(ServiceState::awaiting_acceptance);
-  EXPECT_EQ(script.ask(Verb::reject).done(), "grant, reject, publish");
+  EXPECT_EQ(script.ask(Verb::reject).done(), "reject, publish");
   EXPECT_EQ(script.on(What::published).s.state, ServiceState::idle);
   EXPECT_FALSE(script.s.candidate);
 }

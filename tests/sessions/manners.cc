@@ -58,6 +58,7 @@ TEST(Manners, ALateJoinerSeesTheLastResultAndAPersonDecides) {
   EXPECT_EQ(back.why,
             "factory is active now; session 1 was rolled back and is not used again by itself");
   ASSERT_TRUE(cell.until([&] { return cell.statuses.back().active == "factory"; }));
+  EXPECT_TRUE(cell.until([&] { return cell.results.back().decision == "rolled-back"; }));
   const CommandReplyMessage again = cell.command("rollback");
   EXPECT_FALSE(again.accepted) << "never forth: session 1 was given up";
   EXPECT_NE(again.why.find("active: factory"), std::string::npos) << again.why;

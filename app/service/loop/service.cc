@@ -102,6 +102,7 @@ Nanoseconds Service::longest_wait() const {
 }
 
 void Service::begin_test() {
+  recall_models();
   testing_ = true;
   test_began_ = c_.now;
 }
@@ -188,10 +189,7 @@ void Service::recall() {
     since.unix_ms = unix_ms;
     if (!std::isnan(temperature)) since.temperature = temperature;
   }
-  const auto results = c_.store.results(1);
-  if (!results || results->empty()) return;
-  const auto last = c_.store.result(results->front().session);
-  if (c_.stored(last) && *last) reporter_.result(**last);
+  tell_result();
 }
 
 void Service::shut_down() {

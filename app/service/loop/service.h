@@ -56,7 +56,11 @@ class Service {
   void reject();
   void roll_back();
   void publish();
+  void tell_result();
+  bool came_about(const Result<void>& done);
+  void recall_models();
   bool reload_models();
+  bool use(Models models);
   void finish_interrupted_apply();
 
   ServiceContext c_;

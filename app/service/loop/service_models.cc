@@ -9,7 +9,11 @@ bool Service::reload_models() {
     c_.put(Event::What::broken, false, "store: " + models.error().what);
     return false;
   }
-  c_.models = std::move(*models);
+  return use(std::move(*models));
+}
+
+bool Service::use(Models models) {
+  c_.models = std::move(models);
   if (const auto written = c_.models.write_active(c_.config.state); !written) {
     c_.put(Event::What::broken, false, written.error().what);
     return false;
@@ -17,11 +21,28 @@ bool Service::reload_models() {
   return true;
 }
 
+/// A command is answered once what it asks is in the store, or cannot be.
+bool Service::came_about(const Result<void>& done) {
+  if (command_)
+    answer(done ? Action{Action::Do::grant, command_->verb}
+                : Action{Action::Do::refuse, done.error().what});
+  return c_.stored(done);
+}
+
+/// What was decided when the store failed may have come about or not; what is damaged stays as it
+/// is known until a start sets it aside.
+void Service::recall_models() {
+  auto models = Models::load(c_.models.factory(), c_.store);
+  if (!models || !use(std::move(*models))) return;
+  finish_interrupted_apply();
+  c_.extended_state.candidate = c_.models.candidate();
+}
+
 void Service::apply(const std::string& why) {
-  if (!c_.stored(c_.store.accept(c_.unix_ms())) || !reload_models()) return;
+  if (!came_about(c_.store.accept(c_.unix_ms()))) return;
   analyst_.forget_check();
-  c_.tell("info", c_.models.name() + " is active: " + why);
   c_.put(Event::What::applied);
+  if (reload_models()) c_.tell("info", c_.models.name() + " is active: " + why);
 }
 
 void Service::finish_interrupted_apply() {
@@ -32,11 +53,11 @@ void Service::finish_interrupted_apply() {
       (*slot)->model_hash != c_.models.hash())
     return;
   if (c_.stored(c_.store.accept(c_.unix_ms())) && reload_models())
-    c_.tell("info", c_.models.name() + " is active: the power had failed while it was applied");
+    c_.tell("info", c_.models.name() + " is active, as was decided before an interruption");
 }
 
 void Service::reject() {
-  if (c_.stored(c_.store.reject(c_.unix_ms()))) reload_models();
+  if (came_about(c_.store.reject(c_.unix_ms()))) reload_models();
 }
 
 void Service::roll_back() {
@@ -47,6 +68,8 @@ void Service::roll_back() {
     return;
   }
   if (!reload_models()) return;
+  analyst_.forget_check();
+  tell_result();
   const std::string said = c_.models.name() + " is active now; " + given_up +
                            " was rolled back and is not used again by itself";
   if (command_) c_.messenger.reply({command_->id, command_->verb, true, said});
@@ -54,12 +77,17 @@ void Service::roll_back() {
 }
 
 void Service::publish() {
+  tell_result();
+  c_.put(Event::What::published);
+}
+
+/// The last one, with what became of it.
+void Service::tell_result() {
   const auto results = c_.store.results(1);
   if (results && !results->empty()) {
     const auto result = c_.store.result(results->front().session);
     if (c_.stored(result) && *result) reporter_.result(**result);
   }
-  c_.put(Event::What::published);
 }
 
 }  // namespace selfcal

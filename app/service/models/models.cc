@@ -69,7 +69,8 @@ Result<void> Models::write_active(const std::filesystem::path& folder) const {
   const std::filesystem::path path = folder / "active.robot.yaml";
   const std::string text = robot_text(*active_, values(*active_));
   const auto there = read_file(path, kLongestRobot);
-  if (!refused_.empty() && there && *there != text)
+  if (there && *there == text) return {};
+  if (!refused_.empty() && there)
     if (auto kept = write_file_atomically(path.string() + ".before", *there); !kept) return kept;
   return write_file_atomically(path, text);
 }

@@ -139,10 +139,10 @@ struct Action {
     analyse,
     identify,
     judge,
-    diagnose,  ///< what the rows say of the cause, and what to touch next
-    apply,
-    reject,
-    roll_back,
+    diagnose,   ///< what the rows say of the cause, and what to touch next
+    apply,      ///< and answer the command, where one has asked for it
+    reject,     ///< as well
+    roll_back,  ///< as well
     publish,
     abort,  ///< the session ends early; what was collected is kept
     grant,

@@ -83,17 +83,15 @@ void TransitionStep::refuse_without_result() {
 
 void TransitionStep::commanded_to_accept() {
   if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
-  grant();
   s_.candidate = false;
   enter(ServiceState::applying, "accepted by command");
-  act(Do::apply, "accepted by command");
+  act(Do::apply, "accepted by command");  // answers the command, as a rollback does
 }
 
 void TransitionStep::commanded_to_reject() {
   if (s_.state != ServiceState::awaiting_acceptance) return refuse_without_result();
-  grant();
   s_.candidate = false;
-  act(Do::reject, "rejected by command");
+  act(Do::reject, "rejected by command");  // answers the command
   s_.why = "rejected by command";
   publish();
 }
