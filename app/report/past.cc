@@ -88,14 +88,17 @@ nlohmann::ordered_json record_of(const Past& past) {
                                  {"result", nullptr}};
   if (!past.result) return json;
   const ResultRecord& r = *past.result;
+  const auto figure = [&](double value) {
+    return r.answer == ResultAnswer::failed ? nlohmann::ordered_json(nullptr) : finite(value);
+  };
   json["result"] = {{"unix_ms", r.unix_ms},
                     {"answer", to_string(r.answer)},
                     {"decision", to_string(r.decision)},
                     {"why", r.why},
-                    {"p_value", finite(r.p_value)},
-                    {"check_before", finite(r.check_before)},
-                    {"check_after", finite(r.check_after)},
-                    {"endpoint_sigma", finite(r.endpoint_sigma)},
+                    {"p_value", figure(r.p_value)},
+                    {"check_before", figure(r.check_before)},
+                    {"check_after", figure(r.check_after)},
+                    {"endpoint_sigma", figure(r.endpoint_sigma)},
                     {"touches", r.touches},
                     {"rejected", r.outliers},
                     {"identified", r.identified}};

@@ -181,6 +181,20 @@ TEST_F(History, PrintsRecordsAndEventsInJson) {
   EXPECT_THAT(history("--events").out, HasSubstr("warning  trigger stuck"));
 }
 
+TEST_F(History, GivesNoFiguresOfAResultThatFailed) {
+  ResultRecord result;
+  result.session = begin("full");
+  result.answer = ResultAnswer::failed;
+  result.decision = ResultDecision::rejected;
+  result.touches = 40;
+  ASSERT_TRUE(store_->finish(result, nullptr));
+
+  const auto record = nlohmann::json::parse(history("--json").out)[0]["result"];
+  for (const char* figure : {"p_value", "check_before", "check_after", "endpoint_sigma"})
+    EXPECT_TRUE(record[figure].is_null()) << figure << " " << record[figure];
+  EXPECT_EQ(record["touches"], 40);
+}
+
 TEST_F(History, WritesAPage) {
   accepted(2e-3);
   const std::string page = (folder_ / "history.html").string();

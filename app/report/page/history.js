@@ -89,7 +89,7 @@ function show_history(data) {
     {title: "decision"}, {title: "before, mm", number: true}, {title: "after, mm", number: true},
     {title: "end position, mm", number: true}, {title: "touches", number: true}],
     data.sessions.map(each => {
-      const r = each.result, full = each.kind === "full";
+      const r = each.result, full = each.kind !== "check";
       return [String(each.session), each.when, each.kind, r ? r.answer : each.state, r ? r.decision : "",
               r ? mm(r.check_before) : "", r ? mm(r.check_after) : "", r && full ? mm(r.endpoint_sigma) : "",
               r ? String(r.touches) : ""];

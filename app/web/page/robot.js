@@ -117,7 +117,7 @@ function history_words(history) {
   if (!history) return [paragraph("Past sessions are read where the robot's configuration is given: selfcal monitor --web ADDRESS:PORT CONFIG.yaml", "soft")];
   if (history.problem) return [paragraph("Its store cannot be read: " + history.problem, "soft")];
   const rows = history.sessions.map(session => {
-    const result = session.result, full = session.kind === "full";
+    const result = session.result, full = session.kind !== "check";
     return [String(session.session), moment(result ? result.unix_ms : session.started_ms), session.kind,
       result ? result.answer : session.state, result && result.decision !== "none" ? result.decision : "",
       result ? mm(result.check_before) : "", result ? mm(result.check_after) : "", result && full ? mm(result.endpoint_sigma) : "",
