@@ -45,7 +45,8 @@ std::string verb_names();
 
 /// What the hardware may do, in words; the service asks for nothing else in this state.
 std::string_view hardware_may(ServiceState state, Phase phase);
-/// True where the service may ask for motion. In every other state it has told the robot to stop.
+/// True where the service may ask for motion. Into every other state it goes once its last move has
+/// ended, or tells the robot to stop.
 bool may_move(ServiceState state);
 
 }  // namespace selfcal
