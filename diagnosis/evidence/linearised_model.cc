@@ -158,11 +158,10 @@ Eigen::MatrixXd LinearisedModel::by_joint() const {
 }
 
 std::vector<Scale> LinearisedModel::noise_of_sets() const {
-  std::vector<Scale> noise = noise_;
-  for (Scale& each : noise) {
-    each.length *= scale_;
-    each.angle *= scale_;
-  }
+  std::vector<Scale> noise = declared_noise(data_);
+  for (size_t s = 0; s < noise.size(); ++s)
+    noise[s] = {std::max(noise[s].length, scale_ * noise_[s].length),
+                std::max(noise[s].angle, scale_ * noise_[s].angle)};
   return noise;
 }
 

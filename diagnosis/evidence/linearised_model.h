@@ -57,7 +57,7 @@ class LinearisedModel {
   const std::vector<char>& outlier() const { return outlier_; }
   /// Times are places in the file: see DataSet.
   bool order_is_time() const { return data_.order_is_time; }
-  /// As known so far, by set.
+  /// As known so far, by set; no less than its data sheet says, unless repeats tell.
   std::vector<Scale> noise_of_sets() const;
   /// 1 sigma of one scalar (m), pooled over the sets that measure lengths; 0 without such.
   double noise() const;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <string_view>
+#include <tuple>
 
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
@@ -27,17 +28,21 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
 }  // namespace
 
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
-  std::map<std::string_view, std::pair<double, double>> pooled;  // squares, rows
-  const auto method = [&](size_t s) { return data.sets[s].method->name(); };
+  using Kind = std::tuple<std::string_view, double, double>;
+  std::map<Kind, std::pair<double, double>> pooled;  // squares, rows
+  const auto kind = [&](size_t s) {
+    const Set& set = data.sets[s];
+    return Kind(set.method->name(), set.noise, set.noise_angle);
+  };
   for (size_t s = 0; s < fitted.rows.size(); ++s) {
     if (fitted.rows[s] == 0) continue;
-    auto& [squares, rows] = pooled[method(s)];
+    auto& [squares, rows] = pooled[kind(s)];
     squares += fitted.rows[s] * std::pow(fitted.noise.estimated[s].length, 2);
     rows += fitted.rows[s];
   }
   std::vector<Scale> noise = fitted.noise.estimated;
   for (size_t s = 0; s < noise.size(); ++s)
-    if (const auto found = pooled.find(method(s)); found != pooled.end())
+    if (const auto found = pooled.find(kind(s)); found != pooled.end())
       noise[s].length = std::sqrt(found->second.first / found->second.second);
   return noise;
 }

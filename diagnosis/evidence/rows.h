@@ -8,8 +8,9 @@
 
 namespace selfcal {
 
-/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method,
-/// since the set that holds the cause would otherwise be taken for a noisy one. By set.
+/// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method
+/// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one.
+/// By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
 /// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
 /// repeats of the rows tell what the noise really is.

@@ -50,13 +50,13 @@ struct Left {
 };
 
 /// The figures of every validation row, and which of them no model comes near.
-void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValidation& validation) {
+void take_rows(const Left& left, const DataSet& data, const std::vector<double>& noise,
+               HoldoutValidation& validation) {
   // A set that only judges has a noise of its own: what its data sheet says, if it does.
   const Judged& whole = left.whole;
-  const auto floor_of = [&](const RowResidual& row) {
-    const double nuisance =
-        data.sets[row.set].noise > 0 ? data.sets[row.set].noise : whole.check_scale[row.set].length;
-    return row.lengths * std::pow(row.factor * (whole.aligned[row.set] ? nuisance : noise), 2);
+  const auto noise_of = [&](int set) {
+    if (!whole.aligned[set]) return noise[set];
+    return data.sets[set].noise > 0 ? data.sets[set].noise : whole.check_scale[set].length;
   };
   const auto square = [](const RowResidual& row) { return row.length * row.length; };
   const std::vector<int> block = validation_blocks(data);
@@ -67,13 +67,15 @@ void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValid
     if (all.lengths == 0) continue;
     const double near = std::min({before.length, after.length, all.length});
     const double limit = chi_quantile(all.lengths, kDiagnosis.validation.far);
-    const bool false_reading = near > kDiagnosis.validation.beyond * limit * all.factor *
-                                          std::max(noise, whole.check_scale[all.set].length);
+    const bool false_reading =
+        near > kDiagnosis.validation.beyond * limit * all.factor *
+                   std::max(noise[all.set], whole.check_scale[all.set].length);
     if (false_reading)
       validation.outliers.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
                                      "neither the geometry nor any effect found comes near it"});
-    validation.rows.push_back({square(left.nominal.check[i]), square(before), square(after),
-                               square(all), floor_of(all), block[all.row], false_reading});
+    validation.rows.push_back(
+        {square(left.nominal.check[i]), square(before), square(after), square(all),
+         all.lengths * std::pow(all.factor * noise_of(all.set), 2), block[all.row], false_reading});
   }
 }
 
@@ -82,7 +84,8 @@ void take_rows(const Left& left, const DataSet& data, double noise, HoldoutValid
 HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geometry,
                                       const Adjusted& before, const DataSet& data,
                                       const Correction& correction,
-                                      const MeasurementContext& context, double noise,
+                                      const MeasurementContext& context,
+                                      const std::vector<double>& noise,
                                       const DiagnosisOptions& options) {
   HoldoutValidation validation;
   const auto note = [&](const Fit& fit) {

@@ -23,11 +23,12 @@ struct HoldoutValidation {
 
 /// `before` is the geometry's own adjustment; the parameters of `correction` are identified, those
 /// of its named effects once more without the others.
-/// `noise` is 1 sigma of one scalar (m).
+/// `noise` is 1 sigma of one scalar by set (m).
 HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geometry,
                                       const Adjusted& before, const DataSet& data,
                                       const Correction& correction,
-                                      const MeasurementContext& context, double noise,
+                                      const MeasurementContext& context,
+                                      const std::vector<double>& noise,
                                       const DiagnosisOptions& options);
 
 }  // namespace selfcal

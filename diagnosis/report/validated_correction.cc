@@ -56,9 +56,24 @@ class CorrectionValidation {
   }
 
  private:
+  /// By set, what `result_.noise` is of all that were fitted; of others what their data sheet says.
+  std::vector<double> noise_of_lengths() const {
+    const std::vector<Scale> noise = linearised_.noise_of_sets();
+    const double pooled = linearised_.noise();
+    std::vector<double> list;
+    for (size_t s = 0; s < noise.size(); ++s) {
+      const double declared = data_.sets[s].noise;
+      const bool fitted = linearised_.adjusted().fitted.rows[s] > 0 && pooled > 0;
+      list.push_back(fitted         ? result_.noise * noise[s].length / pooled
+                     : declared > 0 ? declared
+                                    : result_.noise);
+    }
+    return list;
+  }
+
   HoldoutValidation validated(const Correction& correction) const {
     return validate_on_holdout(linearised_.shared_geometry(), linearised_.adjusted(), data_,
-                               correction, linearised_.context(), result_.noise, options_);
+                               correction, linearised_.context(), noise_of_lengths(), options_);
   }
 
   Gap gap_with(Correction correction) const {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <random>
+#include <string>
 
 #include "diagnosis/diagnosis.h"
 #include "tests/diagnosis/two_sessions.h"
@@ -31,6 +33,32 @@ TEST(HoldoutValidation, CallsNoRowFalseThatIsAsNoisyAsItSays) {
             0);
   EXPECT_EQ(diagnosis.gap.false_rows, 0);
   EXPECT_EQ(diagnosis.verdict.effect, kNone);
+}
+
+/// Two instruments, one a tenth as exact as the other; of `aside` of its rows every one but each
+/// tenth judges, of the other each tenth.
+DataSet two_instruments(const std::string& aside) {
+  DataSet data = made(
+                     "robot: rx90.robot.yaml\nseed: 5\nerrors: {length: 5.0e-4, angle: 5.0e-4}\n"
+                     "sets:\n  tracker: {method: position, rows: 100, noise: 2.0e-5}\n"
+                     "  camera: {method: position, rows: 100, noise: 2.0e-4}\n")
+                     .data;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    data.rows.check[row] = (data.sets[data.rows.set[row]].name == aside) != (row % 10 == 0);
+  return data;
+}
+
+TEST(HoldoutValidation, TakesTheNoiseOfEachRowsInstrument) {
+  const std::shared_ptr<const Robot> robot = std::move(*load_robot(example("rx90.robot.yaml")));
+  for (const char* const aside : {"camera", "tracker"}) {
+    const Diagnosis diagnosis = diagnose(robot, two_instruments(aside), quick());
+    EXPECT_EQ(diagnosis.verdict.effect, kNone) << diagnosis.why;
+    // 90 rows of the one and 10 of the other, of three coordinates each. Ten fit rows tell a noise
+    // by some 25 freedoms, and three sigma of that are 0.4.
+    const bool camera = std::string(aside) == "camera";
+    const double squares = (camera ? 0.9 : 0.1) * 4e-8 + (camera ? 0.1 : 0.9) * 4e-10;
+    EXPECT_NEAR(diagnosis.gap.noise_floor / std::sqrt(3 * squares), 1, 0.4) << aside;
+  }
 }
 
 }  // namespace

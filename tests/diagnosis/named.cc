@@ -130,7 +130,7 @@ TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   const auto closed = [&](bool named) {
     return gap_of(validate_on_holdout(linearised.shared_geometry(), linearised.adjusted(), of.data,
                                       {{gear, {}, {1e-3, 1e-3}, named}}, linearised.context(),
-                                      kNoise, options)
+                                      {kNoise}, options)
                       .rows,
                   1);
   };
