@@ -28,6 +28,8 @@ struct DiagnosisConstants {
     /// Of the equations, that unknowns take at most where noise is told from the middle of what is
     /// left; 0.5 to 0.9 [habit]
     double most_taken = 0.7;
+    /// Sigmas by which the noises of two methods differ once the causes are known; 2 to 5 [habit]
+    double unlike = 3;
   };
   /// Structure of no known cause; sizes are over the noise.
   struct Structure {

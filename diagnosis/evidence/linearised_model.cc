@@ -78,15 +78,29 @@ void LinearisedModel::bound_noise() {
     noise_[s] = {std::max(noise_[s].length, declared[s].length),
                  std::max(noise_[s].angle, declared[s].angle)};
   }
+  relative_.assign(noise_.size(), 1);
+}
+
+double LinearisedModel::least() const {
+  const std::vector<Scale> declared = declared_noise(data_);
   double sum = 0, rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
     if (adjusted_.fitted.rows[s] == 0) continue;
     const double share = data_.sets[s].method->has_lengths() ? declared[s].length / noise_[s].length
                                                              : declared[s].angle / noise_[s].angle;
-    sum += adjusted_.fitted.rows[s] * std::pow(share, 2);
+    sum += adjusted_.fitted.rows[s] * std::pow(share / relative_[s], 2);
     rows += adjusted_.fitted.rows[s];
   }
-  least_ = rows > 0 ? sum / rows : 0;
+  return rows > 0 ? sum / rows / (scale_ * scale_) : 0;
+}
+
+Eigen::VectorXd LinearisedModel::scales(const std::vector<int>& equations) const {
+  Eigen::VectorXd scales(static_cast<Eigen::Index>(equations.size()));
+  for (Eigen::Index i = 0; i < scales.size(); ++i) {
+    const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
+    scales[i] = row < 0 ? scale_ : scale_ * relative_[data_.rows.set[row]];
+  }
+  return scales;
 }
 
 void LinearisedModel::weigh(double most) {
@@ -118,13 +132,14 @@ Whitened LinearisedModel::of(const std::vector<int>& equations,
                              const std::vector<int>& effects) const {
   std::vector<int> columns = effects;
   for (int& each : columns) each += static_cast<int>(geometry_->parameters().size());
+  const Eigen::ArrayXd over = scales(equations);
   Whitened out;
-  out.A = all_.W(equations, nuisance_.columns) / scale_;
-  out.C = all_.W(equations, columns) / scale_;
-  out.y = all_.y(equations) / scale_;
+  out.A = all_.W(equations, nuisance_.columns).array().colwise() / over;
+  out.C = all_.W(equations, columns).array().colwise() / over;
+  out.y = all_.y(equations).array() / over;
   out.weight = nuisance_.weight;
   out.pull = nuisance_.pull;
-  out.least = least_ / (scale_ * scale_);
+  out.least = least();
   return out;
 }
 
@@ -151,7 +166,10 @@ std::vector<int> reading_columns(const Robot& robot) {
   return columns;
 }
 
-ReadingErrors LinearisedModel::reading_errors() const { return {by_joint() / scale_, steps_}; }
+ReadingErrors LinearisedModel::reading_errors() const {
+  const Eigen::ArrayXd over = scales(equations_of(all_, taking_part()));
+  return {by_joint().array().colwise() / over, steps_};
+}
 
 Eigen::MatrixXd LinearisedModel::by_joint() const {
   return all_.W(equations_of(all_, taking_part()), reading_columns(*geometry_));
@@ -160,8 +178,8 @@ Eigen::MatrixXd LinearisedModel::by_joint() const {
 std::vector<Scale> LinearisedModel::noise_of_sets() const {
   std::vector<Scale> noise = declared_noise(data_);
   for (size_t s = 0; s < noise.size(); ++s)
-    noise[s] = {std::max(noise[s].length, scale_ * noise_[s].length),
-                std::max(noise[s].angle, scale_ * noise_[s].angle)};
+    noise[s] = {std::max(noise[s].length, scale_ * relative_[s] * noise_[s].length),
+                std::max(noise[s].angle, scale_ * relative_[s] * noise_[s].angle)};
   return noise;
 }
 
@@ -170,7 +188,7 @@ double LinearisedModel::noise() const {
   int rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
     if (!data_.sets[s].method->has_lengths()) continue;
-    squares += adjusted_.fitted.rows[s] * std::pow(scale_ * noise_[s].length, 2);
+    squares += adjusted_.fitted.rows[s] * std::pow(scale_ * relative_[s] * noise_[s].length, 2);
     rows += adjusted_.fitted.rows[s];
   }
   return std::sqrt(squares / std::max(rows, 1));
@@ -188,7 +206,9 @@ Eigen::VectorXd LinearisedModel::residuals(const std::vector<int>& effects,
   Eigen::VectorXd left = all_.y;
   for (size_t c = 0; c < columns.size(); ++c)
     left -= x[static_cast<Eigen::Index>(c)] * all_.W.col(columns[c]);
-  return left / scale_;
+  std::vector<int> every(all_.row.size());
+  std::iota(every.begin(), every.end(), 0);
+  return left.cwiseQuotient(scales(every));
 }
 
 Eigen::VectorXd LinearisedModel::geometry_residuals(const Whitened& rows) const {
@@ -202,14 +222,22 @@ Eigen::VectorXd LinearisedModel::geometry_leaves(const Whitened& rows) const {
 }
 
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
-  std::vector<char> outlier =
-      outliers_among(all_, residuals, static_cast<double>(nuisance_.columns.size()),
-                     outlier_.size(), most_outliers_);
+  const std::vector<double> unlike =
+      unlike_noise(data_, kept().row, residuals(equations_of(all_, taking_part())),
+                   geometry_leaves(whitened_geometry()));
+  const bool alike = std::ranges::all_of(unlike, [](double each) { return each == 1; });
+  Eigen::VectorXd left = residuals;
+  for (Eigen::Index i = 0; i < left.size(); ++i)
+    if (const int row = all_.row[static_cast<size_t>(i)]; row >= 0)
+      left[i] /= std::sqrt(unlike[data_.rows.set[row]]);
+  std::vector<char> outlier = outliers_among(
+      all_, left, static_cast<double>(nuisance_.columns.size()), outlier_.size(), most_outliers_);
   for (size_t row = 0; row < held_.size(); ++row)
     if (!held_[row]) outlier[row] = outlier_[row];
-  if (outlier == outlier_ && std::abs(variance - 1) < 0.1) return false;
+  if (outlier == outlier_ && alike && std::abs(variance - 1) < 0.1) return false;
   outlier_ = std::move(outlier);
-  left_ = residuals;
+  left_ = std::move(left);
+  for (size_t s = 0; s < relative_.size(); ++s) relative_[s] *= std::sqrt(unlike[s]);
   scale_ *= std::sqrt(variance);
   return true;
 }

@@ -71,7 +71,8 @@ class LinearisedModel {
   /// What the best explanation so far leaves, by equation of kept(); at first
   /// the geometry's fit.
   Eigen::VectorXd left() const;
-  /// Takes the noise from the variance of the best explanation and puts aside the rows whose
+  /// Takes the noise from the variance of the best explanation, of methods that it leaves unlike
+  /// each by its own rows, and puts aside the rows whose
   /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
   bool refine(const Eigen::VectorXd& residuals, double variance);
   /// The rows that are held, put aside or not; of a large data set one of every so many
@@ -91,6 +92,10 @@ class LinearisedModel {
   Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.
   void bound_noise();
+  /// Variance of the noise, at least, over what it is taken for.
+  double least() const;
+  /// What the noise of these equations of all() is taken for, at a scale of one.
+  Eigen::VectorXd scales(const std::vector<int>& equations) const;
 
   const DataSet& data_;
   double most_outliers_;
@@ -110,7 +115,7 @@ class LinearisedModel {
   Eigen::VectorXd steps_;      ///< that each joint's readings are rounded to; 0: not known
   Eigen::VectorXd left_;       ///< by equation of all()
   double scale_ = 1;
-  double least_ = 0;  ///< variance of the noise, at least, at a scale of one
+  std::vector<double> relative_;  ///< scale of a set's noise over that, by set
 };
 
 }  // namespace selfcal

@@ -12,6 +12,11 @@ namespace selfcal {
 /// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one.
 /// By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
+/// Variance of the noise of each set over that of all, from what the best explanation leaves
+/// (`residuals`) of equations of `row`, each of which keeps the share `leaves` beyond the geometry:
+/// one for all sets of a method and stated noise. 1 where the rows do not tell them apart.
+std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& row,
+                                 const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves);
 /// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
 /// repeats of the rows tell what the noise really is.
 std::vector<Scale> declared_noise(const DataSet& data);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <random>
 
 namespace selfcal {
 namespace {
@@ -33,6 +35,38 @@ TEST(WeighedRows, DoNotKeepStepWithHowASessionAlternates) {
             << period << " kinds, one of " << step;
     }
   }
+}
+
+TEST(UnlikeNoise, IsToldOfMethodsThatTheRowsTellApart) {
+  DataSet data;
+  Problems problems;
+  for (const auto& [name, method] :
+       {std::pair("table", "plane"), std::pair("wall", "plane"), std::pair("ball", "sphere")}) {
+    Node entry = Node::map();
+    entry.set("method", Node::of(std::string(method)));
+    data.sets.push_back(make_set(name, entry, problems));
+  }
+  ASSERT_FALSE(problems.any());
+  constexpr int kRows = 300;
+  std::vector<int> row(kRows);
+  std::iota(row.begin(), row.end(), 0);
+  for (const int each : row) data.rows.set.push_back(each % 3);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd noise(kRows), leaves = Eigen::VectorXd::Ones(kRows);
+  for (double& each : noise) each = normal(random);
+  EXPECT_EQ(unlike_noise(data, row, noise, leaves), std::vector<double>(3, 1.0));
+
+  Eigen::VectorXd unlike = noise;
+  for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] *= 4;
+  const std::vector<double> told = unlike_noise(data, row, unlike, leaves);
+  EXPECT_EQ(told[0], told[1]);
+  // The log of a variance that 100 freedoms tell by the median, to three sigma: 3 (5.4 / 100)^1/2.
+  EXPECT_NEAR(std::log(told[2] / told[0]), std::log(16), 0.7);
+
+  // Spheres that their own unknowns meet exactly say nothing of the others' noise.
+  for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] = leaves[i] = 1e-9;
+  EXPECT_EQ(unlike_noise(data, row, unlike, leaves), std::vector<double>(3, 1.0));
 }
 
 TEST(Kept, HoldsWhatNoRowCarries) {
