@@ -56,7 +56,8 @@ Closed closed(const std::vector<ValidationRow>& rows, Square square, unsigned lo
               double floor_freedom) {
   const std::vector<Sums> blocks = sums_of(rows, square);
   Closed part{fraction(total(blocks))};
-  if (!part.fraction || blocks.size() < kDiagnosis.validation.fewest_blocks) return part;
+  part.too_few = blocks.size() < kDiagnosis.validation.fewest_blocks;
+  if (!part.fraction || part.too_few) return part;
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<size_t> pick(0, blocks.size() - 1);
   std::chi_squared_distribution<double> spread(std::isfinite(floor_freedom) ? floor_freedom : 1);

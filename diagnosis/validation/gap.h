@@ -26,6 +26,7 @@ struct Closed {
   /// drawn from.
   double least = -std::numeric_limits<double>::infinity(),
          most = std::numeric_limits<double>::infinity();
+  bool too_few = false;  ///< blocks, and for that no interval
 };
 
 /// Of the calibrated model (before), with the named effects and no others (after; the calibrated

@@ -142,6 +142,15 @@ TEST(DiagnosisSummary, GivesNoIntervalSoNearTheNoise) {
   EXPECT_TRUE(to_json(diagnosis)["gap"]["closed_interval"].is_null());
 }
 
+TEST(DiagnosisSummary, GivesNoIntervalOfTooFewRows) {
+  Diagnosis diagnosis = named({true});
+  std::vector<ValidationRow> rows;  // far beyond the noise, in four blocks
+  for (int block = 0; block < 4; ++block)
+    rows.push_back({.before = 100, .after = 10, .all = 10, .floor = 1, .block = block});
+  diagnosis.gap.closed = gap_of(rows, 1).closed;
+  EXPECT_THAT(summary(diagnosis), HasSubstr("is closed (too few rows judge it for an interval)"));
+}
+
 TEST(DiagnosisJson, NamesAllThatAreSureWithTheirShares) {
   Diagnosis diagnosis = named({true, true});
   diagnosis.named[0].closes_alone = 0.5;
