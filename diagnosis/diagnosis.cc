@@ -53,7 +53,7 @@ class Diagnostician {
     validate_correction(linearised_, freedom_alone(), posterior_, data_, options_, result_);
     result_.why = verdict_in_words(result_);
     if (const std::string doubt = doubt_of(linearised_, data_, result_); !doubt.empty())
-      withdraw(doubt, result_);
+      withdraw(doubt, options_, result_);
     return std::move(result_);
   }
 
@@ -199,6 +199,8 @@ void cross_validate(const std::shared_ptr<const Robot>& robot, const DataSet& da
       diagnosis.validation_rows.push_back(row);
     }
   }
+  if (diagnosis.named.empty())  // a third may name what the whole does not
+    for (ValidationRow& row : diagnosis.validation_rows) row.after = row.before;
   diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom);
   diagnosis.gap.validated_on = "folds";
 }

@@ -88,7 +88,8 @@ constexpr double kTakenIn = 0.2;
 
 /// Where the maker's robot is far from the rows, says first what is likely wrong with the files,
 /// and names no cause of a gap that one slip in them explains or that calibration leaves gross.
-void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosis& diagnosis) {
+void look_at_files_first(const std::string& path, const Inputs& inputs,
+                         const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const LikelyWrong wrong =
       likely_wrong(path, inputs.measured, inputs.robot,
                    {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values});
@@ -97,7 +98,7 @@ void look_at_files_first(const std::string& path, const Inputs& inputs, Diagnosi
   if (!diagnosis.named.empty() && (wrong.explained || !taken_in))
     withdraw(wrong.explained ? "one slip in the files explains the rows"
                              : "calibration does not take in what is wrong with the files",
-             diagnosis);
+             options, diagnosis);
   diagnosis.warnings.insert(diagnosis.warnings.begin(), wrong.words);
   diagnosis.why = wrong.words + " As the files are: " + diagnosis.why;
   NextStep step;
@@ -133,7 +134,7 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
       inputs.measured.name, diagnose(inputs.robot, data, *options, shown_on(line)), {}, {}};
   if (!found.diagnosis.problem.empty())
     return bad_input(arguments.data_set + ": " + found.diagnosis.problem);
-  look_at_files_first(arguments.data_set, inputs, found.diagnosis);
+  look_at_files_first(arguments.data_set, inputs, *options, found.diagnosis);
   if (inputs.before)
     found.since = {inputs.before->name, compare(inputs.robot, inputs.before->data, data,
                                                 Between::sessions, {}, shown_on(line))};

@@ -166,6 +166,19 @@ std::string moved_between_rows(const LinearisedModel& linearised, const DataSet&
   return steps.empty() ? "" : step_words(steps.front());
 }
 
+/// The same robot, none of whose effects is named.
+std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& robot) {
+  std::vector<Node> entries;
+  for (const Node& each : effect_entries(*robot)) {
+    entries.push_back(each.without({"named"}));
+    entries.back().set("named", Node::of(std::string("false")));
+  }
+  Problems problems;
+  std::shared_ptr<const Robot> same = correct(geometry_of(robot), entries, {}, problems);
+  expects(same != nullptr, "the effects of a robot are those that it can have");
+  return same;
+}
+
 }  // namespace
 
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
@@ -181,9 +194,15 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   return !settled && hardly_closes(diagnosis) ? beyond_sheet(linearised, data) : std::string();
 }
 
-void withdraw(const std::string& doubt, Diagnosis& diagnosis) {
+void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const bool named = !diagnosis.named.empty();
   diagnosis.named.clear();
+  for (FoundEffect& each : diagnosis.found) each.named = false;
+  if (named) diagnosis.model = without_names(diagnosis.model);
+  for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
+  std::string validated_on = std::move(diagnosis.gap.validated_on);
+  diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom);
+  diagnosis.gap.validated_on = std::move(validated_on);
   const auto unknown = std::ranges::find(diagnosis.candidates, kUnknown, &CauseResult::effect);
   if (unknown != diagnosis.candidates.end() && unknown->probability < kDiagnosis.report.withdrawn) {
     const double others =

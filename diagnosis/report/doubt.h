@@ -23,6 +23,6 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis);
 
 /// Takes back what is named: the verdict is `unknown`, and its words begin with the doubt.
-void withdraw(const std::string& doubt, Diagnosis& diagnosis);
+void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis);
 
 }  // namespace selfcal

@@ -6,6 +6,7 @@
 
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "kinematics/corrected_robot.h"
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {
@@ -101,6 +102,29 @@ TEST(Doubt, NamesNothingWhereTheInstrumentWasMoved) {
   EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
   EXPECT_TRUE(diagnosis.named.empty());
   EXPECT_THAT(diagnosis.why, HasSubstr("between rows 35 and 36 the instrument of set tracker"));
+}
+
+TEST(Withdraw, LeavesNothingNamedAndNothingClosedByIt) {
+  Diagnosis diagnosis;
+  diagnosis.named = {{.effect = "backlash", .where = {"j1"}}};
+  diagnosis.found = {{.what = {"backlash", "j1", {}}, .values = {{"play", 1e-4}}, .named = true}};
+  Problems problems;
+  diagnosis.model = correct(Rows().robot, entries_of(diagnosis.found), {}, problems);
+  ASSERT_FALSE(problems.any()) << problems.list.front();
+  for (int row = 0; row < 10; ++row)
+    diagnosis.validation_rows.push_back(
+        {.before = 100, .after = 10, .all = 10, .floor = 1, .block = row});
+  diagnosis.gap = gap_of(diagnosis.validation_rows, 1);
+  withdraw("the instrument was moved", quick(), diagnosis);
+  EXPECT_TRUE(diagnosis.named.empty());
+  EXPECT_FALSE(diagnosis.found.front().named);
+  EXPECT_EQ(effect_entries(*diagnosis.model).front().find("named")->text, "false");
+  EXPECT_EQ(diagnosis.gap.rms_after, diagnosis.gap.rms_before);
+  EXPECT_EQ(diagnosis.gap.max_after, diagnosis.gap.max_before);
+  EXPECT_EQ(diagnosis.gap.closed.fraction, 0);
+  // What is found closes what it closes.
+  EXPECT_LT(diagnosis.gap.rms_all, diagnosis.gap.rms_before);
+  EXPECT_GT(diagnosis.gap.closed_all.fraction, 0.5);
 }
 
 }  // namespace
