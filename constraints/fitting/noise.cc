@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
+#include "constraints/methods/instrument.h"
 #include "constraints/statistics.h"
 #include "kinematics/size.h"
 
@@ -108,16 +108,12 @@ bool find_outliers(const SetNoise& set, const Scale& scale, const NoiseRule& rul
   return far.size() > most;
 }
 
-/// By set, the squares of all sets of its method and stated noise together.
+/// By set, the squares of all sets of its instrument together.
 std::vector<Squares> pooled(const std::vector<Set>& sets, const std::vector<Squares>& by_set) {
-  using Kind = std::tuple<std::string_view, double, double>;
-  const auto kind = [&](size_t s) {
-    return Kind(sets[s].method->name(), sets[s].noise, sets[s].noise_angle);
-  };
-  std::map<Kind, Squares> sums;
-  for (size_t s = 0; s < sets.size(); ++s) sums[kind(s)] += by_set[s];
+  std::map<Instrument, Squares> sums;
+  for (size_t s = 0; s < sets.size(); ++s) sums[instrument_of(sets[s])] += by_set[s];
   std::vector<Squares> list;
-  for (size_t s = 0; s < sets.size(); ++s) list.push_back(sums[kind(s)]);
+  for (const Set& set : sets) list.push_back(sums[instrument_of(set)]);
   return list;
 }
 

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <string_view>
-#include <tuple>
 
+#include "constraints/methods/instrument.h"
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
 
@@ -16,10 +15,6 @@ namespace {
 /// Variance of the log of a variance that is told from the middle of so many freedoms, times these:
 /// 2 over the efficiency of 0.37 (Rousseeuw and Croux 1993).
 constexpr double kOfMedian = 5.4;
-
-using Kind = std::tuple<std::string_view, double, double>;
-/// Sets of one method and stated noise.
-Kind kind_of(const Set& set) { return {set.method->name(), set.noise, set.noise_angle}; }
 
 /// From the middle of the residuals: no false row moves it, and where structure that nobody knows
 /// adds to the noise it holds both.
@@ -36,16 +31,16 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
 }  // namespace
 
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
-  std::map<Kind, std::pair<double, double>> pooled;  // squares, rows
+  std::map<Instrument, std::pair<double, double>> pooled;  // squares, rows
   for (size_t s = 0; s < fitted.rows.size(); ++s) {
     if (fitted.rows[s] == 0) continue;
-    auto& [squares, rows] = pooled[kind_of(data.sets[s])];
+    auto& [squares, rows] = pooled[instrument_of(data.sets[s])];
     squares += fitted.rows[s] * std::pow(fitted.noise.estimated[s].length, 2);
     rows += fitted.rows[s];
   }
   std::vector<Scale> noise = fitted.noise.estimated;
   for (size_t s = 0; s < noise.size(); ++s)
-    if (const auto found = pooled.find(kind_of(data.sets[s])); found != pooled.end())
+    if (const auto found = pooled.find(instrument_of(data.sets[s])); found != pooled.end())
       noise[s].length = std::sqrt(found->second.first / found->second.second);
   return noise;
 }
@@ -57,21 +52,21 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
     double freedom = 0, variance = 1;
     double log_sigma() const { return std::sqrt(kOfMedian / freedom); }
   };
-  std::map<Kind, Left> by_kind;
+  std::map<Instrument, Left> by_instrument;
   for (size_t i = 0; i < row.size(); ++i) {
     if (row[i] < 0) continue;
-    Left& left = by_kind[kind_of(data.sets[data.rows.set[row[i]]])];
+    Left& left = by_instrument[instrument_of(data.sets[data.rows.set[row[i]]])];
     left.sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
     left.freedom += leaves[static_cast<Eigen::Index>(i)];
   }
   // Those that their own unknowns meet tell nothing.
-  std::erase_if(by_kind, [](const auto& each) {
+  std::erase_if(by_instrument, [](const auto& each) {
     return each.second.freedom < kDiagnosis.rows.fewest_freedoms;
   });
   std::vector<double> unlike(data.sets.size(), 1);
   const Left *least = nullptr, *most = nullptr;
   double squares = 0, freedom = 0;
-  for (auto& [kind, left] : by_kind) {
+  for (auto& [instrument, left] : by_instrument) {
     const double share = left.freedom / static_cast<double>(left.sizes.size());
     left.variance =
         std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(left.sizes)), 2) / share;
@@ -85,7 +80,8 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
           kDiagnosis.rows.unlike * std::hypot(least->log_sigma(), most->log_sigma()))
     return unlike;
   for (size_t s = 0; s < unlike.size(); ++s)
-    if (const auto found = by_kind.find(kind_of(data.sets[s])); found != by_kind.end())
+    if (const auto found = by_instrument.find(instrument_of(data.sets[s]));
+        found != by_instrument.end())
       unlike[s] = found->second.variance * freedom / squares;
   return unlike;
 }
