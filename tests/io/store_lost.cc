@@ -1,7 +1,6 @@
 // A store that was lost is not taken for that of a new robot; one that is new is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
@@ -95,11 +94,7 @@ TEST(StoreLost, WhatWasReadOfADamagedStoreIsNotLostBeforeItHasItsName) {
     fill(*store);
     content = content_of(*store);
   }
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open((scratch.folder() / "selfcal.db").c_str(), &database), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(database);
+  with_sqlite(scratch.folder() / "selfcal.db", "PRAGMA journal_mode = DELETE");
   std::filesystem::rename(scratch.folder() / "selfcal.db", scratch.folder() / "selfcal.db.new");
   scratch.write("selfcal.db.damaged-1", "what was damaged");
 

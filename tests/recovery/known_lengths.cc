@@ -38,6 +38,20 @@ std::vector<SetPart> planes_and_a_step() {
   return parts;
 }
 
+struct Touched {
+  Eigen::VectorXd truth;
+  Session session;
+};
+
+/// What a robot touched of them where the step, of 0.2 m, is said to be of `distance` (m).
+Touched touched(const Robot& robot, const char* distance) {
+  Random random(2);
+  const Eigen::VectorXd truth = rx90_truth(robot, random, false);
+  Touched made{truth, make_session(robot, truth, planes_and_a_step(), 20e-6, random)};
+  give(made.session, "gauge", step("gauge", distance, 60));
+  return made;
+}
+
 /// The rms of the end position's error (m).
 double error(const Robot& robot, const Solution& solution, const Eigen::VectorXd& truth) {
   double square = 0;
@@ -53,11 +67,7 @@ TEST(KnownLength, IsNotCheckedByWhatTouchesLeave) {
        {", r: 0.5}\n  - {name: j1", ", d: 0.5", ", r: 0.5,", ", r: 0.3", ", r: 0.1"})
     text.insert(text.rfind(length), ", tolerance: {d: 0.8, r: 0.8}");
   const auto robot = robot_of(text);
-  Random random(2);
-  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
-  Session session = make_session(*robot, truth, planes_and_a_step(), 20e-6, random);
-  give(session, "gauge", step("gauge", "0.4", 60));
-  const Solution found = identify(*robot, session.data);
+  const Solution found = identify(*robot, touched(*robot, "0.4").session.data);
   std::printf("the maker's lengths tell the scale to %.0f %%, the length given is %.0f %% off\n",
               100 * found.scale.excess_sigma, 100 * found.scale.excess);
   EXPECT_GT(found.scale.excess_sigma, 0.2);
@@ -111,10 +121,7 @@ TEST(KnownLength, ThatIsRightIsSaidToCarryTheScaleAlone) {
 
 TEST(KnownLength, OfOnePerCentTooMuchIsNotBelieved) {
   const auto robot = robot_of(kRx90);
-  Random random(2);
-  const Eigen::VectorXd truth = rx90_truth(*robot, random, false);
-  Session session = make_session(*robot, truth, planes_and_a_step(), 20e-6, random);
-  give(session, "gauge", step("gauge", "0.202", 60));
+  const auto [truth, session] = touched(*robot, "0.202");
   const Solution wrong = identify(*robot, session.data);
   EXPECT_EQ(wrong.verdict.answer, Answer::not_determined) << wrong.verdict.why;
   EXPECT_THAT(wrong.verdict.why, HasSubstr("distance from a of set gauge is given as 202 mm"));
