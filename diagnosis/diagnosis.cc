@@ -95,6 +95,7 @@ class Diagnostician {
     if (structure)
       p.unknown = p_of_unknown(linearised_, *evaluator_, best_with_structure(), data_.rows,
                                options_.resamples, options_.seed);
+    if (structure) result_.unknown = domain_of_unknown(*evaluator_, posterior_);
     const bool asked_unknown = named.effect == kUnknown;
     result_.verdict = decided(std::move(named), posterior_, p, options_);
     result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;

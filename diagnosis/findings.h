@@ -12,6 +12,7 @@
 #include "constraints/methods/observations.h"
 #include "constraints/solution.h"
 #include "diagnosis/evidence/hypothesis.h"
+#include "diagnosis/evidence/kernel_domain.h"
 #include "diagnosis/options.h"
 #include "diagnosis/validation/correction.h"
 #include "diagnosis/validation/gap.h"
@@ -104,7 +105,8 @@ struct Diagnosis {
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
   /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
   std::vector<CauseResult> named;
-  std::string why;     ///< the verdict in words
+  std::optional<KernelDomain> unknown = {};  ///< how the rows err that `unknown` explains
+  std::string why;                           ///< the verdict in words
   double p_value = 1;  ///< of the verdict, or of what it was refused for; (1 + k) / (1 + B)
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
   SimulationBasedCalibration simulation;

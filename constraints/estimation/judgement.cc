@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "constraints/statistics.h"
@@ -115,20 +114,6 @@ std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, co
   return rows;
 }
 
-/// Numbers of the configurations that the rows are of.
-std::vector<int> configurations_of(const DataSet& data, const std::vector<RowResidual>& rows) {
-  std::vector<int> list;
-  list.reserve(rows.size());
-  std::map<std::pair<int, int>, int> known;  // by set and repeat
-  int count = 0;
-  for (const RowResidual& row : rows) {
-    const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[row.row];
-    const bool added = repeat < 0 || known.try_emplace({row.set, repeat}, count).second;
-    list.push_back(added ? count++ : known.at({row.set, repeat}));
-  }
-  return list;
-}
-
 }  // namespace
 
 bool is_outlier(const RowResidual& r, const Judged& judged) {
@@ -195,10 +180,10 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
     if (!outlier[after.fit[i].row]) fit.add(before.fit_norms[i], after.fit[i], false);
   std::vector<char> check_outlier(outlier.size(), 0);
   std::vector<Tally> of_set(data.sets.size());
-  const std::vector<int> configuration = configurations_of(data, after.check);
+  const std::vector<int> configuration = configurations(data.rows);
   for (size_t i = 0; i < after.check.size(); ++i) {
     const RowResidual& row = after.check[i];
-    result.check_rows[i].configuration = configuration[i];
+    result.check_rows[i].configuration = configuration[row.row];
     const bool is_far = result.check_rows[i].outlier;
     check_outlier[row.row] = is_far;
     check.add(norm_of_row(before.check[i]), row, is_far);

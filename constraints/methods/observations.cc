@@ -1,11 +1,15 @@
 #include "constraints/methods/observations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace selfcal {
 namespace {
 
+constexpr double kAtOnce = 60;  // s
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <class Column>
@@ -93,6 +97,45 @@ Observations joined(const Observations& a, const Observations& b) {
     for (const auto& [name, column] : *measured)
       all.measured[name] = stacked(a.column(name), b.column(name), n, m, kNaN);
   return all;
+}
+
+std::vector<int> in_time(const Observations& rows) {
+  std::vector<int> order(static_cast<size_t>(rows.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  if (rows.time.size() > 0 && rows.time.allFinite())
+    std::ranges::stable_sort(order, {}, [&](int row) { return rows.time[row]; });
+  return order;
+}
+
+std::vector<int> configurations(const Observations& rows) {
+  std::vector<int> numbers(static_cast<size_t>(rows.rows()));
+  std::map<std::pair<int, int>, int> known;  // by set and repeat
+  int count = 0;
+  for (const int row : in_time(rows)) {
+    const int repeat = rows.repeat.empty() ? -1 : rows.repeat[row];
+    if (repeat < 0)
+      numbers[row] = count++;
+    else if (const auto [found, made] = known.try_emplace({rows.set[row], repeat}, count); made)
+      numbers[row] = count++;
+    else
+      numbers[row] = found->second;
+  }
+  return numbers;
+}
+
+bool repeats_row_before(const Observations& rows, int row) {
+  if (row == 0) return false;
+  const int before = row - 1;
+  const auto same = [&](const Eigen::MatrixXd& column) {
+    return column.rows() == 0 ||
+           (column.row(row).array() == column.row(before).array() ||
+            (column.row(row).array().isNaN() && column.row(before).array().isNaN()))
+               .all();
+  };
+  const bool later = rows.time.size() > 0 && std::abs(rows.time[row] - rows.time[before]) > kAtOnce;
+  return !later && rows.set[row] == rows.set[before] && rows.group[row] == rows.group[before] &&
+         rows.check[row] == rows.check[before] && same(rows.q) && same(rows.wrench) &&
+         (rows.velocity.rows() == 0 || same(rows.velocity.array().sign()));
 }
 
 MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows) {

@@ -57,6 +57,18 @@ Observations taken(const Observations& data, const std::vector<int>& rows);
 /// cells are NaN, -1 of a repeat, 1 of a noise factor; what both lack is lacking.
 Observations joined(const Observations& a, const Observations& b);
 
+/// The rows, the first taken first: by their times where all have one, by their order otherwise.
+std::vector<int> in_time(const Observations& rows);
+
+/// By row, the number of its configuration, the first taken first: rows of one set and `repeat` are
+/// of one, any other row is alone.
+std::vector<int> configurations(const Observations& rows);
+
+/// Whether `row` was measured where the row before it was: both of one set, group and part, the
+/// readings and the load the same in every digit, each joint come from the same side, no more than
+/// a minute later where both have their times.
+bool repeats_row_before(const Observations& rows, int row);
+
 /// What else held when `rows` were taken, a lane each.
 MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows);
 

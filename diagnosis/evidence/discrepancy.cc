@@ -7,7 +7,6 @@
 // the difference of reading a: functions of one reading and of two, all of them smooth.
 #include "diagnosis/evidence/discrepancy.h"
 
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -104,17 +103,16 @@ class Kernel {
  private:
   /// The rows that have equations, and the equations of each configuration.
   void number() {
-    std::map<int, int> place;                 // of a row, among those used
-    std::map<std::array<int, 3>, int> block;  // of a row, or of a set and its repeat
+    std::map<int, int> place;  // of a row, among those used
+    const std::vector<int> configuration = configurations(data_);
+    std::map<std::pair<int, int>, int> block;  // of a configuration, or of an equation of no row
     for (int i = 0; i < static_cast<int>(rows_.row.size()); ++i) {
       const int row = rows_.row[i];
       const auto [found, made] = place.try_emplace(row, static_cast<int>(used_.size()));
       if (made && row >= 0) used_.push_back(row);
       place_.push_back(row < 0 ? -1 : found->second);
-      const bool repeated = row >= 0 && !data_.repeat.empty() && data_.repeat[row] >= 0;
-      const std::array<int, 3> key = row < 0    ? std::array{-1, -1, i}
-                                     : repeated ? std::array{data_.set[row], data_.repeat[row], -1}
-                                                : std::array{-1, row, -1};
+      const std::pair<int, int> key =
+          row < 0 ? std::pair(-1, i) : std::pair(configuration[row], -1);
       const auto [at, first] = block.try_emplace(key, static_cast<int>(blocks_.size()));
       if (first) blocks_.emplace_back();
       blocks_[at->second].push_back(i);
@@ -178,22 +176,6 @@ class Kernel {
 };
 
 }  // namespace
-
-std::string_view to_string(KernelDomain domain) {
-  switch (domain) {
-    case KernelDomain::same:
-      return "configuration";
-    case KernelDomain::joints:
-      return "joint angles";
-    case KernelDomain::place:
-      return "place";
-    case KernelDomain::time:
-      return "time";
-    case KernelDomain::turned:
-      return "joint errors";
-  }
-  return "";
-}
 
 Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
   for (Eigen::Index j = 0; j < q.cols(); ++j) {

@@ -2,25 +2,15 @@
 // other share.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "constraints/equations/equations.h"
 #include "constraints/equations/resolution.h"
 #include "diagnosis/evidence/evidence_rows.h"
+#include "diagnosis/evidence/kernel_domain.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
-
-/// What close means.
-enum class KernelDomain {
-  same = 1,    ///< only repeats: anything that a configuration brings along, at every visit
-  joints = 2,  ///< similar joint readings
-  place = 3,   ///< near each other in the cell
-  time = 4,    ///< soon after each other, as the tool sees it: of the base it would be a drift
-  turned = 5,  ///< one joint is off by a smooth function of one or two readings
-};
-std::string_view to_string(KernelDomain domain);
 
 /// Noise alone first (and noise that repeats share a part of), then every domain at several
 /// sizes over the noise. `of_visits` is the noise from visit to visit over that of immediate

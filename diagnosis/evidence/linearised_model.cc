@@ -74,7 +74,8 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
 void LinearisedModel::bound_noise() {
   const std::vector<Scale> declared = declared_noise(data_);
   for (size_t s = 0; s < noise_.size(); ++s) {
-    if (declared[s].length > noise_[s].length) quieter_.push_back(static_cast<int>(s));
+    if (declared[s].length > noise_[s].length || declared[s].angle > noise_[s].angle)
+      quieter_.push_back(static_cast<int>(s));
     noise_[s] = {std::max(noise_[s].length, declared[s].length),
                  std::max(noise_[s].angle, declared[s].angle)};
   }

@@ -31,17 +31,28 @@ double robust_variance(const DenseEquations& all, const Eigen::VectorXd& residua
 }  // namespace
 
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
-  std::map<Instrument, std::pair<double, double>> pooled;  // squares, rows
+  struct Pooled {
+    double lengths = 0, angles = 0, rows = 0;  // squares of both
+  };
+  std::map<Instrument, Pooled> by_instrument;
   for (size_t s = 0; s < fitted.rows.size(); ++s) {
     if (fitted.rows[s] == 0) continue;
-    auto& [squares, rows] = pooled[instrument_of(data.sets[s])];
-    squares += fitted.rows[s] * std::pow(fitted.noise.estimated[s].length, 2);
-    rows += fitted.rows[s];
+    Pooled& pooled = by_instrument[instrument_of(data.sets[s])];
+    pooled.lengths += fitted.rows[s] * std::pow(fitted.noise.estimated[s].length, 2);
+    pooled.angles += fitted.rows[s] * std::pow(fitted.noise.estimated[s].angle, 2);
+    pooled.rows += fitted.rows[s];
   }
   std::vector<Scale> noise = fitted.noise.estimated;
-  for (size_t s = 0; s < noise.size(); ++s)
-    if (const auto found = pooled.find(instrument_of(data.sets[s])); found != pooled.end())
-      noise[s].length = std::sqrt(found->second.first / found->second.second);
+  for (size_t s = 0; s < noise.size(); ++s) {
+    const Set& set = data.sets[s];
+    if (const auto found = by_instrument.find(instrument_of(set)); found != by_instrument.end()) {
+      const Pooled& pooled = found->second;
+      noise[s] = {std::sqrt(pooled.lengths / pooled.rows), std::sqrt(pooled.angles / pooled.rows)};
+    } else if (set.noise > 0 || set.noise_angle > 0) {
+      noise[s] = {set.noise > 0 ? set.noise : noise[s].length,
+                  set.noise_angle > 0 ? set.noise_angle : noise[s].angle};
+    }
+  }
   return noise;
 }
 
@@ -102,23 +113,20 @@ std::vector<Scale> declared_noise(const DataSet& data) {
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most) {
   const double step = std::max(1.0, equations / most);
   std::vector<char> take(static_cast<size_t>(rows.rows()), 0);
-  std::map<int, char> repeats;
-  double stretches = 0, configurations = 0;
+  const std::vector<int> configuration = configurations(rows);
+  std::map<int, char> decided;  // by configuration
+  double stretches = 0, count = 0;
   const auto next = [&] {
     const double within = stretches * std::numbers::phi;
     return std::floor((stretches + within - std::floor(within)) * step);
   };
   for (size_t row = 0; row < take.size(); ++row) {
     if (rows.check[row]) continue;
-    const int repeat = rows.repeat.empty() ? -1 : rows.repeat[row];
-    if (repeat >= 0 && repeats.contains(repeat)) {
-      take[row] = repeats[repeat];
-      continue;
-    }
-    take[row] = configurations >= next();
-    if (take[row]) stretches += 1;
-    configurations += 1;
-    if (repeat >= 0) repeats[repeat] = take[row];
+    const auto [found, made] = decided.try_emplace(configuration[row], count >= next());
+    take[row] = found->second;
+    if (!made) continue;
+    stretches += take[row];
+    count += 1;
   }
   return take;
 }

@@ -9,8 +9,8 @@
 namespace selfcal {
 
 /// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method
-/// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one.
-/// By set.
+/// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one;
+/// of a set whose rows all judge, with no other of its kind, what its data sheet says. By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
 /// Variance of the noise of each set over that of all, from what the best explanation leaves
 /// (`residuals`) of equations of `row`, each of which keeps the share `leaves` beyond the geometry:

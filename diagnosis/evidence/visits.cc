@@ -5,11 +5,10 @@
 #include "diagnosis/evidence/visits.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
+#include <utility>
 
 #include "diagnosis/constants.h"
 
@@ -30,14 +29,12 @@ struct Sum {
 }  // namespace
 
 std::vector<int> visits(const Observations& rows) {
-  std::vector<int> order(static_cast<size_t>(rows.rows())), visit(order.size(), 0);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> visit(static_cast<size_t>(rows.rows()), 0);
+  const std::vector<int> configuration = configurations(rows);
   const bool timed = rows.time.size() > 0 && rows.time.allFinite();
-  if (timed) std::ranges::stable_sort(order, {}, [&](int row) { return rows.time[row]; });
   int last = -1, count = -1;
-  for (const int row : order) {
-    const bool again = last >= 0 && !rows.repeat.empty() && rows.repeat[row] >= 0 &&
-                       rows.repeat[row] == rows.repeat[last] && rows.set[row] == rows.set[last] &&
+  for (const int row : in_time(rows)) {
+    const bool again = last >= 0 && configuration[row] == configuration[last] &&
                        !(timed && rows.time[row] - rows.time[last] > kDiagnosis.rows.at_once);
     count += !again;
     visit[row] = count;
@@ -50,7 +47,8 @@ double noise_of_visits(const Observations& data, const DenseEquations& rows,
                        const Eigen::VectorXd& left) {
   if (data.repeat.empty()) return 0;
   const std::vector<int> visit = visits(data);
-  using Key = std::array<int, 3>;  // set, visit or repeat, which of the row's equations
+  const std::vector<int> configuration = configurations(data);
+  using Key = std::pair<int, int>;  // visit or configuration, which of the row's equations
   std::map<Key, Sum> of_visit;
   std::map<Key, std::set<int>> visits_of;
   int equation = 0;
@@ -58,8 +56,8 @@ double noise_of_visits(const Observations& data, const DenseEquations& rows,
     const int row = rows.row[i];
     equation = i > 0 && rows.row[i - 1] == row ? equation + 1 : 0;
     if (row < 0 || data.repeat[row] < 0) continue;
-    of_visit[{data.set[row], visit[row], equation}].add(left[static_cast<Eigen::Index>(i)]);
-    visits_of[{data.set[row], data.repeat[row], equation}].insert(visit[row]);
+    of_visit[{visit[row], equation}].add(left[static_cast<Eigen::Index>(i)]);
+    visits_of[{configuration[row], equation}].insert(visit[row]);
   }
   double within = 0, of_repeats = 0, between = 0, again = 0, of_means = 0;
   for (const auto& [key, sum] : of_visit) {
@@ -70,7 +68,7 @@ double noise_of_visits(const Observations& data, const DenseEquations& rows,
     const auto n = static_cast<double>(list.size());
     Sum means;
     for (const int each : list) {
-      const Sum& sum = of_visit[{key[0], each, key[2]}];
+      const Sum& sum = of_visit[{each, key.second}];
       means.add(sum.mean());
       of_means += (1 - 1 / n) / sum.n;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <optional>
 
 #include "diagnosis/constants.h"
 #include "kinematics/readable.h"
@@ -103,6 +104,16 @@ std::string likelier_than_none(const Diagnosis& diagnosis) {
   return words;
 }
 
+/// ": rows near each other in the cell err alike; look at the machine, or …".
+std::string of_unknown(std::optional<KernelDomain> domain) {
+  const std::string advice =
+      domain == KernelDomain::same
+          ? "look at the machine, or go to some of them again from elsewhere: what a robot does "
+            "not repeat looks like this"
+          : "look at the machine, or repeat some configurations to be sure of the noise";
+  return ": " + (domain ? std::string(in_words(*domain)) + "; " : std::string()) + advice;
+}
+
 std::string no_cause(const Diagnosis& diagnosis) {
   if (const std::string likelier = likelier_than_none(diagnosis); !likelier.empty())
     return "no cause is named: these rows do not settle it (" + likelier +
@@ -135,8 +146,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
       beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
   return "there is structure that no known effect explains" +
          phrase(" (probability %.2f, p %.2g)", verdict.probability, diagnosis.p_value) + beside +
-         ": look at the machine, or repeat some configurations to be sure of the noise" +
-         unusual_sizes(diagnosis.named);
+         of_unknown(diagnosis.unknown) + unusual_sizes(diagnosis.named);
 }
 
 }  // namespace selfcal

@@ -33,11 +33,19 @@ std::string of_gears(const LinearisedModel& linearised) {
          gears;
 }
 
+std::string stated_noise(const Set& set) {
+  std::string text;
+  if (set.noise > 0) text += format_number(1e3 * set.noise) + " mm";
+  if (set.noise_angle > 0)
+    text += (text.empty() ? "" : ", ") + format_number(1e3 * set.noise_angle) + " mrad";
+  return text;
+}
+
 std::string of_noise(const LinearisedModel& linearised, const DataSet& data) {
   std::string sets;
   for (const int s : linearised.quieter())
-    sets += (sets.empty() ? "" : ", ") + data.sets[s].name + " (" +
-            format_number(1e3 * data.sets[s].noise) + " mm)";
+    sets +=
+        (sets.empty() ? "" : ", ") + data.sets[s].name + " (" + stated_noise(data.sets[s]) + ")";
   if (sets.empty()) return {};
   return "the noise is taken from the data sheet, of " + sets +
          ": calibration leaves less there, and no row is repeated that would tell what it really "

@@ -212,6 +212,20 @@ std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
   return Teller(linearised, evaluator, posterior).causes();
 }
 
+std::optional<KernelDomain> domain_of_unknown(const EvidenceEvaluator& evaluator,
+                                              const Posterior& posterior) {
+  std::map<int, double> by_domain;
+  double all = 0;
+  for (const Hypothesis& h : posterior.hypotheses)
+    if (const int kind = evaluator.structure(h.structure).kind; kind > 0) {
+      by_domain[kind] += std::exp(h.log_weight);
+      all += std::exp(h.log_weight);
+    }
+  for (const auto& [kind, weight] : by_domain)
+    if (weight > all / 2) return static_cast<KernelDomain>(kind);
+  return std::nullopt;
+}
+
 CauseResult without_cause(const Posterior& posterior) {
   if (posterior.unknown > kDiagnosis.naming.probable)
     return {.effect = kUnknown, .probability = posterior.unknown};

@@ -1,7 +1,10 @@
 // From the posterior of hypotheses to the causes that a person is told.
 #pragma once
 
+#include <optional>
+
 #include "diagnosis/evidence/evidence_evaluator.h"
+#include "diagnosis/evidence/kernel_domain.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/findings.h"
 
@@ -11,6 +14,10 @@ namespace selfcal {
 std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
                                        const EvidenceEvaluator& evaluator,
                                        const Posterior& posterior);
+
+/// How the rows err that the unknown explains, where one way is more probable than all others.
+std::optional<KernelDomain> domain_of_unknown(const EvidenceEvaluator& evaluator,
+                                              const Posterior& posterior);
 
 /// What is said where no cause is named: `none`, or `unknown` where that is more probable than not.
 CauseResult without_cause(const Posterior& posterior);

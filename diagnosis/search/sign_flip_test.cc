@@ -20,13 +20,16 @@ double drawn_sign(SignRandom& random) { return (random() & 1) ? 1 : -1; }
 /// `residual` with one sign for each configuration, and one for each equation that no row carries.
 Eigen::VectorXd flipped(const Eigen::VectorXd& residual, const DenseEquations& kept,
                         const Observations& data, SignRandom& random) {
-  std::map<std::pair<int, int>, double> sign;  // by repeat group, or by row
+  const std::vector<int> configuration = configurations(data);
+  std::map<int, double> sign;  // by configuration
   Eigen::VectorXd out = residual;
   for (Eigen::Index e = 0; e < out.size(); ++e) {
     const int row = kept.row[static_cast<size_t>(e)];
-    const bool repeated = row >= 0 && !data.repeat.empty() && data.repeat[row] >= 0;
-    const std::pair<int, int> key = repeated ? std::pair(1, data.repeat[row]) : std::pair(0, row);
-    const auto [found, made] = sign.try_emplace(key, 0.0);
+    if (row < 0) {
+      out[e] *= drawn_sign(random);
+      continue;
+    }
+    const auto [found, made] = sign.try_emplace(configuration[row], 0.0);
     if (made) found->second = drawn_sign(random);
     out[e] *= found->second;
   }

@@ -237,6 +237,27 @@ Result<void> read_rows(const std::filesystem::path& path, RowReader& reader, int
   return {};
 }
 
+/// Where no column names them, rows that repeat the one before are its immediate repeats: what is
+/// to be said of it.
+std::optional<std::string> label_repeats(DataSet& data) {
+  Observations& rows = data.rows;
+  if (!rows.repeat.empty()) return std::nullopt;
+  std::vector<int> repeat(static_cast<std::size_t>(rows.rows()), -1);
+  int labels = 0, first = 0;
+  for (int row = 1; row < rows.rows(); ++row) {
+    if (data.sets[rows.set[row]].method->paired() || !repeats_row_before(rows, row)) continue;
+    if (labels == 0) first = row;
+    if (repeat[row - 1] < 0) repeat[row - 1] = labels++;
+    repeat[row] = repeat[row - 1];
+  }
+  if (labels == 0) return std::nullopt;
+  const auto repeats = std::ranges::count_if(repeat, [](int each) { return each >= 0; }) - labels;
+  rows.repeat = std::move(repeat);
+  return std::to_string(repeats) + (repeats > 1 ? " rows have" : " row has") +
+         " the readings of the row before, first row " + std::to_string(first + 1) +
+         ": taken as its immediate repeats";
+}
+
 }  // namespace
 
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
@@ -248,6 +269,7 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
     notices.push_back(path.string() + ": " + notice);
   }
   reader.hand_over();
+  if (const auto repeats = label_repeats(data)) notices.push_back(path.string() + ": " + *repeats);
   return {};
 }
 

@@ -27,6 +27,7 @@ struct Rows {
       RowResidual row;
       row.row = static_cast<int>(nominal.check.size());
       row.set = set;
+      data.rows.set.push_back(set);
       row.lengths = 1;
       row.length = before + i * kMicrometre / 100;  // no ties
       nominal.check.push_back(row);
@@ -35,6 +36,7 @@ struct Rows {
       nominal.check_places.emplace_back();
       calibrated.check_places.emplace_back();
     }
+    data.rows.q.setZero(static_cast<Eigen::Index>(nominal.check.size()), 1);
   }
 
   /// Angles of the last `count` rows (rad).

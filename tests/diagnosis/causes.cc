@@ -140,6 +140,22 @@ TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
             "some configurations to be sure of the noise");
 }
 
+TEST(VerdictInWords, TellsHowTheUnknownErrsAndWhatWouldShow) {
+  Diagnosis diagnosis = with({.effect = kUnknown, .probability = 0.99});
+  diagnosis.candidates.resize(1);
+  diagnosis.unknown = KernelDomain::place;
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "there is structure that no known effect explains (probability 0.99, p 0.005): rows "
+            "near each other in the cell err alike; look at the machine, or repeat some "
+            "configurations to be sure of the noise");
+  diagnosis.unknown = KernelDomain::same;
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "there is structure that no known effect explains (probability 0.99, p 0.005): the "
+            "repeats of a configuration err alike, and no other rows with them; look at the "
+            "machine, or go to some of them again from elsewhere: what a robot does not repeat "
+            "looks like this");
+}
+
 TEST(VerdictInWords, SaysThatTheRowsDoNotSettleItWhereACauseIsLikelierThanNone) {
   Diagnosis diagnosis = with({.effect = kNone, .probability = 0.24});
   diagnosis.p_value = 0.04;

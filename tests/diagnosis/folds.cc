@@ -52,6 +52,26 @@ TEST(Folds, KeepRepeatsTogetherAndLeaveOutStretches) {
   }
 }
 
+TEST(Folds, AndBlocksGoByTheTimesAndNotByTheOrderInTheFile) {
+  DataSet data = forty_rows();
+  data.rows.time = Eigen::VectorXd::LinSpaced(40, 0, 39);
+  std::vector<int> order(40);
+  for (int row = 0; row < 40; ++row) order[row] = (row * 7) % 40;
+  DataSet shuffled = data;
+  shuffled.rows = taken(data.rows, order);
+  const DataSet part = with_fold(data, 1), other = with_fold(shuffled, 1);
+  const auto judging = [](DataSet whole) {
+    for (int row = 0; row < 40; ++row) whole.rows.check[row] = whole.rows.time[row] >= 4;
+    return validation_blocks(whole);
+  };
+  const std::vector<int> block = judging(data), other_block = judging(shuffled);
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_EQ(other.rows.check[i], part.rows.check[order[i]]) << i;
+    for (int j = 0; j < 40; ++j)
+      EXPECT_EQ(other_block[i] == other_block[j], block[order[i]] == block[order[j]]) << i << j;
+  }
+}
+
 TEST(ValidationBlocks, HoldAFewNeighboursOfOneSetAndTheirRepeats) {
   DataSet data = forty_rows();  // 19 and 16 configurations: 35 rows beyond the repeats
   for (int row = 0; row < 40; ++row) data.rows.check[row] = row >= 4;

@@ -14,6 +14,7 @@ TEST(WeighedRows, AreOneOfSoManyConfigurationsWithAllItsRepeats) {
   Observations rows;
   rows.q.setZero(8, 1);
   rows.check = {0, 0, 0, 1, 0, 0, 0, 0};
+  rows.set.assign(8, 0);
   rows.repeat = {5, 5, -1, -1, -1, 6, 6, -1};
   // Five configurations that judge nothing; one of the first two, of the next two, the last.
   EXPECT_EQ(weighed_rows(rows, 8, 4), (std::vector<char>{1, 1, 0, 0, 0, 1, 1, 1}));
@@ -67,6 +68,30 @@ TEST(UnlikeNoise, IsToldOfMethodsThatTheRowsTellApart) {
   // Spheres that their own unknowns meet exactly say nothing of the others' noise.
   for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] = leaves[i] = 1e-9;
   EXPECT_EQ(unlike_noise(data, row, unlike, leaves), std::vector<double>(3, 1.0));
+}
+
+TEST(PooledNoise, IsOneForSetsOfAKindAndTheDataSheetsWhereAllRowsJudge) {
+  DataSet data;
+  Problems problems;
+  for (const char* name : {"left", "right"}) {
+    Node entry = Node::map();
+    entry.set("method", Node::of(std::string("location")));
+    data.sets.push_back(make_set(name, entry, problems));
+  }
+  Node judging = Node::map();
+  judging.set("method", Node::of(std::string("position")));
+  judging.set("noise", Node::of(4e-5));
+  data.sets.push_back(make_set("judging", judging, problems));
+  ASSERT_FALSE(problems.any());
+  Fit fitted;
+  fitted.rows = {10, 30, 0};
+  fitted.noise.estimated = {{1e-3, 3e-3}, {2e-3, 1e-3}, {1, 1}};
+  const std::vector<Scale> noise = pooled_noise(data, fitted);
+  for (const int set : {0, 1}) {
+    EXPECT_NEAR(noise[set].length, 1e-3 * std::sqrt((10 * 1 + 30 * 4) / 40.0), 1e-12) << set;
+    EXPECT_NEAR(noise[set].angle, 1e-3 * std::sqrt((10 * 9 + 30 * 1) / 40.0), 1e-12) << set;
+  }
+  EXPECT_EQ(noise[2].length, 4e-5);
 }
 
 TEST(Kept, HoldsWhatNoRowCarries) {

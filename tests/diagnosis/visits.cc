@@ -114,7 +114,7 @@ TEST(Visits, MakeCovariancesOfAllThatRowsMayShare) {
                     {Eigen::MatrixXd::Ones(n, 6), reading_steps(session.data.rows.q)},
                     session.data.rows.q, of_visits)) {
       const Eigen::MatrixXd S = each.matrix();
-      EXPECT_TRUE(S.allFinite()) << to_string(static_cast<KernelDomain>(each.kind));
+      EXPECT_TRUE(S.allFinite()) << in_words(static_cast<KernelDomain>(each.kind));
       EXPECT_GT(S.llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0.99);
       of_time += each.kind == static_cast<int>(KernelDomain::time);
     }

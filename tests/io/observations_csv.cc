@@ -330,6 +330,28 @@ TEST_F(ObservationsCsv, CountsRowsThatSayTheSameInEveryDigitOnce) {
                                         "digit, first row 2: each is counted once"));
 }
 
+TEST_F(ObservationsCsv, TakesRowsAtTheReadingsOfTheOneBeforeForItsRepeats) {
+  const std::string rows =
+      "tracker,0.1,0.2,1,2,3\ntracker,0.1,0.2,1,2,3.1\ntracker,0.1,0.2,1,2,3.2\n"
+      "tracker,0.4,0.2,1,2,4\ntracker,0.1,0.2,1,2,3.3\n";
+  const std::string csv = "set,q1,q2,x,y,z\n" + rows;
+  const auto loaded = load(csv);
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_THAT(loaded->data.rows.repeat, ElementsAre(0, 0, 0, -1, -1));
+  EXPECT_THAT(notices(csv),
+              ElementsAre("observations.csv: 2 rows have the readings of the row before, first "
+                          "row 2: taken as its immediate repeats"));
+}
+
+TEST_F(ObservationsCsv, LeavesTheRepeatsToAColumnThatNamesThem) {
+  const std::string csv =
+      "set,q1,q2,x,y,z,repeat\ntracker,0.1,0.2,1,2,3,\ntracker,0.1,0.2,1,2,4,\n";
+  const auto loaded = load(csv);
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_THAT(loaded->data.rows.repeat, ElementsAre(-1, -1));
+  EXPECT_THAT(notices(csv), IsEmpty());
+}
+
 TEST_F(ObservationsCsv, ReadsManyRows) {
   constexpr int kRows = 50000;
   std::string csv = "set,q1,q2,x,y,z\n";
