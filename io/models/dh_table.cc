@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "io/files/file.h"
 #include "io/files/units.h"
 #include "io/files/utf8.h"
+#include "kinematics/description.h"
 
 namespace selfcal {
 namespace {
@@ -117,6 +119,8 @@ class Table {
     }
     if (number.contains(Place::least) != number.contains(Place::most))
       return RowFault{"has one of min and max, where limits are both"};
+    if (number.contains(Place::least) && number[Place::least] >= number[Place::most])
+      return RowFault{"has a min that is not below its max"};
     number[type == "prismatic" ? Place::along_z : Place::theta] += number[Place::offset];
     Node frame = Node::map();
     frame.set("name", Node::of(name)).set("joint", Node::of(type));
@@ -156,14 +160,26 @@ class Table {
     const bool length =
         column.place == Place::along_x || column.place == Place::along_z || (of_variable && slides);
     const Dimension dimension = length ? Dimension::length : Dimension::angle;
-    if (column.unit.empty()) return *number;
+    if (column.unit.empty()) return sane(*number, dimension, at);
     // A column of limits or offsets has one unit: that of the joints that turn does not fit one
     // that slides.
     const auto unit = unit_of(column.unit, dimension);
     if (!unit)
       return tl::unexpected(
           RowFault{"the unit " + column.unit + " is none of " + units_in_words(dimension), at});
-    return *number * unit->factor;
+    return sane(*number * unit->factor, dimension, at);
+  }
+
+  static tl::expected<double, RowFault> sane(double value, Dimension dimension, std::size_t at) {
+    const bool length = dimension == Dimension::length;
+    const double most = length ? kLongestPart : kMostTurned;
+    if (std::abs(value) <= most) return value;
+    return tl::unexpected(
+        RowFault{length ? "expected metres, at most " + format_number(most) +
+                              " (millimetres? say so in the heading: a [mm])"
+                        : std::string("expected radians, at most four turns (degrees? say so in "
+                                      "the heading: alpha [deg])"),
+                 at});
   }
 
   CellNumbers numbers_{written_number};

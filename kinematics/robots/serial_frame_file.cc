@@ -124,7 +124,11 @@ void read_limits(Fields& fields, Frame& frame) {
 void read_mass(Fields& fields, Frame& frame) {
   frame.mass = fields.optional_number("mass");
   if (frame.mass && *frame.mass < 0) fields.fail("mass", "a mass of at least 0 kg");
-  if (const auto com = fields.numbers("com", 3)) frame.com = *com;
+  const auto com = fields.numbers("com", 3);
+  if (!com) return;
+  frame.com = *com;
+  if (!frame.mass) fields.fail("com", "the mass beside it: where no mass is, none has a centre");
+  if (!(com->cwiseAbs().maxCoeff() <= kLongestPart)) fields.fail("com", "metres (millimetres?)");
 }
 
 /// Where the frame stands, and how surely its maker knows.

@@ -13,6 +13,7 @@
 namespace selfcal {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 class DhTable : public testing::Test {
@@ -108,6 +109,11 @@ TEST_F(DhTable, NamesWhatItCannotRead) {
   EXPECT_THAT(fault("alpha,a,d,colour\n0,0,0,0\n"), HasSubstr("is none of joint"));
   EXPECT_THAT(fault("alpha [mm],a,d\n1,0,0\n"), HasSubstr("the unit mm is none of"));
   EXPECT_THAT(fault("alpha,a,d,theta\n0,0,0,q1\n"), HasSubstr("row 1: column theta"));
+  EXPECT_THAT(fault("alpha,a,d,theta\n0,0,0,0\n0,400,0,0\n"),
+              AllOf(HasSubstr("row 2: column a"), HasSubstr("millimetres?")));
+  EXPECT_THAT(fault("alpha,a,d,theta\n90,0,0,0\n"),
+              AllOf(HasSubstr("row 1: column alpha"), HasSubstr("degrees?")));
+  EXPECT_THAT(fault("alpha,a,d,min,max\n0,0,0,1,-1\n"), HasSubstr("a min that is not below"));
   EXPECT_THAT(fault("alpha,a,d,min [deg]\n0,0,0,-170\n"),
               HasSubstr("row 1: has one of min and max, where limits are both"));
   EXPECT_THAT(fault("alpha;a [mm];d [mm]\n0;1,000;0.5\n"),

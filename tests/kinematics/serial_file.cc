@@ -184,6 +184,10 @@ TEST(SerialFile, IsRefusedForAJointThatIsNoneAndAMassBelowZero) {
       testing::AllOf(StartsWith("arm.yaml:4: "), HasSubstr("revolute, prismatic or fixed")));
   EXPECT_THAT(refusal(with_frames("  - {name: j1, joint: revolute, mass: -1}\n")),
               testing::AllOf(StartsWith("arm.yaml:4: "), HasSubstr("mass")));
+  EXPECT_THAT(refusal(with_frames("  - {name: j1, joint: revolute, com: [0, 0, 0.1]}\n")),
+              testing::AllOf(StartsWith("arm.yaml:4: "), HasSubstr("the mass beside it")));
+  EXPECT_THAT(refusal(with_frames("  - {name: j1, joint: revolute, mass: 2, com: [0, 0, 100]}\n")),
+              HasSubstr("millimetres?"));
   EXPECT_THAT(refusal(with_frames("  - {name: j1, joint: revolute, d: ten}\n")),
               testing::AllOf(StartsWith("arm.yaml:4: "), HasSubstr("'d'")));
 }
