@@ -9,6 +9,7 @@
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/attribution.h"
+#include "diagnosis/report/carry_over.h"
 #include "diagnosis/report/detectable.h"
 #include "diagnosis/report/doubt.h"
 #include "diagnosis/report/experiment_design.h"
@@ -234,6 +235,9 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
             ? "these rows measure no lengths, of which the gap is told"
         : kept_aside ? "no row kept aside measures a length"
                      : "too few rows to keep some aside";
+  if (std::string left = leave_out_what_does_not_carry_over(data, options, diagnosis);
+      !left.empty())
+    diagnosis.warnings.push_back(std::move(left));
   if (std::string warning = warning_of_gap(diagnosis); !warning.empty())
     diagnosis.warnings.push_back(std::move(warning));
   return diagnosis;

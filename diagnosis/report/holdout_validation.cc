@@ -8,41 +8,11 @@
 #include "constraints/estimation/judgement.h"
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
-#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/report/fitted_correction.h"
 #include "diagnosis/validation/folds.h"
-#include "kinematics/corrected_robot.h"
-#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
-
-/// A model and its fit to the `fit` rows.
-struct Fitted {
-  std::shared_ptr<const Robot> model;
-  std::unique_ptr<Equations> equations;
-  Adjusted adjusted;
-
-  Judged judged(const DataSet& data) const {
-    return judge(*model, data, *equations, adjusted.fitted);
-  }
-};
-
-Fitted fitted(const std::shared_ptr<const Robot>& geometry, const DataSet& data,
-              const Correction& correction, const MeasurementContext& context,
-              const DiagnosisOptions& options, const State& near) {
-  Fitted fit;
-  Problems problems;
-  Options free = geometry_options(options);
-  for (const FoundEffect& each : correction)
-    free.effect_sigma.insert(free.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
-  fit.model = correct(geometry, entries_of(correction), context, problems);
-  expects(fit.model != nullptr, "what was found is effects that the robot can have");
-  fit.equations = std::make_unique<Equations>(*fit.model, data, Use::fit);
-  for (const Parameter& p : fit.model->parameters())
-    if (p.part == Part::effect) free.free.push_back(p.name);
-  fit.adjusted = adjust(*fit.equations, free, {}, &near);
-  return fit;
-}
 
 /// The validation rows as each model leaves them.
 struct Left {
@@ -52,11 +22,14 @@ struct Left {
 /// The figures of every validation row, and which of them no model comes near.
 void take_rows(const Left& left, const DataSet& data, const std::vector<double>& noise,
                HoldoutValidation& validation) {
-  // A set that only judges has a noise of its own: what its data sheet says, if it does.
+  // A set that only judges has a noise of its own: what its data sheet says, or what the
+  // best of the models leaves.
   const Judged& whole = left.whole;
   const auto noise_of = [&](int set) {
     if (!whole.aligned[set]) return noise[set];
-    return data.sets[set].noise > 0 ? data.sets[set].noise : whole.check_scale[set].length;
+    if (data.sets[set].noise > 0) return data.sets[set].noise;
+    return std::min({left.geometric.check_scale[set].length, left.named.check_scale[set].length,
+                     whole.check_scale[set].length});
   };
   const auto square = [](const RowResidual& row) { return row.length * row.length; };
   const std::vector<int> block = validation_blocks(data);
@@ -93,7 +66,8 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
     validation.converged = validation.converged && fit.converged;
   };
   const Equations plain(*geometry, data, Use::fit);
-  Fitted all = fitted(geometry, data, correction, context, options, before.fitted.state);
+  FittedCorrection all =
+      fit_correction(geometry, data, correction, context, options, &before.fitted.state);
   Left left{judge(*geometry, data, plain, before.before),
             judge(*geometry, data, plain, before.fitted),
             {},
@@ -106,7 +80,8 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
   } else if (names.size() == correction.size() || left.whole.check.empty()) {
     left.named = left.whole;
   } else {
-    const Fitted alone = fitted(geometry, data, names, context, options, before.fitted.state);
+    const FittedCorrection alone =
+        fit_correction(geometry, data, names, context, options, &before.fitted.state);
     left.named = alone.judged(data);
     note(alone.adjusted.fitted);
   }

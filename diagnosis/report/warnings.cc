@@ -88,16 +88,12 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
     return diagnosis.gap_unjudged +
            ": nothing confirms it, and how far the gap closes is not known";
   const bool named = diagnosis.verdict.effect != kUnknown || !diagnosis.named.empty();
-  const bool worse = gap.rms_all > gap.rms_before;
   if (named && gap.rms_after >= gap.rms_before)
     return std::string(
                "the rows kept aside do not confirm it: they are met no better with it "
                "than without") +
            (gap.rms_all < gap.rms_before ? ", though better with everything found"
                                          : "; do not use the corrected model");
-  if (worse)
-    return "the rows kept aside are met worse with everything found than with the geometry alone: "
-           "do not use the corrected model";
   if (!gap.closed.fraction)
     return "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
            "closes";
@@ -107,9 +103,6 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
                "have closed nothing") +
            (gap.closed_all.least > 0 ? ", though everything found closes some of the gap"
                                      : "; measure more before the corrected model is used");
-  if (named && gap.rms_all > kDiagnosis.report.rest_worse * gap.rms_after)
-    return "what is named leaves less on the rows kept aside than everything found: the entries "
-           "of the corrected model with `named: false` do not carry over, leave them out";
   return {};
 }
 

@@ -60,13 +60,6 @@ TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   EXPECT_THAT(warning_of_gap(rest_tells),
               AllOf(HasSubstr("too few to confirm it"), HasSubstr("everything found closes some"),
                     Not(HasSubstr("before the corrected model"))));
-  Diagnosis rest_harms = named(2e-4, 1e-4, 0.3);
-  rest_harms.gap.rms_all = 2.1e-4;
-  EXPECT_THAT(warning_of_gap(rest_harms),
-              AllOf(HasSubstr("worse with everything found"), HasSubstr("do not use")));
-  Diagnosis rest_carries_less = named(2e-4, 1e-4, 0.3);
-  rest_carries_less.gap.rms_all = 1.1e-4;
-  EXPECT_THAT(warning_of_gap(rest_carries_less), HasSubstr("`named: false` do not carry over"));
   Diagnosis none = named(2e-4, 2.1e-4, 0);
   none.verdict.effect = "none";
   EXPECT_THAT(warning_of_gap(none), IsEmpty());
