@@ -50,7 +50,7 @@ std::optional<Compliance> true_compliance(const Scenario& scenario, const Robot&
     return std::nullopt;
   }
   const auto joints = static_cast<Eigen::Index>(robot.joints().size());
-  Compliance compliance{serial::read(robot.text().describe(xi), problems),
+  Compliance compliance{serial::read(robot.text().describe(xi).without({"effects"}), problems),
                         Eigen::VectorXd::Zero(joints)};
   if (mass(compliance.model) <= 0)
     problems.add(place, "compliance: " + robot.name() +

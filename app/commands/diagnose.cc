@@ -37,7 +37,8 @@ struct Inputs {
   LoadedDataSet measured;
   std::shared_ptr<const Robot> robot;
   std::optional<LoadedDataSet> before, simulated;
-  std::optional<SimulatorGap> gap;  ///< of the simulator, where it is a model that was asked
+  std::optional<ToolPoses>
+      tool;  ///< where the simulator has it, where it is a model that was asked
 };
 
 Result<std::optional<LoadedDataSet>> load_other(const std::string& path, const Robot& robot) {
@@ -64,7 +65,7 @@ Result<void> load_simulated(const DiagnoseArguments& arguments, Inputs& inputs) 
   if (!simulation) return tl::unexpected(simulation.error());
   print_notices(simulation->measured);
   inputs.simulated = std::move(simulation->measured);
-  inputs.gap = std::move(simulation->gap);
+  inputs.tool = std::move(simulation->tool);
   return {};
 }
 
@@ -146,12 +147,14 @@ Result<Findings> find(const DiagnoseArguments& arguments, const Inputs& inputs) 
       inputs.simulated->name,
       differences(found.diagnosis, other,
                   compare(inputs.robot, simulated, data, Between::machines, {}, shown_on(line))),
-      inputs.gap,
+      {},
       {}};
-  if (inputs.gap)
-    found.sim->mended =
-        mended_simulator(arguments.simulated, arguments.tool, inputs.measured,
-                         robot_text(*found.diagnosis.model, found.diagnosis.values));
+  if (!inputs.tool) return found;
+  const std::vector<Outlier>& outliers = found.diagnosis.outliers;
+  found.sim->gap = simulator_gap(inputs.measured.data, without_false_rows(*inputs.tool, outliers));
+  found.sim->mended =
+      mended_simulator(arguments.simulated, arguments.tool, inputs.measured,
+                       robot_text(*found.diagnosis.model, found.diagnosis.values), outliers);
   return found;
 }
 

@@ -95,6 +95,11 @@ bool stands_alone(const Method& method) {
 
 }  // namespace
 
+ToolPoses without_false_rows(ToolPoses tool, const std::vector<Outlier>& outliers) {
+  for (const Outlier& each : outliers) tool[static_cast<std::size_t>(each.row - 1)].reset();
+  return tool;
+}
+
 SimulatorGap simulator_gap(const DataSet& data, const ToolPoses& tool) {
   SimulatorGap gap;
   double squares = 0;

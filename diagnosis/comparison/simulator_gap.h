@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "constraints/solution.h"
 
 namespace selfcal {
 
@@ -19,6 +20,9 @@ struct SimulatorGap {
   bool kept_aside = true;         ///< none of them placed an instrument or a surface
   std::vector<std::string> sets;  ///< names of those that cannot be judged so
 };
+
+/// `tool` without an answer at the rows that are false readings: no simulator explains one.
+ToolPoses without_false_rows(ToolPoses tool, const std::vector<Outlier>& outliers);
 
 /// Nuisance parameters of each set (an instrument's frame, a target, a plane) are fitted to its
 /// `fit` rows, the `check` rows judge; a set that has only one kind is judged by what it has. Sets

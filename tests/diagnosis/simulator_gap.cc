@@ -56,6 +56,19 @@ TEST(SimulatorGap, IsHowFarTheToolIsOffWhereTheInstrumentsFrameIsTheWorld) {
   EXPECT_TRUE(gap.kept_aside);
 }
 
+TEST(SimulatorGap, IsOfNoRowThatIsAFalseReading) {
+  SimulatedTool made = simulated_tool("frame");
+  made.data.rows.position(8, 0) += 0.05;
+  made.data.rows.position(9, 1) -= 0.05;
+  EXPECT_GT(simulator_gap(made.data, made.poses).rms, 1e-3);
+  std::vector<Outlier> outliers(2);
+  outliers[0].row = 9;  // from 1
+  outliers[1].row = 10;
+  const SimulatorGap gap = simulator_gap(made.data, without_false_rows(made.poses, outliers));
+  EXPECT_NEAR(gap.rms, 0, 1e-9);
+  EXPECT_EQ(gap.rows, kSimulatedPoses / 4 - 1);
+}
+
 TEST(SimulatorGap, DoesNotCountWhereTheInstrumentAndItsTargetStand) {
   SimulatedTool made = simulated_tool("both");
   const Location F{exp_rotation({0.3, -2, 0.5}), {1, 2, 3}};

@@ -229,6 +229,21 @@ TEST(DataSetMaker, ReadsWhatComplianceHidesFromTheEncoders) {
   }
 }
 
+TEST(DataSetMaker, TakesComplianceBesideTheEffectsOfTheRobotsFile) {
+  Problems problems;
+  const auto arm = make_robot(
+      *parse_yaml("robot: arm\nkind: serial\nframes:\n"
+                  "  - {name: j1, joint: revolute, alpha: 1.5707963267948966, limits: [-1, 1]}\n"
+                  "  - {name: tip, joint: fixed, d: 2, mass: 3, com: [0, 0, 0]}\n"
+                  "effects:\n  - {effect: transmission_error, at: j1, waves: [1], sin1: 1.0e-3}\n",
+                  "arm"),
+      problems);
+  ASSERT_FALSE(problems.any()) << problems.list.front();
+  const std::string sets = "sets: {eye: {method: position, rows: 3}}\n";
+  EXPECT_NE(made("robot: arm\n" + sets, *arm).data.rows.q,
+            made("robot: arm\ncompliance: {j1: 1.0e-5}\n" + sets, *arm).data.rows.q);
+}
+
 TEST(DataSetMaker, PutsAParallelPlaneBeyondTheOtherOneUnlessItsTruthSaysNearer) {
   const std::string sets =
       "sets:\n  table: {method: plane, noise_true: 0, rows: 12,\n"

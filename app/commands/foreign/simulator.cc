@@ -140,7 +140,6 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
       std::ssize(poses->tool))
     return bad_input(file.string() + ": comes to rest at none of the rows of " + real.name);
   Simulation simulation;
-  simulation.gap = simulator_gap(real.data, poses->tool);
   LoadedDataSet& measured = simulation.measured;
   measured.name = file.filename().string();
   measured.notices = notices_of(*poses);
@@ -150,12 +149,14 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
   measured.data.order_is_time = real.data.order_is_time;
   measured.data.sets = {position_set(free_set_name(file, real.data), real.data)};
   measured.data.rows = simulated_rows(real.data.rows, poses->tool);
+  simulation.tool = poses->tool;
   return simulation;
 }
 
 std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& file,
                                                 const std::string& tool, const LoadedDataSet& real,
-                                                const std::string& corrected) {
+                                                const std::string& corrected,
+                                                const std::vector<Outlier>& outliers) {
   const auto all = parse_yaml(corrected, kCorrectedName);
   if (!all || all->find("kind")->text != "serial") return std::nullopt;
   std::vector<std::string> left_out;
@@ -174,7 +175,9 @@ std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& fil
         left_out.begin(),
         "all of the model but the robot's own bodies, for it is not of this robot file");
   left_out.insert(left_out.end(), model->left_out.begin(), model->left_out.end());
-  return MendedSimulator{model->text, simulator_gap(real.data, poses->tool), std::move(left_out)};
+  return MendedSimulator{model->text,
+                         simulator_gap(real.data, without_false_rows(poses->tool, outliers)),
+                         std::move(left_out)};
 }
 
 }  // namespace selfcal

@@ -17,7 +17,7 @@ bool is_simulator_model(const std::filesystem::path& path);
 
 struct Simulation {
   LoadedDataSet measured;  ///< its rows with the tool where the simulator puts it, as positions
-  SimulatorGap gap;        ///< of the machine's rows from it
+  ToolPoses tool;          ///< the same by row of the machine's
 };
 
 /// Asks the model `file` at every row of `real`, whose joints the model must have; `tool` as
@@ -28,10 +28,11 @@ Result<Simulation> ask_simulator(const std::filesystem::path& file, const std::s
                                  const LoadedDataSet& real);
 
 /// The model `file`, or where it is none of MuJoCo's own or another robot's a model of the robot
-/// alone, mended by the robot file `corrected` and asked at the same rows; nothing where there is
-/// no such model.
+/// alone, mended by the robot file `corrected` and asked at the same rows, of which those that are
+/// false readings (`outliers`) judge nothing; nothing where there is no such model.
 std::optional<MendedSimulator> mended_simulator(const std::filesystem::path& file,
                                                 const std::string& tool, const LoadedDataSet& real,
-                                                const std::string& corrected);
+                                                const std::string& corrected,
+                                                const std::vector<Outlier>& outliers);
 
 }  // namespace selfcal
