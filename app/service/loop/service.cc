@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <vector>
 
 namespace selfcal {
 namespace {
@@ -73,15 +74,17 @@ void Service::handle_events() {
     const auto wanted = c_.extended_state.wanted;
     c_.extended_state = std::move(transition.next);
     // Before anything is written, which may take long.
-    const auto others = std::ranges::stable_partition(
-        transition.actions, [](const Action& each) { return each.what == Action::Do::stop; });
-    for (const Action& stop : std::span(transition.actions.begin(), others.begin())) act(stop);
+    std::vector<Action>& actions = transition.actions;
+    const auto others =
+        std::stable_partition(actions.begin(), actions.end(),
+                              [](const Action& each) { return each.what == Action::Do::stop; });
+    for (const Action& stop : std::span(actions.begin(), others)) act(stop);
     if (c_.extended_state.held != held)
       c_.stored(c_.store.remember("held", c_.extended_state.held ? "yes" : ""));
     // Before the command is answered: what was granted is not lost.
     if (const auto& now = c_.extended_state.wanted; now != wanted)
       c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
-    for (const Action& action : others) act(action);
+    for (const Action& action : std::span(others, actions.end())) act(action);
   }
 }
 
