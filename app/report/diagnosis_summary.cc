@@ -82,8 +82,8 @@ std::string summary(const Diagnosis& diagnosis) {
   if (!diagnosis.next_why.empty())
     text += (diagnosis.next.empty() ? "\nNext: nothing: " : "  ") + diagnosis.next_why + "\n";
   if (!diagnosis.outliers.empty())
-    text += printed("\n%d rows put aside as false (diagnosis.json names them)\n",
-                    static_cast<int>(diagnosis.outliers.size()));
+    text += "\n" + counted(static_cast<std::int64_t>(diagnosis.outliers.size()), "row") +
+            " put aside as false (diagnosis.json names them)\n";
   for (const std::string& warning : diagnosis.warnings) text += "note: " + warning + "\n";
   return text;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/report/format.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -23,8 +24,10 @@ double moved(const Drift& drift) {
 /// Whether that is more than the last calibration is unsure of.
 bool surely(const Drift& drift) { return moved(drift) > drift.sigma.back(); }
 
-const char* shown_unit(Quantity quantity) {
-  return quantity == Quantity::length ? "mm" : quantity == Quantity::angle ? "mrad" : "1e-3";
+ReadableUnit shown_unit(const Drift& drift) {
+  double most = drift.sigma.back();
+  for (const double each : drift.since_factory) most = std::max(most, std::abs(each));
+  return readable_unit(drift.unit, most);
 }
 
 }  // namespace
@@ -36,7 +39,7 @@ std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, s
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     Drift drift;
     drift.name = full_name(parameters[p]);
-    drift.quantity = parameters[p].quantity;
+    drift.unit = parameters[p].unit();
     double before = parameters[p].nominal;
     for (const AcceptedParameters& calibration : calibrations) {
       const Parameter& now = calibration.robot->parameters()[p];
@@ -61,23 +64,26 @@ std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
   const std::size_t first = count > kMostColumns ? count - kMostColumns : 0;
   int width = 23;
   for (const Drift& drift : drifts) width = std::max(width, characters(drift.name) + 1);
-  std::string text = padded("", width + 7);
+  int units = 5;
+  for (const Drift& drift : drifts) units = std::max(units, characters(shown_unit(drift).name) + 1);
+  std::string text = padded("", width + 2 + units);
   for (std::size_t c = first; c < count; ++c)
     text += printed(
         "%20s", printed("session %lld", static_cast<long long>(calibrations[c].session)).c_str());
   const bool sigmas =
       std::ranges::any_of(drifts, [](const Drift& d) { return d.sigma.back() > 0; });
   if (sigmas) text += printed("%9s", "sigma");
-  text += "\n" + padded("", width + 7);
+  text += "\n" + padded("", width + 2 + units);
   for (std::size_t c = first; c < count; ++c)
     text += printed("%20s", date_time(calibrations[c].unix_ms).substr(0, 10).c_str());
   for (const Drift& drift : drifts) {
-    text += "\n  " + padded(drift.name, width) + padded(shown_unit(drift.quantity), 5);
+    const ReadableUnit unit = shown_unit(drift);
+    text += "\n  " + padded(drift.name, width) + padded(unit.name, units);
     for (std::size_t c = first; c < count; ++c) {
-      const std::string change = c > 0 ? printed("(%+.3f)", 1e3 * drift.since_last[c]) : "";
-      text += printed("%+10.3f%10s", 1e3 * drift.since_factory[c], change.c_str());
+      const std::string change = c > 0 ? printed("(%+.3f)", unit.factor * drift.since_last[c]) : "";
+      text += printed("%+10.3f%10s", unit.factor * drift.since_factory[c], change.c_str());
     }
-    if (drift.sigma.back() > 0) text += printed("%9.3f", 1e3 * drift.sigma.back());
+    if (drift.sigma.back() > 0) text += printed("%9.3f", unit.factor * drift.sigma.back());
     text.erase(text.find_last_not_of(' ') + 1);
   }
   return text + "\n";

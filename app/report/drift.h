@@ -20,8 +20,8 @@ struct AcceptedParameters {
 
 /// One parameter over all calibrations (SI).
 struct Drift {
-  std::string name;  ///< "theta2 j2.theta"
-  Quantity quantity = Quantity::length;
+  std::string name;                   ///< "theta2 j2.theta"
+  std::string unit;                   ///< SI
   std::vector<double> since_factory;  ///< value less the maker's figure, by calibration
   std::vector<double> since_last;  ///< less that of the calibration before; of the first as above
   std::vector<double> sigma;       ///< of the value, by calibration; 0 where it is not known
@@ -33,7 +33,8 @@ struct Drift {
 /// first.
 std::vector<Drift> drifts(const std::vector<AcceptedParameters>& calibrations, std::size_t most);
 
-/// A table in mm, mrad and 1e-3, a column for each of the newest calibrations and the newest sigma.
+/// A table in units that a person reads, a column for each of the newest calibrations and the
+/// newest sigma.
 std::string drift_table(const std::vector<AcceptedParameters>& calibrations,
                         const std::vector<Drift>& drifts);
 

@@ -69,8 +69,7 @@ ChangeJson changes_between(const std::shared_ptr<const Robot>& from,
   for (const Parameter& each : to->parameters()) short_names[full_name(each)] = each.name;
   std::vector<ParameterChange> changes;
   for (const Drift& each : drifts({{0, 0, from}, {0, 0, to}}, to->parameters().size()))
-    changes.push_back({each.name, std::string(unit(each.quantity)), each.since_last[1],
-                       sigmas[short_names[each.name]]});
+    changes.push_back({each.name, each.unit, each.since_last[1], sigmas[short_names[each.name]]});
   return changes_json(changes);
 }
 

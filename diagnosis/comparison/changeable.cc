@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "constraints/identifiability/gauge.h"
 #include "diagnosis/constants.h"
@@ -15,6 +18,11 @@ EffectParameter usual_parameter(const std::string& name, std::string unit) {
           kDiagnosis.comparison.usual_most, 0};
 }
 
+/// Of a freedom of what a set measures: "turn", "shift".
+std::string word_of(Quantity quantity) {
+  return quantity == Quantity::angle ? "turn" : quantity == Quantity::length ? "shift" : "ratio";
+}
+
 class Builder {
  public:
   Builder(const Equations& equations, const Eigen::MatrixXd& W, Between between)
@@ -22,24 +30,32 @@ class Builder {
 
   void add_zeros() {
     for (size_t j = 0; j < robot_.joints().size(); ++j)
-      add("zero_shift", robot_.joints()[j].name, {robot_.variable_parameter(static_cast<int>(j))});
+      add_own("zero_shift", robot_.joints()[j].name,
+              {robot_.variable_parameter(static_cast<int>(j))});
   }
 
   void add_frames(Part part, const char* effect, const char* at) {
     std::vector<int> frames;
     for (size_t p = 0; p < robot_.parameters().size(); ++p)
       if (robot_.parameters()[p].part == part) frames.push_back(static_cast<int>(p));
-    if (!frames.empty()) add(placing(effect), at, frames);
+    if (!frames.empty()) add_own(placing(effect), at, frames);
   }
 
   void add_fixtures(const DataSet& before, const DataSet& after) {
     for (size_t s = 0; s < before.sets.size(); ++s) {
-      std::vector<int> nuisance(
-          static_cast<size_t>(equations_.tangent_dimension(static_cast<int>(s))));
-      for (size_t k = 0; k < nuisance.size(); ++k)
-        nuisance[k] = equations_.own_at(static_cast<int>(s)) + static_cast<int>(k);
-      if (!nuisance.empty() && same_set(after.sets, before.sets[s]) >= 0)
-        add(fixture_moved(between_), before.sets[s].name, nuisance);
+      const int set = static_cast<int>(s), freedoms = equations_.tangent_dimension(set);
+      if (freedoms == 0 || same_set(after.sets, before.sets[s]) < 0) continue;
+      std::vector<int> nuisance;
+      std::vector<EffectParameter> parameters;
+      std::map<Quantity, int> of_kind;
+      for (int k = 0; k < freedoms; ++k) {
+        nuisance.push_back(equations_.own_at(set) + k);
+        const Quantity quantity = before.sets[s].method->tangent_quantity(k);
+        const std::string number = std::to_string(++of_kind[quantity]);
+        parameters.push_back(
+            usual_parameter(word_of(quantity) + number, std::string(selfcal::unit(quantity))));
+      }
+      add(fixture_moved(between_), before.sets[s].name, nuisance, std::move(parameters));
     }
   }
 
@@ -54,7 +70,7 @@ class Builder {
           std::ranges::any_of(had, [&](int other) { return alike(p, other); }))
         continue;
       had.push_back(p);
-      add("geometry_differs", robot_.parameters()[p].name, {p});
+      add_own("geometry_differs", robot_.parameters()[p].name, {p});
     }
   }
 
@@ -73,16 +89,22 @@ class Builder {
     return between_ == Between::machines ? "placed_elsewhere" : effect;
   }
 
-  void add(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
+  /// Of parameters of the robot.
+  void add_own(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
+    std::vector<EffectParameter> parameters;
+    for (const int c : columns)
+      parameters.push_back(
+          usual_parameter(robot_.parameters()[c].name, std::string(robot_.parameters()[c].unit())));
+    add(effect, at, columns, std::move(parameters));
+  }
+
+  void add(const std::string& effect, const std::string& at, const std::vector<int>& columns,
+           std::vector<EffectParameter> parameters) {
     Candidate candidate{.effect = effect, .at = at, .doubt = 0};
     for (size_t k = 0; k < columns.size(); ++k) {
-      const int c = columns[k];
       candidate.main.push_back(static_cast<int>(all_.columns.size()));
-      all_.columns.push_back(c);
-      all_.parameters.push_back(c < equations_.robot_columns()
-                                    ? usual_parameter(robot_.parameters()[c].name,
-                                                      std::string(robot_.parameters()[c].unit()))
-                                    : usual_parameter("own" + std::to_string(k + 1), "m or rad"));
+      all_.columns.push_back(columns[k]);
+      all_.parameters.push_back(std::move(parameters[k]));
     }
     all_.candidates.list.push_back(std::move(candidate));
   }

@@ -69,6 +69,18 @@ TEST(Drifts, OfOneCalibrationAreThoseFromTheFactory) {
   EXPECT_TRUE(drifts({}, 10).empty());
 }
 
+TEST(DriftTable, HasAPrefixThatACompoundUnitsFiguresNeed) {
+  const Drift compliance{.name = "j2.c",
+                         .unit = "rad/(N m)",
+                         .since_factory = {2.5e-7},
+                         .since_last = {2.5e-7},
+                         .sigma = {1e-8}};
+  const std::string table = drift_table({calibration(1, 3, 2e-3)}, {compliance});
+  EXPECT_THAT(table, HasSubstr("nrad/(N m)"));
+  EXPECT_THAT(table, HasSubstr("+250.000"));
+  EXPECT_THAT(table, HasSubstr("10.000"));
+}
+
 TEST(HistoryPage, TellsWhenAParameterLeavesItsLimitAtThisRate) {
   HistoryFindings findings;
   for (int session = 1; session <= 3; ++session)

@@ -12,6 +12,7 @@ namespace selfcal {
 namespace {
 
 using testing::ElementsAre;
+using testing::IsSupersetOf;
 using testing::UnorderedElementsAre;
 
 constexpr double kShift = 1e-3;  // rad: 0.5 mm at half a metre, 25 times the noise
@@ -135,6 +136,10 @@ TEST(Compare, SaysOfATrackerThatWasPushedThatItAndNothingElseMoved) {
   const Comparison comparison = compare(sessions.robot, sessions.before, sessions.after);
   EXPECT_THAT(surely(comparison), ElementsAre("fixture_shift@tracker"));
   EXPECT_LT(comparison.none, 0.01);
+  std::vector<std::string> values;
+  for (const NamedValue& each : comparison.changes.front().values)
+    values.push_back(each.name + " " + each.unit);
+  EXPECT_THAT(values, IsSupersetOf({"shift1 m", "shift3 m", "turn1 rad", "turn3 rad"}));
 }
 
 TEST(Incomparable, IsADataSetWithoutRowsToFit) {

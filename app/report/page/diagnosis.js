@@ -38,8 +38,9 @@ function gap_of(data) {
     chart(bars(items, "rms, mm"), "On " + gap.rows + (gap.judged_on === "folds"
       ? " rows, each part judged by the others in turn." : " rows that neither the fit nor the choice has seen."),
       "", 3 + 3 * items.length)];
+  const intervals = gap.closed_interval || gap.closed_all_interval;
   if (words.closed) parts.push(paragraph(words.closed[0].toUpperCase() + words.closed.slice(1) +
-                                         ", each with its 95 % interval."));
+                                         (intervals ? ", with the 95 % interval." : ".")));
   if (words.false_rows) parts.push(paragraph(words.false_rows, "soft"));
   const judged = data.judged;
   const lists = judged ? [["maker's figures", "soft", judged.nominal], ["calibrated", "before", judged.before]] : [];

@@ -25,9 +25,15 @@ function over_time(points, unit, limits = [], kind = "small") {
   }, "", kind);
 }
 
-function rate_words(trend, unit) {
+// Of the changes that are known, the largest: what the unit's prefix goes by.
+function largest_of(drift) {
+  return Math.max(...[...drift.since_factory, ...drift.sigma].filter(known).map(Math.abs));
+}
+
+function rate_words(drift) {
+  const trend = drift.trend;
   if (!trend) return "";
-  const [factor, word] = shown(unit);
+  const [factor, word] = shown(drift.unit, largest_of(drift));
   const rate = figure(30 * factor * trend.rate) + " ± " + figure(30 * 1.96 * factor * trend.rate_sigma, 2) + " " +
     word + " a month";
   if (trend.outside) return rate + "; beyond its limit now";
@@ -35,7 +41,7 @@ function rate_words(trend, unit) {
 }
 
 function drift_figure(data, drift) {
-  const [factor, unit] = shown(drift.unit);
+  const [factor, unit] = shown(drift.unit, largest_of(drift));
   const points = drift.since_factory.map((value, i) => {
     const sigma = drift.sigma[i];
     return {x: data.calibrations[i].unix_ms, y: factor * value, name: "session " + data.calibrations[i].session,
@@ -43,7 +49,7 @@ function drift_figure(data, drift) {
             high: known(sigma) ? factor * (value + 1.96 * sigma) : null};
   });
   const near = Math.max(...points.map(point => Math.abs(point.y))) > 0.5 * factor * drift.limit;
-  const words = rate_words(drift.trend, drift.unit);
+  const words = rate_words(drift);
   const made = over_time(points, unit, near ? [-factor * drift.limit, factor * drift.limit] : []);
   made.prepend(element("h3", {}, drift.name));
   if (words) made.append(element("figcaption", {}, words));
@@ -55,11 +61,11 @@ function drift_section(data) {
   if (drifts.length === 0) return [];
   const last = drifts.map(drift => drift.since_factory.length - 1)[0];
   const rows = drifts.map(drift => {
-    const [factor, unit] = shown(drift.unit), sigma = drift.sigma[last];
+    const [factor, unit] = shown(drift.unit, largest_of(drift)), sigma = drift.sigma[last];
     const places = decimals(known(sigma) ? 1.96 * factor * sigma : 0);
     return [drift.name, fixed(factor * drift.since_factory[last], places) +
       (known(sigma) ? " ± " + fixed(1.96 * factor * sigma, places) : "") + " " + unit,
-      "± " + figure(factor * drift.limit) + " " + unit, rate_words(drift.trend, drift.unit)];
+      "± " + figure(factor * drift.limit) + " " + unit, rate_words(drift)];
   });
   return [
     paragraph("Change since the factory, with its 95 % interval; those that moved most between sessions first, surest of all by more than their sigma. The limit " +

@@ -127,11 +127,13 @@ const STATUS_WORDS = {
 
 function parameter_rows(list, names, k) {
   return list.map(each => {
-    const [factor, unit] = shown(each.unit);
+    const [factor, unit] = shown(each.unit, Math.max(Math.abs(each.value), each.sigma));
     const change = factor * (each.value - each.nominal), half = k * factor * each.sigma, places = decimals(half);
+    // A ratio's own value is no ppm: only what it is off by.
+    const ratio = each.unit === "1" && Math.abs(each.nominal) > 0.01;
+    const whole = value => ratio ? figure(value, 8) : figure(factor * value, 6) + " " + unit;
     return [names[each.name], fixed(change, places) + " ± " + fixed(half, places) + " " + unit,
-            moved(each).toFixed(1) + " sigma", figure(factor * each.nominal, 6) + " " + unit,
-            figure(factor * each.value, 6) + " " + unit];
+            moved(each).toFixed(1) + " sigma", whole(each.nominal), whole(each.value)];
   });
 }
 
