@@ -101,9 +101,13 @@ std::vector<ReachedPose> Compensation::searched(const Location& wanted, const Ei
     std::vector<ReachedPose> list = from(near.transpose());
     if (list.front().there && within_limits(*nominal_, list.front().q)) return list;
   }
+  return from(starts_from(near));
+}
+
+Eigen::MatrixXd Compensation::starts_from(const Eigen::VectorXd& near) const {
   Eigen::MatrixXd starts(starts_.rows() + 1, starts_.cols());
   starts << near.transpose(), starts_;
-  return from(starts);
+  return starts;
 }
 
 /// Nearest first.
@@ -178,17 +182,57 @@ Command Compensation::corrected_from(const Location& wanted, const Eigen::Vector
   return command;
 }
 
-Command Compensation::command(const Location& wanted,
-                              const std::optional<Eigen::VectorXd>& near) const {
+/// Of the nominal robot's solutions, nearest first, the first whose correction gets there; else
+/// what is in the way of the best way there is.
+Command Compensation::best_of(const Location& wanted,
+                              const std::vector<ReachedPose>& solutions) const {
   std::optional<Command> first;
-  for (const ReachedPose& solution : nominal_solutions(wanted, near ? *near : middle_, false)) {
+  for (const ReachedPose& solution : solutions) {
     if (first && !solution.there) break;
     const Command command = corrected(wanted, solution);
     if (command.status == Reach::reached) return command;
-    // What is in the way of the best way there is told.
     if (!first || first->error > command.error) first = command;
   }
   return first ? *first : Command{};
+}
+
+/// The calibrated robot's own solution within the limits that is nearest to `near`, `at_most` so
+/// far from it.
+std::optional<Command> Compensation::own_solution(const Location& wanted,
+                                                  const Eigen::VectorXd& near,
+                                                  double at_most) const {
+  std::optional<Command> nearest;
+  const Eigen::MatrixXd starts = starts_from(near);
+  for (const ReachedPose& each : reach_pose(*calibrated_, xi_calibrated_, wanted, starts, at_)) {
+    if (!each.there || !within_limits(*nominal_, each.q)) continue;
+    const double away = apart(*nominal_, each.q, near);
+    if (away > at_most) continue;
+    at_most = away;
+    nearest = {Reach::reached, each.q, each.steps, each.error, each.error_angle};
+  }
+  return nearest;
+}
+
+Command Compensation::command(const Location& wanted,
+                              const std::optional<Eigen::VectorXd>& near) const {
+  const Eigen::VectorXd& from = near ? *near : middle_;
+  std::vector<ReachedPose> solutions = nominal_solutions(wanted, from, false);
+  Command command = best_of(wanted, solutions);
+  if (command.status != Reach::reached && !exact_) {
+    // All of them, where the nearest one has led nowhere.
+    solutions = nominal_solutions(wanted, from, true);
+    command = best_of(wanted, solutions);
+  }
+  // Chain by chain there is one solution, which is looked at already.
+  if (command.status == Reach::reached || exact_calibrated_) return command;
+  // At the edge of what it reaches the calibrated robot gets to places that the nominal one does
+  // not, or far from where that does: there it may be near what was asked for.
+  const bool nominal_gets_there = std::ranges::any_of(solutions, [&](const ReachedPose& each) {
+    return each.there && within_limits(*nominal_, each.q);
+  });
+  if (nominal_gets_there && !near) return command;
+  const auto own = own_solution(wanted, from, nominal_gets_there ? kFarFromNominal : HUGE_VAL);
+  return own ? *own : command;
 }
 
 std::vector<Command> Compensation::commands(const Location& wanted,

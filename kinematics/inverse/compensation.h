@@ -19,6 +19,7 @@ enum class Reach {
   out_of_reach,  ///< neither the nominal nor the calibrated robot gets there
   limit,         ///< only with a joint beyond its limit
   singular,  ///< the nominal robot gets there, the calibrated one does not, or only far from there
+             ///< and from what was asked for
 };
 /// "out-of-reach".
 std::string_view to_string(Reach reach);
@@ -36,7 +37,8 @@ class Compensation {
   Compensation(std::shared_ptr<const Robot> nominal, std::shared_ptr<const Robot> calibrated,
                const OperatingPoint& at = {});
 
-  /// Of all solutions the one nearest to `near`, or to the middle of the readings.
+  /// Of all solutions the one nearest to `near`, or to the middle of the readings: corrected from
+  /// the nominal robot's, else the calibrated robot's own.
   Command command(const Location& wanted, const std::optional<Eigen::VectorXd>& near) const;
   /// Of every solution within the limits, nearest first: all that the nominal robot has where it
   /// has a closed form (exact_inverse.h), those that were found else. Without any, what command()
@@ -49,6 +51,11 @@ class Compensation {
                                              bool all) const;
   std::vector<ReachedPose> searched(const Location& wanted, const Eigen::VectorXd& near,
                                     bool all) const;
+  /// `near`, and readings all over the range.
+  Eigen::MatrixXd starts_from(const Eigen::VectorXd& near) const;
+  Command best_of(const Location& wanted, const std::vector<ReachedPose>& solutions) const;
+  std::optional<Command> own_solution(const Location& wanted, const Eigen::VectorXd& near,
+                                      double at_most) const;
   Command corrected(const Location& wanted, const ReachedPose& nominal) const;
   Command corrected_from(const Location& wanted, const Eigen::VectorXd& near, bool there) const;
   Eigen::VectorXd turned_within(const Eigen::VectorXd& q) const;

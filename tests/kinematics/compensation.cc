@@ -223,6 +223,48 @@ Command of_two_links(const Location& wanted, const char* calibrated = kTwoLinks)
   return compensation.command(wanted, std::nullopt);
 }
 
+/// A robot whose inverse has no closed form: no three of its axes meet or are parallel.
+const char* const kWithoutClosedForm =
+    "robot: crooked\nkind: serial\nframes:\n"
+    "  - {name: base, joint: fixed, r: 0.4}\n"
+    "  - {name: j1, joint: revolute, r: 0.3, limits: [-2.5, 2.5]}\n"
+    "  - {name: j2, joint: revolute, alpha: -1.5, d: 0.15, limits: [-1.5, 1.5]}\n"
+    "  - {name: j3, joint: prismatic, alpha: 1.4, d: 0.1, r: 0.5, limits: [-0.1, 0.3]}\n"
+    "  - {name: j4, joint: revolute, alpha: 0.02, r: 0.3, limits: [-2.5, 2.5]}\n"
+    "  - {name: j5, joint: revolute, alpha: -1.5, d: 0.15, limits: [-1.5, 1.5]}\n"
+    "  - {name: j6, joint: revolute, alpha: 1.5, d: 0.05, limits: [-1.5, 1.5]}\n"
+    "  - {name: tool, joint: fixed, d: 0.03, r: 0.12}\n";
+
+TEST(Compensation, ReachesWhereTheCalibratedRobotIsNearTheReadingsThatAreAskedFor) {
+  for (const std::string& text :
+       {shipped("rx90"), shipped("irb1600"), std::string(kWithoutClosedForm)}) {
+    const auto [nominal, calibrated] = off_by_a_millimetre(text);
+    const Compensation compensation(nominal, calibrated);
+    // Among them places at the edge of its reach and of the joints' ways, where the nominal robot
+    // is elsewhere or does not get to.
+    const Eigen::MatrixXd q = random_poses(*nominal, nullptr, 500, 7);
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const Eigen::VectorXd near = q.row(i).transpose();
+      const Command command =
+          compensation.command(locate(*calibrated, values(*calibrated), near), near);
+      EXPECT_EQ(command.status, Reach::reached) << nominal->name() << " " << i;
+    }
+  }
+}
+
+TEST(Compensation, TriesEverySolutionBeforeItSaysThatThereIsNone) {
+  const auto [nominal, calibrated] = off_by_a_millimetre(kWithoutClosedForm);
+  const Compensation compensation(nominal, calibrated);
+  const Eigen::MatrixXd q = random_poses(*nominal, nullptr, 300, 7);
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Eigen::VectorXd near = q.row(i).transpose();
+    const Location wanted = locate(*nominal, values(*nominal), near);
+    EXPECT_EQ(compensation.command(wanted, near).status,
+              compensation.commands(wanted, near).front().status)
+        << i;
+  }
+}
+
 TEST(Compensation, SaysWhatIsInTheWay) {
   const Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
   EXPECT_EQ(of_two_links({level, {1.2, 0.3, 0}}).status, Reach::reached);
@@ -233,6 +275,14 @@ TEST(Compensation, SaysWhatIsInTheWay) {
   EXPECT_NEAR(far.error, 0.5, 1e-3);
   // Behind it: within reach, but not for joint 1.
   EXPECT_EQ(of_two_links({level, {-1.9, 0, 0}}).status, Reach::limit);
+  // A hair farther than the nominal robot reaches, which one that is longer by 2 mm does.
+  EXPECT_EQ(of_two_links({level, {2.001, 0, 0}},
+                         "robot: planar\nkind: serial\nframes:\n"
+                         "  - {name: j1, joint: revolute, limits: [-1, 1]}\n"
+                         "  - {name: j2, joint: revolute, d: 1.002, limits: [-2, 2]}\n"
+                         "  - {name: tool, joint: fixed, d: 1}\n")
+                .status,
+            Reach::reached);
   // Stretched: the nominal robot just gets there, one that is shorter by 2 mm does not.
   const Command stretched = of_two_links({level, {2, 0, 0}},
                                          "robot: planar\nkind: serial\nframes:\n"
