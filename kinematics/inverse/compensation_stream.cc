@@ -125,12 +125,17 @@ StreamedCommand CompensationStream::step(const ScrewChain& chain, const Location
 StreamedCommand CompensationStream::step(const platform::Platform* platform,
                                          const Location& wanted) {
   const std::optional<platform::Six> q = platform->readings_at(xi_geometry_, wanted);
-  return q ? take(q->data(), 0, 0) : StreamedCommand{};
+  if (!q || !q->allFinite()) return {};
+  const platform::Stand stand = platform->stand_at(xi_geometry_, *q, wanted);
+  if (stand == platform::Stand::other_mode) return {};
+  StreamedCommand answer = take(q->data(), 0, 0);
+  if (stand == platform::Stand::beyond_swing) answer.status = Streamed::limit;
+  return answer;
 }
 
 StreamedCommand CompensationStream::step(const DeltaTool& delta, const Location& wanted) {
   const auto q = linear_delta::readings_at(xi_geometry_, wanted.p - delta.tool);
-  return q ? take(q->data(), 0, 0) : StreamedCommand{};
+  return q && q->allFinite() ? take(q->data(), 0, 0) : StreamedCommand{};
 }
 
 StreamedCommand CompensationStream::take(const double* q, double error, double error_angle) {

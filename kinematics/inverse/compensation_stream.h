@@ -17,8 +17,9 @@ namespace selfcal {
 
 enum class Streamed {
   reached,
-  limit,   ///< there, but with a joint beyond its limit
-  behind,  ///< not there: too far from the last command, near a singular place, or out of reach
+  limit,   ///< there, but with a joint, a passive one included, beyond its limit
+  behind,  ///< not there: too far from the last command, near a singular place, out of reach, for
+           ///< another assembly mode, or no pose at all
 };
 
 struct StreamedCommand {

@@ -111,6 +111,12 @@ bool Platform::within_passive_limits(const Eigen::VectorXd& q) const {
   return at.open.empty() && swings(at);
 }
 
+Stand Platform::stand_at(const Eigen::VectorXd& xi, const Six& q, const Location& X) const {
+  const Chains at = chains(xi, q, Six::Zero());
+  if (!belongs(at, X, mode_)) return Stand::other_mode;
+  return swings(at_pose(at, X)) ? Stand::free : Stand::beyond_swing;
+}
+
 Closure Platform::locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                          Locations& X, PsiBlock* psi) const {
   expects(body < Body::first_passive || has_body(*this, body), "a body of the robot");

@@ -115,6 +115,13 @@ std::vector<int> frame_coordinates(const Centres& centres);
 /// and z at `at[i]` of `xi`.
 Eigen::MatrixXd point_motions(const Eigen::VectorXd& xi, const std::vector<int>& at);
 
+/// How a platform would stand at a pose to which its chains reach.
+enum class Stand {
+  free,
+  beyond_swing,  ///< a passive joint beyond its limit
+  other_mode,    ///< only assembled in another way
+};
+
 /// What a kind of platform leaves to its own file.
 class Platform : public Robot {
  public:
@@ -126,6 +133,9 @@ class Platform : public Robot {
   /// Readings that bring the platform to X, each chain on its own; nothing where one does not
   /// reach.
   virtual std::optional<Six> readings_at(const Eigen::VectorXd& xi, const Location& X) const = 0;
+
+  /// At X, where the readings are q. Uses no heap.
+  Stand stand_at(const Eigen::VectorXd& xi, const Six& q, const Location& X) const;
 
   bool has_loops() const override { return true; }
   const std::vector<PassiveJoint>& passive_joints() const override { return passive_; }

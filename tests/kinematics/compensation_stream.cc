@@ -135,6 +135,52 @@ TEST(CompensationStream, ReadsParallelRobotsOffTheirChains) {
   }
 }
 
+TEST(CompensationStream, KeepsAPlatformToItsAssemblyModeAndItsPassiveLimits) {
+  const auto hexapod = [](const std::string& swing) {
+    std::string text = "robot: hexapod\nkind: gough-stewart\nlegs:\n";
+    for (const char* joints : {"base: [0.59, -0.1, 0], platform: [0.23, -0.26, 0]",
+                               "base: [0.59, 0.1, 0], platform: [0.23, 0.26, 0]",
+                               "base: [-0.2, 0.56, 0], platform: [0.11, 0.33, 0]",
+                               "base: [-0.39, 0.46, 0], platform: [-0.34, 0.07, 0]",
+                               "base: [-0.39, -0.46, 0], platform: [-0.34, -0.07, 0]",
+                               "base: [-0.2, -0.56, 0], platform: [0.11, -0.33, 0]"})
+      text += std::string("  - {") + joints + ", limits: [0.4, 1.3]" + swing + "}\n";
+    return robot_of(text);
+  };
+  const std::shared_ptr<const Robot> free = hexapod(""), held = hexapod(", swing: [0.2, 0.2]");
+  const Eigen::VectorXd middle = Eigen::VectorXd::Constant(6, 0.85);
+  const Location home = locate(*free, values(*free), middle);
+  auto stream = CompensationStream::of(free, middle);
+  ASSERT_TRUE(stream.has_value());
+  // All joints lie in one plane: below the base the legs are as long, but nothing leads there.
+  Location mirrored = home;
+  mirrored.p.z() *= -1;
+  EXPECT_EQ(stream->command(mirrored).status, Streamed::behind);
+  EXPECT_EQ(stream->q(), middle);
+  Location aside = home;
+  aside.p.x() += 0.25;
+  EXPECT_EQ(stream->command(aside).status, Streamed::reached);
+  // A quarter of a metre aside turns a leg of 0.85 m by more than 0.2 rad.
+  stream = CompensationStream::of(held, middle);
+  const long before = allocations;
+  EXPECT_EQ(stream->command(aside).status, Streamed::limit);
+  EXPECT_EQ(allocations, before);
+  EXPECT_FALSE(within_limits(*held, stream->q()));
+}
+
+TEST(CompensationStream, StaysWhereItWasWhenItIsGivenNoPose) {
+  for (const char* kind : {"linear-delta", "gough-stewart", "hexaslide"}) {
+    const std::shared_ptr<const Robot> robot = robot_of(kind_examples().at(kind));
+    const Eigen::VectorXd q = random_poses(*robot, nullptr, 1, 2).row(0).transpose();
+    auto stream = CompensationStream::of(robot, q);
+    ASSERT_TRUE(stream.has_value()) << kind;
+    Location nothing = locate(*robot, values(*robot), q);
+    nothing.p.x() = std::nan("");
+    EXPECT_EQ(stream->command(nothing).status, Streamed::behind) << kind;
+    EXPECT_EQ(stream->q(), q) << kind;
+  }
+}
+
 TEST(CompensationStream, IsNotThereForJointsThatMoveEachOther) {
   const std::shared_ptr<const Robot> coupled = robot_of(kind_examples().at("serial"));
   EXPECT_FALSE(CompensationStream::of(coupled, Eigen::Vector3d::Zero()).has_value());
