@@ -21,6 +21,8 @@ namespace {
 constexpr int kPlanPoses = 500;  // at which the end position is judged
 constexpr unsigned long long kPosesSeed = 1;
 constexpr double kLoudest = 5;  // of the median norm
+// A condition beyond this is rounding: some of the parameters are not seen at all.
+constexpr double kNotSeen = 1e12;
 
 Eigen::MatrixXd stacked(const std::vector<Eigen::MatrixXd>& parts, Eigen::Index columns) {
   Eigen::Index rows = 0;
@@ -216,9 +218,10 @@ PlanFigures PlanSystem::figures(const DataSet& data, const std::vector<Unit>& un
   result.sigma = std::sqrt(priced_weight().cwiseProduct(C).sum());
   if (W.rows() < static_cast<Eigen::Index>(identified_.size())) return result;
   const Eigen::MatrixXd interest = W(Eigen::all, identified_).leftCols(parameters_);
-  result.observability =
+  const Observability seen =
       observability(quietest() * beyond(W.rightCols(W.cols() - robot_columns()), interest),
                     static_cast<int>(units.size()) + request_.taken.rows.rows());
+  if (seen.condition < kNotSeen) result.observability = seen;
   return result;
 }
 

@@ -244,27 +244,6 @@ TEST(ConfigurationPlan, GoesOnFromACovarianceAsFromTheRowsThatGaveIt) {
   EXPECT_LT(matrix, 0.1 * first.sigma_before);
 }
 
-TEST(ConfigurationPlan, KeepsEndPositionsApartAndItsWayWithinItsTime) {
-  const auto robot = shipped_robot("rx90");
-  PlanRequest request = planes_request(*robot, 1, 15, 200);
-  request.pool.spacing = 0.1;
-  const ConfigurationPlan spaced = plan_configurations(*robot, values(*robot), request);
-  ASSERT_EQ(spaced.problem, "");
-  for (int a = 0; a < spaced.data.rows.rows(); ++a)
-    for (int b = 0; b < a; ++b)
-      EXPECT_GE((locate(*robot, values(*robot), spaced.data.rows.q.row(a).transpose()).p -
-                 locate(*robot, values(*robot), spaced.data.rows.q.row(b).transpose()).p)
-                    .norm(),
-                0.1);
-  request.longest = 0.5 * spaced.way;
-  const ConfigurationPlan shorter = plan_configurations(*robot, values(*robot), request);
-  ASSERT_EQ(shorter.problem, "");
-  EXPECT_LE(shorter.way, request.longest);
-  EXPECT_LT(shorter.units.size(), 15U);
-  request.longest = 1e-3;
-  EXPECT_EQ(plan_configurations(*robot, values(*robot), request).units.size(), 1U);
-}
-
 TEST(ConfigurationPlan, SaysWhyThereIsNone) {
   const auto robot = shipped_robot("rx90");
   PlanRequest request = planes_request(*robot, 1, 5, 50);

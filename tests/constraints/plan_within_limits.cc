@@ -1,0 +1,74 @@
+// Plans that keep to a spacing and to a time, and what is told of configurations that are too few.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/planning/configuration_plan.h"
+#include "io/files/robot_file.h"
+
+namespace selfcal {
+namespace {
+
+std::shared_ptr<const Robot> example_arm() {
+  return std::move(*load_robot(SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml"));
+}
+
+Set set_by(const std::string& name, const std::string& method) {
+  Problems none;
+  return make_set(name, Node::map().set("method", Node::of(method)), none);
+}
+
+PlanRequest touches_of_planes(int planes, int count, int candidates) {
+  PlanRequest request;
+  for (int i = 0; i < planes; ++i)
+    request.pool.sets.push_back(set_by("plane" + std::to_string(i + 1), "plane"));
+  request.count = count;
+  request.pool.candidates = candidates;
+  request.speed.setOnes(6);
+  return request;
+}
+
+/// Least distance between end positions of the rows (m).
+double least_apart(const Robot& robot, const DataSet& data) {
+  double least = HUGE_VAL;
+  const auto at = [&](int row) {
+    return locate(robot, values(robot), data.rows.q.row(row).transpose()).p;
+  };
+  for (int a = 0; a < data.rows.rows(); ++a)
+    for (int b = 0; b < a; ++b) least = std::min(least, (at(a) - at(b)).norm());
+  return least;
+}
+
+TEST(ConfigurationPlan, KeepsEndPositionsApartAndItsWayWithinItsTime) {
+  const auto robot = example_arm();
+  PlanRequest request = touches_of_planes(1, 15, 200);
+  request.pool.spacing = 0.1;
+  const ConfigurationPlan spaced = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(spaced.problem, "");
+  EXPECT_GE(least_apart(*robot, spaced.data), 0.1);
+  request.longest = 0.5 * spaced.way;
+  const ConfigurationPlan shorter = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(shorter.problem, "");
+  EXPECT_LE(shorter.way, request.longest);
+  EXPECT_LT(shorter.units.size(), 15U);
+  request.longest = 1e-3;
+  EXPECT_EQ(plan_configurations(*robot, values(*robot), request).units.size(), 1U);
+}
+
+TEST(ConfigurationPlan, GivesNoIndicesOfParametersThatAreNotSeen) {
+  const auto robot = example_arm();
+  // Two poses in each of four nests, which are twice as many equations as there are parameters; but
+  // most choices leave a nest with one pose, that says where it lies and no more.
+  PlanRequest request = touches_of_planes(0, 8, 120);
+  request.pool.sets = {set_by("nest", "location-constraint")};
+  request.pool.groups = 4;
+  const ConfigurationPlan plan = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(plan.problem, "");
+  EXPECT_EQ(plan.random.observability.condition, 0) << "none";
+  EXPECT_GT(plan.planned.observability.condition, 1);
+  EXPECT_LT(plan.planned.observability.condition, 1e3);
+}
+
+}  // namespace
+}  // namespace selfcal
