@@ -12,9 +12,8 @@
 namespace selfcal {
 namespace {
 
-constexpr int kLongestTries = 6;    // of fewer, until the way is short enough
-constexpr double kLessTime = 0.97;  // of the share of them that the time is for
 constexpr int kRandomChoices = 25;  // of which the median is told
+constexpr int kLeftAfresh = 10;     // left out, after which the design is made anew
 
 std::vector<Unit> some(const std::vector<Unit>& units, const std::vector<int>& which) {
   std::vector<Unit> list;
@@ -67,13 +66,19 @@ std::vector<Visit> visits_of(const DataSet& data, const std::vector<Unit>& units
   return list;
 }
 
-std::vector<double> curve_of(const PlanSystem& system, const ConfigurationPlan& plan,
-                             const Progress& progress) {
+/// All units of the plan chosen, by the end position's sigma.
+Design whole_design(const PlanSystem& system, const ConfigurationPlan& plan) {
   Design design(system.rows(plan.data, plan.units, Criterion::sigma),
                 system.objective(Criterion::sigma));
   std::vector<int> all(plan.units.size());
   std::iota(all.begin(), all.end(), 0);
   design.choose(all);
+  return design;
+}
+
+std::vector<double> curve_of(const PlanSystem& system, const ConfigurationPlan& plan,
+                             const Progress& progress) {
+  Design design = whole_design(system, plan);
   std::vector<double> sigma;
   for (const double merit : left_out_one_by_one(design, progress))
     sigma.push_back(std::sqrt(-merit));
@@ -92,17 +97,42 @@ void name_pairs(const std::vector<Unit>& units, DataSet& data) {
   }
 }
 
-void order_visits(const Eigen::VectorXd& speed, Random& random, ConfigurationPlan& plan) {
+/// Leaves out those that tell least for the time they take, until the way is short enough.
+std::vector<int> short_enough(const PlanSystem& system, const ConfigurationPlan& plan,
+                              const std::vector<Visit>& visits, const PlanRequest& request,
+                              std::vector<int> order) {
+  Design design = whole_design(system, plan);
+  int left = 0;
+  leave_out(
+      visits, request.speed, request.longest,
+      [&](int unit) { return std::log(design.merit_without(unit) / design.merit()); },
+      [&](int unit) {
+        design.change(unit, -1);
+        if (++left % kLeftAfresh == 0) design.refresh();
+      },
+      order);
+  std::vector<Visit> visited;
+  for (const int each : order) visited.push_back(visits[static_cast<std::size_t>(each)]);
+  const std::vector<int> anew = short_tour(visited, request.speed);
+  if (way_time(visited, anew, request.speed) >= way_time(visits, order, request.speed))
+    return order;
+  std::vector<int> shorter;
+  for (const int each : anew) shorter.push_back(order[static_cast<std::size_t>(each)]);
+  return shorter;
+}
+
+void order_visits(const PlanSystem& system, const PlanRequest& request, Random& random,
+                  ConfigurationPlan& plan) {
   const std::vector<Visit> visits = visits_of(plan.data, plan.units);
-  std::vector<int> order(visits.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), random);
-  plan.way_random = way_time(visits, order, speed);
-  order = short_tour(visits, speed);
-  plan.way = way_time(visits, order, speed);
+  std::vector<int> order = short_tour(visits, request.speed);
+  if (request.longest > 0 && way_time(visits, order, request.speed) > request.longest)
+    order = short_enough(system, plan, visits, request, std::move(order));
+  plan.way = way_time(visits, order, request.speed);
   plan.units = some(plan.units, order);
   plan.data = rows_alone(plan.data, plan.units);
   name_pairs(plan.units, plan.data);
+  std::shuffle(order.begin(), order.end(), random);
+  plan.way_random = way_time(visits, order, request.speed);
 }
 
 /// Chooses `count` units of the pool, moves and orders them, and says what they are worth.
@@ -119,13 +149,13 @@ void choose_units(const Robot& robot, const PlanRequest& request, const PlanSyst
          {plan.data, plan.units, system.columns(request.criterion), system.most(),
           request.pool.held, request.pool.spacing},
          progress);
+  if (progress) progress("ordering configurations", 0);
+  order_visits(system, request, random, plan);
 
   plan.sigma_before = system.figures(plan.data, {}).sigma;
   plan.sigma_beyond = system.sigma_beyond(pool, plan.data, plan.units);
   plan.planned = system.figures(plan.data, plan.units);
   plan.curve = curve_of(system, plan, progress);
-  if (progress) progress("ordering configurations", 0);
-  order_visits(request.speed, random, plan);
 }
 
 }  // namespace
@@ -152,14 +182,15 @@ ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd&
   plan.parameters = system.parameters();
   plan.aligned = system.aligned();
   Random random(request.pool.seed);
-  plan.random = random_figures(system, pool, request.count, random, progress);
-
-  int count = request.count;
-  for (int attempt = 0; attempt < kLongestTries; ++attempt) {
-    choose_units(robot, request, system, pool, count, random, progress, plan);
-    if (request.longest <= 0 || plan.way <= request.longest) break;
-    count = std::max(1, static_cast<int>(kLessTime * request.longest / plan.way * count));
+  choose_units(robot, request, system, pool, request.count, random, progress, plan);
+  // The best of so many may be shorter and tell more than what is left of more.
+  for (int count = request.count; static_cast<int>(plan.units.size()) < count;) {
+    count = static_cast<int>(plan.units.size());
+    ConfigurationPlan fewer = plan;
+    choose_units(robot, request, system, pool, count, random, progress, fewer);
+    if (fewer.planned.sigma < plan.planned.sigma) plan = std::move(fewer);
   }
+  plan.random = random_figures(system, pool, static_cast<int>(plan.units.size()), random, progress);
   if (request.longest > 0 && plan.way > request.longest)
     plan.problem = "the way between the configurations takes longer than it may";
   return plan;

@@ -44,6 +44,8 @@ class Design {
   /// The candidate outside whose addition (+1), or inside whose removal (-1), leaves the largest
   /// merit, of one kind or of any (-1), and that merit; -1 without one.
   std::pair<int, double> best(int sign, int kind = -1) const;
+  /// Of `sigma`: the merit without one that is chosen.
+  double merit_without(int candidate) const;
   /// Adds (+1) or removes (-1) a candidate.
   void change(int candidate, int sign);
   /// The one of its kind that is the best in place of `candidate`, itself where no other is better,

@@ -74,6 +74,11 @@ double Design::merit_after(std::size_t i, int sign) const {
                                  : factor;
 }
 
+double Design::merit_without(int candidate) const {
+  expects(objective_.criterion == Criterion::sigma && has(candidate), "a chosen one, by sigma");
+  return merit_after(static_cast<std::size_t>(candidate), -1);
+}
+
 std::pair<int, double> Design::best(int sign, int kind) const {
   if (is_spectral(objective_.criterion)) return best_by_spectrum(sign, kind);
   std::pair<int, double> best{-1, kNever};

@@ -1,6 +1,7 @@
 #include "constraints/planning/tour.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace selfcal {
@@ -134,6 +135,36 @@ std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::Vecto
   const bool both_ways =
       std::ranges::all_of(visits, [](const Visit& v) { return v.first == v.last; });
   return TourSearch(std::move(way), both_ways, 0).run();
+}
+
+void leave_out(const std::vector<Visit>& visits, const Eigen::VectorXd& speed, double longest,
+               const std::function<double(int)>& worth, const std::function<void(int)>& left,
+               std::vector<int>& order) {
+  const auto visit = [&](std::size_t place) -> const Visit& {
+    return visits[static_cast<std::size_t>(order[place])];
+  };
+  const auto between = [&](std::size_t a, std::size_t b) {
+    return joint_time(visit(a).last, visit(b).first, speed);
+  };
+  // What the visit at a place costs: its own time, and that of the way round by it.
+  const auto cost = [&](std::size_t i) {
+    double time = joint_time(visit(i).first, visit(i).last, speed);
+    if (i > 0) time += between(i - 1, i);
+    if (i + 1 < order.size()) time += between(i, i + 1);
+    return i > 0 && i + 1 < order.size() ? time - between(i - 1, i + 1) : time;
+  };
+  while (order.size() > 1 && way_time(visits, order, speed) > longest) {
+    std::size_t least = 0;
+    double worth_of_time = HUGE_VAL;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const double each = worth(order[i]) / std::max(cost(i), kShorter);
+      if (each >= worth_of_time) continue;
+      worth_of_time = each;
+      least = i;
+    }
+    left(order[least]);
+    order.erase(order.begin() + static_cast<std::ptrdiff_t>(least));
+  }
 }
 
 std::vector<int> short_tour_from_first(const Eigen::MatrixXd& way) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <functional>
 #include <vector>
 
 namespace selfcal {
@@ -27,6 +28,13 @@ double way_time(const std::vector<Visit>& visits, const std::vector<int>& order,
 
 /// The order, which begins at any visit.
 std::vector<int> short_tour(const std::vector<Visit>& visits, const Eigen::VectorXd& speed);
+
+/// Leaves visits out of `order`, one after another, until the way takes `longest` (s) at most or
+/// one is left: each time the one whose `worth` (above 0) is least for the time that it costs.
+/// `left` hears of it, and the worth of the others may then be another.
+void leave_out(const std::vector<Visit>& visits, const Eigen::VectorXd& speed, double longest,
+               const std::function<double(int)>& worth, const std::function<void(int)>& left,
+               std::vector<int>& order);
 
 /// The order of places, begun at the first one, by the time from one to another (s; symmetric).
 std::vector<int> short_tour_from_first(const Eigen::MatrixXd& way);

@@ -52,8 +52,26 @@ TEST(ConfigurationPlan, KeepsEndPositionsApartAndItsWayWithinItsTime) {
   ASSERT_EQ(shorter.problem, "");
   EXPECT_LE(shorter.way, request.longest);
   EXPECT_LT(shorter.units.size(), 15U);
+  // What is compared with it are as many at random.
+  request.longest = 0;
+  request.count = static_cast<int>(shorter.units.size());
+  const double as_many = plan_configurations(*robot, values(*robot), request).random.sigma;
+  EXPECT_NEAR(shorter.random.sigma, as_many, 0.2 * as_many) << "medians of 25 choices";
+  request.count = 15;
   request.longest = 1e-3;
   EXPECT_EQ(plan_configurations(*robot, values(*robot), request).units.size(), 1U);
+}
+
+TEST(ConfigurationPlan, SpendsTheTimeThatItHasOnWhatTellsMost) {
+  const auto robot = example_arm();
+  PlanRequest request = touches_of_planes(3, 30, 300);
+  request.longest = 10;
+  const ConfigurationPlan plan = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(plan.problem, "");
+  EXPECT_LE(plan.way, request.longest);
+  // From one to the next takes two seconds, so that no further one goes into what is left over.
+  EXPECT_GT(plan.way, request.longest - 3);
+  EXPECT_EQ(plan.curve.size(), plan.units.size() + 1);
 }
 
 TEST(ConfigurationPlan, GivesNoIndicesOfParametersThatAreNotSeen) {
