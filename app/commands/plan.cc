@@ -193,7 +193,9 @@ void add_plan(CLI::App& app, int& status) {
   command
       ->add_option("--start", arguments->start, "CSV of configurations that are measured already")
       ->excludes(further);
-  command->add_option("--spacing", arguments->spacing, "Least between end positions of a set (m)")
+  command
+      ->add_option("--spacing", arguments->spacing,
+                   "Least between end positions of a set, those of --start included (m)")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--longest", arguments->longest,

@@ -147,7 +147,8 @@ void choose_units(const Robot& robot, const PlanRequest& request, const PlanSyst
   plan.data = rows_alone(pool.data, plan.units);
   refine(robot, system.equations(), objective,
          {plan.data, plan.units, system.columns(request.criterion), system.most(),
-          request.pool.held, request.pool.spacing},
+          request.pool.held, request.pool.spacing,
+          end_positions(robot, system.equations().state().xi, request.pool.taken)},
          progress);
   if (progress) progress("ordering configurations", 0);
   order_visits(system, request, random, plan);

@@ -86,15 +86,20 @@ std::vector<Unit> into_units(DataSet& data) {
   return units;
 }
 
-/// Leaves out units whose end position is nearer than `spacing` to one before them of their set.
-void space(const Robot& robot, const Eigen::VectorXd& xi, double spacing, Pool& pool) {
-  std::vector<std::vector<Eigen::Vector3d>> kept(pool.data.sets.size());
+/// Leaves out units whose end position is nearer than `spacing` to one before them of their set, or
+/// to one of those taken already.
+void space(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request, Pool& pool) {
+  EndPositions kept = end_positions(robot, xi, request.taken);
+  kept.resize(pool.data.sets.size());
   std::erase_if(pool.units, [&](const Unit& unit) {
-    const Eigen::Vector3d p = locate(robot, xi, pool.data.rows.q.row(unit.front()).transpose()).p;
-    std::vector<Eigen::Vector3d>& others = kept[pool.data.rows.set[unit.front()]];
+    const int set = pool.data.rows.set[unit.front()];
+    std::vector<Eigen::Vector3d> own;
+    for (const int row : unit)
+      own.push_back(locate(robot, xi, pool.data.rows.q.row(row).transpose()).p);
+    std::vector<Eigen::Vector3d>& others = kept[static_cast<std::size_t>(set)];
     const bool near = std::ranges::any_of(
-        others, [&](const Eigen::Vector3d& other) { return (p - other).norm() < spacing; });
-    if (!near) others.push_back(p);
+        own, [&](const Eigen::Vector3d& p) { return nearer_than(request.spacing, p, others); });
+    if (!near) others.insert(others.end(), own.begin(), own.end());
     return near;
   });
   if (pool.unreached.empty())
@@ -102,6 +107,20 @@ void space(const Robot& robot, const Eigen::VectorXd& xi, double spacing, Pool& 
 }
 
 }  // namespace
+
+EndPositions end_positions(const Robot& robot, const Eigen::VectorXd& xi, const DataSet& data) {
+  EndPositions list(data.sets.size());
+  for (int row = 0; row < data.rows.rows(); ++row)
+    list[static_cast<std::size_t>(data.rows.set[row])].push_back(
+        locate(robot, xi, data.rows.q.row(row).transpose()).p);
+  return list;
+}
+
+bool nearer_than(double spacing, const Eigen::Vector3d& p,
+                 const std::vector<Eigen::Vector3d>& others) {
+  return std::ranges::any_of(
+      others, [&](const Eigen::Vector3d& other) { return (p - other).norm() < spacing; });
+}
 
 Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest& request,
                const Progress& progress) {
@@ -115,7 +134,7 @@ Pool draw_pool(const Robot& robot, const Eigen::VectorXd& xi, const PoolRequest&
   for (Set& set : pool.data.sets)
     if (set.method->paired()) set.groups.clear();
   pool.units = into_units(pool.data);
-  if (request.spacing > 0) space(robot, xi, request.spacing, pool);
+  if (request.spacing > 0) space(robot, xi, request, pool);
   return pool;
 }
 

@@ -63,22 +63,26 @@ class PlanMoves {
     return W;
   }
 
-  /// Far enough from the other units of its set.
+  /// Far enough from the other units of its set, and from what is taken already.
   bool spaced(int u, std::size_t lane) const {
     if (plan_.spacing <= 0) return true;
-    const auto place = [&](const Eigen::VectorXd& q) {
-      return locate(robot_, equations_.state().xi, q).p;
-    };
-    const Eigen::Vector3d p =
-        place(looked_.q.front().row(static_cast<Eigen::Index>(lane)).transpose());
     const Observations& rows = plan_.data.rows;
-    for (std::size_t other = 0; other < plan_.units.size(); ++other) {
-      const int row = plan_.units[other].front();
-      if (static_cast<int>(other) != u && rows.set[row] == rows.set[unit_of(u).front()] &&
-          (place(rows.q.row(row).transpose()) - p).norm() < plan_.spacing)
-        return false;
-    }
-    return true;
+    const int set = rows.set[unit_of(u).front()];
+    std::vector<Eigen::Vector3d> others;
+    if (static_cast<std::size_t>(set) < plan_.taken.size())
+      others = plan_.taken[static_cast<std::size_t>(set)];
+    for (std::size_t other = 0; other < plan_.units.size(); ++other)
+      for (const int row : plan_.units[other])
+        if (static_cast<int>(other) != u && rows.set[row] == set)
+          others.push_back(place(rows.q.row(row).transpose()));
+    return std::ranges::none_of(looked_.q, [&](const Eigen::MatrixXd& q) {
+      return nearer_than(plan_.spacing, place(q.row(static_cast<Eigen::Index>(lane)).transpose()),
+                         others);
+    });
+  }
+
+  Eigen::Vector3d place(const Eigen::VectorXd& q) const {
+    return locate(robot_, equations_.state().xi, q).p;
   }
 
   bool take(int u, int column) {

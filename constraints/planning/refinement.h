@@ -7,6 +7,7 @@
 
 #include "constraints/planning/design.h"
 #include "constraints/planning/plan_equations.h"
+#include "constraints/planning/plan_pool.h"
 #include "constraints/progress.h"
 
 namespace selfcal {
@@ -20,7 +21,8 @@ struct Refined {
   /// By set, the most that a unit's rows may be of: the norm of PlanEquations::of_units.
   const std::vector<double>& most;
   const std::vector<int>& held;  ///< joints that do not move
-  double spacing = 0;            ///< m, kept between end positions of a set
+  double spacing = 0;            ///< m, kept between end positions of a set, and from `taken`
+  EndPositions taken = {};
 };
 
 /// Moves the units; returns how often one was moved. The merit never falls.

@@ -74,6 +74,23 @@ TEST(ConfigurationPlan, SpendsTheTimeThatItHasOnWhatTellsMost) {
   EXPECT_EQ(plan.curve.size(), plan.units.size() + 1);
 }
 
+TEST(ConfigurationPlan, KeepsEndPositionsApartFromThoseThatAreTakenAlready) {
+  const auto robot = example_arm();
+  PlanRequest request = touches_of_planes(0, 25, 600);
+  request.pool.sets = {set_by("tracker", "position")};
+  request.pool.spacing = 0.3;
+  const ConfigurationPlan first = plan_configurations(*robot, values(*robot), request);
+  request.pool.taken = first.data;
+  request.pool.seed = 2;
+  const ConfigurationPlan further = plan_configurations(*robot, values(*robot), request);
+  ASSERT_EQ(further.problem, "");
+  DataSet both = first.data;
+  both.rows.q.conservativeResize(50, Eigen::NoChange);
+  both.rows.q.bottomRows(25) = further.data.rows.q;
+  both.rows.set.resize(50, 0);
+  EXPECT_GE(least_apart(*robot, both), 0.3);
+}
+
 TEST(ConfigurationPlan, GivesNoIndicesOfParametersThatAreNotSeen) {
   const auto robot = example_arm();
   // Two poses in each of four nests, which are twice as many equations as there are parameters; but
