@@ -17,11 +17,12 @@ namespace {
 
 constexpr int kPoses = 500;  // at which the end position is judged
 constexpr unsigned long long kSeed = 1;
-constexpr int kLongestTries = 6;    // of fewer touches, until the motion is short enough
-constexpr double kLessTime = 0.97;  // of the share of touches that the time is for
-constexpr int kFewestTouches = 4;   // of a set
-constexpr std::size_t kNear = 12;   // touches to which a free way is looked for
-constexpr double kOtherSet = 1e4;   // s, that no order gains by leaving a set unfinished
+constexpr int kLongestTries = 6;     // of fewer touches, until the motion is short enough
+constexpr double kLessTime = 0.97;   // of the share of touches that the time is for
+constexpr double kWellSpent = 0.95;  // of the time: no more touches are tried then
+constexpr int kFewestTouches = 4;    // of a set
+constexpr std::size_t kNear = 12;    // touches to which a free way is looked for
+constexpr double kOtherSet = 1e4;    // s, that no order gains by leaving a set unfinished
 
 /// All that a choice is made of.
 struct Choosing {
@@ -190,22 +191,34 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
     if (found < target.touches && plan.unreached.empty())
       plan.unreached = "set " + sets[target.set].name + ": only " + std::to_string(found) + " of " +
                        std::to_string(target.touches) +
-                       " touches are within the joint limits, the tilt and reach of home";
+                       " touches are within the joint limits, the tilt and reach of home" +
+                       (options.spacing > 0 ? ", and so far apart (motion: spacing)" : "");
   }
   const Choosing choosing{robot, xi, sets, targets, workspace, options, candidates, usable};
   const Surroundings cell{robot,         xi,           obstacles, options.apart, options.home,
                           options.speed, options.fence};
-  double share = 1;
+  double share = 1, too_many = 1;  // of the touches
+  std::optional<std::vector<PlannedTouch>> best;
   for (int attempt = 0; attempt < kLongestTries; ++attempt) {
     tell("choosing touches", 0);
     const std::vector<PlannedTouch> chosen = choose(choosing, share, random, progress);
     tell("ordering touches", 0);
     plan.touches = in_short_order(cell, sets, chosen);
     const MotionTime time = motion_time(robot, xi, plan, options);
-    if (options.longest <= 0 || time.travel + time.touching <= options.longest) return plan;
-    share *= kLessTime * options.longest / (time.travel + time.touching);
+    const double takes = time.travel + time.touching;
+    if (options.longest <= 0) return plan;
+    if (takes <= options.longest) {
+      if (!best || best->size() < plan.touches.size()) best = plan.touches;
+      if (share == 1 || takes > kWellSpent * options.longest) break;
+      share = (share + too_many) / 2;
+    } else {
+      too_many = share;
+      share *= kLessTime * options.longest / takes;
+    }
   }
-  if (plan.unreached.empty())
+  if (best)
+    plan.touches = *std::move(best);
+  else if (plan.unreached.empty())
     plan.unreached = "the motion takes longer than it may (motion: longest)";
   return plan;
 }

@@ -176,6 +176,23 @@ TEST(TouchPlan, KeepsOutOfABoxThatStandsInTheWay) {
   }
 }
 
+TEST(TouchPlan, FillsTheTimeThatItsMotionMayTake) {
+  PlannedCell cell = table_and_wall(30);
+  const TouchPlan free = cell.plan();
+  const MotionTime all = motion_time(rx90(), values(rx90()), free, cell.options);
+  double used = 0;
+  for (const double share : {0.7, 0.5, 0.35}) {
+    cell.options.longest = share * (all.travel + all.touching);
+    const TouchPlan some = cell.plan();
+    ASSERT_EQ(some.unreached, "");
+    const MotionTime time = motion_time(rx90(), values(rx90()), some, cell.options);
+    EXPECT_LE(time.travel + time.touching, cell.options.longest);
+    used += (time.travel + time.touching) / cell.options.longest / 3;
+  }
+  // Both sets get a touch more at a time, which take some 4 to 10 s together of 65 to 130 s.
+  EXPECT_GT(used, 0.9);
+}
+
 TEST(TouchPlan, KeepsTouchesApartAndItsMotionWithinItsTime) {
   PlannedCell cell = table_and_wall(12);
   const TouchPlan free = cell.plan();
