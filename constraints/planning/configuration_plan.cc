@@ -192,6 +192,10 @@ ConfigurationPlan plan_configurations(const Robot& robot, const Eigen::VectorXd&
     if (fewer.planned.sigma < plan.planned.sigma) plan = std::move(fewer);
   }
   plan.random = random_figures(system, pool, static_cast<int>(plan.units.size()), random, progress);
+  if (!std::isfinite(plan.planned.sigma) || !std::isfinite(plan.curve.back()))
+    plan.problem =
+        "the rows are so much surer than what is known beforehand that rounding hides what they "
+        "tell: give a larger noise";
   if (request.longest > 0 && plan.way > request.longest)
     plan.problem = "the way between the configurations takes longer than it may";
   return plan;

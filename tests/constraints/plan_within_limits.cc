@@ -6,6 +6,7 @@
 
 #include "constraints/planning/configuration_plan.h"
 #include "io/files/robot_file.h"
+#include "tests/kinematics/parsed_robot.h"
 
 namespace selfcal {
 namespace {
@@ -89,6 +90,26 @@ TEST(ConfigurationPlan, KeepsEndPositionsApartFromThoseThatAreTakenAlready) {
   both.rows.q.bottomRows(25) = further.data.rows.q;
   both.rows.set.resize(50, 0);
   EXPECT_GE(least_apart(*robot, both), 0.3);
+}
+
+TEST(ConfigurationPlan, SaysSoWhereRoundingHidesWhatRowsTell) {
+  const auto robot = robot_of(R"(robot: arm
+kind: serial
+frames:
+  - {name: base, joint: fixed, alpha: 0.1, d: 0.2, theta: 0.3, r: 0.4}
+  - {name: j1, joint: revolute, alpha: 0.02, r: 0.3, limits: [-2.5, 2.5]}
+  - {name: j2, joint: revolute, alpha: -1.5, d: 0.15, limits: [-1.5, 1.5]}
+  - {name: j3, joint: prismatic, alpha: 1.4, d: 0.1, r: 0.5, limits: [-0.1, 0.3]}
+  - {name: j4, joint: revolute, alpha: 0.02, r: 0.3, limits: [-2.5, 2.5]}
+  - {name: j5, joint: revolute, alpha: -1.5, d: 0.15, limits: [-1.5, 1.5]}
+  - {name: j6, joint: revolute, alpha: 1.5, d: 0.05, limits: [-1.5, 1.5]}
+  - {name: tool, joint: fixed, d: 0.03, r: 0.12, theta: 0.4, tolerance: {d: 1.0e-3}}
+)");
+  // A nanometre beside a surface that lies anywhere within metres: squared, 18 digits.
+  PlanRequest request = touches_of_planes(1, 30, 100);
+  request.pool.sets.front().noise = 1e-9;
+  const ConfigurationPlan plan = plan_configurations(*robot, values(*robot), request);
+  EXPECT_NE(plan.problem, "");
 }
 
 TEST(ConfigurationPlan, GivesNoIndicesOfParametersThatAreNotSeen) {
