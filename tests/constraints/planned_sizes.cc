@@ -19,6 +19,7 @@ namespace selfcal {
 namespace {
 
 constexpr std::array kTenthAndTenfold{0.1, 10.0};
+constexpr double kRounded = 1e-9;       // relative
 constexpr double kRoundedAlike = 1e-6;  // relative: rounding, times what the equations magnify
 
 Set sized_set(const std::string& method, double noise) {
@@ -29,32 +30,34 @@ Set sized_set(const std::string& method, double noise) {
   return read_sets(entries, problems).front();
 }
 
-ConfigurationPlan planned(const std::string& method, double k) {
+ConfigurationPlan planned(const std::string& method, double k, unsigned long long seed) {
   const auto robot = arm_of_size(k);
   PlanRequest request;
   request.pool.sets = {sized_set(method, 2e-5 * k)};
   request.pool.candidates = 120;
   request.count = 20;
+  request.pool.seed = seed;
   request.speed.setOnes(static_cast<Eigen::Index>(robot->joints().size()));
   return plan_configurations(*robot, values(*robot), request);
 }
 
+// Powers of two, which round alike: of two choices that are as good rounding would take either.
 TEST(AnySize, IsMeasuredAtTheSameConfigurations) {
-  for (const char* method : {"position", "plane"}) {
-    const ConfigurationPlan one = planned(method, 1);
-    ASSERT_EQ(one.problem, "") << method;
-    for (const double k : kTenthAndTenfold) {
-      const ConfigurationPlan other = planned(method, k);
-      EXPECT_EQ(other.parameters, one.parameters) << method << " times " << k;
-      EXPECT_NEAR(other.planned.sigma / k, one.planned.sigma, kRoundedAlike * one.planned.sigma)
-          << method << " times " << k;
-      EXPECT_NEAR(other.sigma_beyond / k, one.sigma_beyond, kRoundedAlike * one.planned.sigma)
-          << method << " times " << k;
-      ASSERT_EQ(other.data.rows.q.rows(), one.data.rows.q.rows()) << method << " times " << k;
-      EXPECT_LT((other.data.rows.q - one.data.rows.q).cwiseAbs().maxCoeff(), kRoundedAlike)
-          << method << " times " << k;
+  for (const char* method : {"position", "plane"})
+    for (const unsigned long long seed : {1, 2, 3}) {
+      const ConfigurationPlan one = planned(method, 1, seed);
+      ASSERT_EQ(one.problem, "") << method;
+      for (const double k : {0.125, 8.0}) {
+        SCOPED_TRACE(std::string(method) + " of seed " + std::to_string(seed) + " times " +
+                     std::to_string(k));
+        const ConfigurationPlan other = planned(method, k, seed);
+        EXPECT_EQ(other.parameters, one.parameters);
+        EXPECT_NEAR(other.planned.sigma / k, one.planned.sigma, kRounded * one.planned.sigma);
+        EXPECT_NEAR(other.sigma_beyond / k, one.sigma_beyond, kRounded * one.planned.sigma);
+        ASSERT_EQ(other.data.rows.q.rows(), one.data.rows.q.rows());
+        EXPECT_LT((other.data.rows.q - one.data.rows.q).cwiseAbs().maxCoeff(), kRounded);
+      }
     }
-  }
 }
 
 /// A table and a wall before the arm of size `k`, and what is asked of them.
