@@ -70,13 +70,16 @@ class Maker {
     candidate.needs = take(candidate, supposed.shape, candidate.main, problems);
     for (const EffectShape& each : supposed.beside)
       take(candidate, each, candidate.slack, problems);
-    if (problems.any()) {
+    if (problems.any() || candidate.main.empty()) {
       all_.made.erase(all_.made.begin() + made, all_.made.end());
       parameters_ = parameters;
       const bool told = std::ranges::any_of(all_.untestable, [&](const Untestable& each) {
         return each.effect == supposed.effect && each.at == supposed.at;
       });
-      if (!told) all_.untestable.push_back({supposed.effect, supposed.at, problems.list.front()});
+      if (!told)
+        all_.untestable.push_back(
+            {supposed.effect, supposed.at,
+             problems.any() ? problems.list.front() : "it has no figure that rows could tell"});
       return;
     }
     candidate.shape = supposed.shape;

@@ -50,6 +50,21 @@ TEST(Candidates, ShareTheProbabilityOfTheirFamilyAmongPlacesThenShapes) {
   for (const auto& [effect, probability] : sum) EXPECT_NEAR(probability, 1, 1e-12) << effect;
 }
 
+TEST(Candidates, HaveFiguresToTellOfARobotWhoseLastJointSlides) {
+  Session session(50);
+  session.robot = robot_of(
+      "robot: gantry\nkind: serial\nmass: 80\nframes:\n"
+      "  - {name: x, joint: prismatic, alpha: 1.5707963267948966, limits: [0, 2]}\n"
+      "  - {name: y, joint: prismatic, alpha: 1.5707963267948966, theta: 1.5707963267948966,"
+      " limits: [0, 1]}\n"
+      "  - {name: z, joint: prismatic, alpha: 1.5707963267948966, limits: [0, 0.5]}\n"
+      "  - {name: tool, joint: fixed, r: 0.1}\n");
+  session.data.rows.q = Eigen::MatrixXd::Zero(50, 3);
+  const Candidates all = session.candidates();
+  EXPECT_GT(all.list.size(), 10U);
+  for (const Candidate& each : all.list) EXPECT_FALSE(each.main.empty()) << each.effect << each.at;
+}
+
 TEST(Candidates, LetTheBaseDriftSettleAndWander) {
   int straight = 0, settling = 0, wandering = 0;
   for (const Candidate& each : Session(50).candidates().list) {
