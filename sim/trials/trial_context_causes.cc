@@ -111,7 +111,7 @@ TrialCause trigger_latency(const TrialWorld& world, Random& random) {
   return {.where = {"probe"},
           .physics = "a delay that jitters by a tenth",
           .act = [=](const Instant& at, Deviation& out) {
-            out.joints -= 2e-3 * jitter[static_cast<size_t>(at.row)] * at.velocity;
+            out.readings -= 2e-3 * jitter[static_cast<size_t>(at.row)] * at.velocity;
           }};
 }
 

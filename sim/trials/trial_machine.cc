@@ -143,6 +143,7 @@ class TrialMaker {
       Deviation one{Eigen::VectorXd::Zero(at.q.size())};
       cause.act(at, one);
       sum.joints += cause.size * one.joints;
+      sum.readings += cause.size * one.readings;
       sum.legs += cause.size * one.legs;
       sum.tip += cause.size * one.tip;
     }
@@ -156,9 +157,12 @@ class TrialMaker {
 
   Eigen::Vector3d shift(const std::vector<TrialCause>& causes, const Instant& at) const {
     const Deviation d = deviation(causes, at);
-    const Robot& robot = *session_.robot;
-    return tip_of(robot, geometry(d), at.q + d.joints, nullptr) -
-           tip_of(robot, session_.truth.xi, at.q, nullptr) + d.tip;
+    return deviating_tip(d, at, nullptr) -
+           tip_of(*session_.robot, session_.truth.xi, at.q, nullptr);
+  }
+
+  Eigen::Vector3d deviating_tip(const Deviation& d, const Instant& at, Eigen::MatrixXd* J) const {
+    return tip_of(*session_.robot, geometry(d), at.q + d.readings, J, d.joints) + d.tip;
   }
 
   Eigen::MatrixXd shifts(const std::vector<TrialCause>& causes) const {
@@ -189,7 +193,7 @@ class TrialMaker {
     for (int step = 0; step < kTouchSteps; ++step) {
       const Deviation d = deviation(causes_, at);
       Eigen::MatrixXd J;
-      const Eigen::Vector3d tip = tip_of(robot, geometry(d), at.q + d.joints, &J) + d.tip;
+      const Eigen::Vector3d tip = deviating_tip(d, at, &J);
       const double miss = wanted + surface.distance - surface.normal.dot(tip);
       if (std::abs(miss) < kTouchMet) break;
       const Eigen::VectorXd along = J.transpose() * surface.normal;
@@ -201,8 +205,7 @@ class TrialMaker {
 
   void track(const Instant& at, double astray) {
     const Deviation d = deviation(causes_, at);
-    Eigen::Vector3d p = tip_of(*session_.robot, geometry(d), at.q + d.joints, nullptr) + d.tip +
-                        noise_.row(at.row).transpose();
+    Eigen::Vector3d p = deviating_tip(d, at, nullptr) + noise_.row(at.row).transpose();
     if (astray > 0)
       p += astray * Eigen::Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
     session_.data.rows.position.row(at.row) = p.transpose();

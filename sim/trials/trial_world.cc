@@ -94,13 +94,18 @@ double TrialWorld::largest_torque(int joint) const {
 }
 
 Eigen::Vector3d tip_of(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
-                       Eigen::MatrixXd* J) {
+                       Eigen::MatrixXd* J, const Eigen::VectorXd& added) {
   Locations X;
   PsiBlock psi;
-  robot.locate(block_of(q), xi, Body::endpoint, X, J ? &psi : nullptr);
+  ConfigurationBlock block = block_of(q);
+  if (added.size() > 0) {
+    block.added.resize(block.lanes(), added.size());
+    block.added.rowwise() = added.transpose().array();
+  }
+  robot.locate(block, xi, Body::endpoint, X, J ? &psi : nullptr);
   if (J) {
     Eigen::MatrixXd all;
-    robot.joint_jacobian(block_of(q), xi, Body::endpoint, psi, all);
+    robot.joint_jacobian(block, xi, Body::endpoint, psi, all);
     J->resize(3, q.size());
     for (int c = 0; c < 3; ++c) J->row(c) = all.row(c);
   }

@@ -29,10 +29,11 @@ struct Instant {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< about the tip, world (N m)
 };
 
-/// What is added to the joint variables, to the lengths of legs and to the place of the tip (world,
-/// m).
+/// What is added to the joint variables, to the readings, to the lengths of legs and to the place
+/// of the tip (world, m).
 struct Deviation {
   Eigen::VectorXd joints;
+  Eigen::VectorXd readings = Eigen::VectorXd::Zero(joints.size());
   Eigen::VectorXd legs = Eigen::VectorXd::Zero(joints.size());  ///< m, one behind each joint
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
 };
@@ -91,10 +92,10 @@ void look(const Robot& robot, const Eigen::VectorXd& xi, Instant& at);
 /// Geometry `xi` with longer legs (m, by joint).
 Eigen::VectorXd with_legs(const Robot& robot, Eigen::VectorXd xi, const Eigen::VectorXd& longer);
 
-/// Place of the tip at joint variables `q` and true geometry, and its derivative to them (3 x
-/// joints) unless null.
+/// Place of the tip at readings `q` and true geometry, with `added` to the joint variables (none
+/// where it is empty), and its derivative to the readings (3 x joints) unless null.
 Eigen::Vector3d tip_of(const Robot& robot, const Eigen::VectorXd& xi, const Eigen::VectorXd& q,
-                       Eigen::MatrixXd* J);
+                       Eigen::MatrixXd* J, const Eigen::VectorXd& added = {});
 
 double uniform(Random& random, double least, double most);
 double log_uniform(Random& random, double least, double most);

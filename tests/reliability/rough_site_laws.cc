@@ -101,7 +101,7 @@ TrialCause late_cycle(const TrialWorld& world, Random& random) {
   return {.where = {"probe"},
           .physics = "a switch that is read in the controller's cycle",
           .act = [=](const Instant& at, Deviation& out) {
-            out.joints -= 1e-3 * late[static_cast<size_t>(at.row)] * at.velocity;
+            out.readings -= 1e-3 * late[static_cast<size_t>(at.row)] * at.velocity;
           }};
 }
 

@@ -172,6 +172,21 @@ TEST(TrialWorld, PullsItsLegsInBalanceWithTheLoad) {
       1e-9);
 }
 
+TEST(TrialWorld, AddsToTheVariablesOfCoupledJointsAndNotToTheirReadings) {
+  const auto robot = robot_of(
+      "robot: parallelogram\nkind: serial\ncoupling: [[1, 0], [-1, 1]]\nframes:\n"
+      "  - {name: j1, joint: revolute, limits: [-3, 3]}\n"
+      "  - {name: j2, joint: revolute, d: 0.5, limits: [-3, 3]}\n"
+      "  - {name: tip, joint: fixed, d: 0.4}\n");
+  const Eigen::VectorXd xi = values(*robot);
+  const Eigen::Vector2d q(0.3, 0.8), shift(0.01, 0);
+  // The second variable is the second reading less the first: j1 alone moves where both readings
+  // do.
+  const Eigen::Vector3d moved = tip_of(*robot, xi, q, nullptr, shift);
+  EXPECT_LT((moved - tip_of(*robot, xi, q + Eigen::Vector2d(0.01, 0.01), nullptr)).norm(), 1e-12);
+  EXPECT_GT((moved - tip_of(*robot, xi, q + shift, nullptr)).norm(), 1e-3);
+}
+
 TEST(TrialMachine, TakesAnotherLawOfAnEffectWhereItIsGivenOne) {
   TrialRequest asked = request("joint_coupling", 1.5, false);
   const auto law = [](const TrialWorld&, Random&) -> TrialCause {
