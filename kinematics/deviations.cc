@@ -24,7 +24,7 @@ RegressorInput input_of(const Robot& geometry, const ConfigurationBlock& block, 
   at.torque.setConstant(n, unknown);
   for (int j = 0; at.mechanics && j < n; ++j)
     at.torque[j] = joint_torque(*at.mechanics, at.poses, at.wrench, j);
-  if (const PointMasses* masses = geometry.masses()) at.gravity = masses->gravity;
+  at.gravity = gravity_of(geometry);
   at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
                                       : Eigen::VectorXd::Constant(n, unknown);
   at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;

@@ -19,6 +19,11 @@ void move_to(const Eigen::Vector3d& at, Locations& X, PsiBlock* psi) {
 
 }  // namespace
 
+Eigen::Vector3d gravity_of(const Robot& robot) {
+  const PointMasses* masses = robot.masses();
+  return masses ? masses->gravity : PointMasses().gravity;
+}
+
 bool weighs(const Robot& robot) { return robot.masses() && !robot.masses()->points.empty(); }
 
 Closure locate_point(const Robot& robot, const ConfigurationBlock& block, const Eigen::VectorXd& xi,

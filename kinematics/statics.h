@@ -26,6 +26,9 @@ struct PointMasses {
   std::vector<PointMass> points;         ///< empty where the masses are not known
 };
 
+/// m/s^2, world; of a robot that says nothing of it that of the earth, along -z.
+Eigen::Vector3d gravity_of(const Robot& robot);
+
 /// Some of the masses are known.
 bool weighs(const Robot& robot);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "constraints/sampling/contact.h"
+#include "kinematics/statics.h"
 #include "sim/machine.h"
 
 namespace selfcal {
@@ -78,14 +79,12 @@ MeasurementConditions Machine::conditions(const MotionRequest& request, const Tr
 
 /// Its weight on the tool, in the axes that each lane has it in.
 void Machine::hang_payload(ConfigurationBlock& block) const {
-  if (!robot_->statics()) return;
   Locations X;
   robot_->locate(block, truth_.xi, Body::endpoint, X, nullptr);
   block.conditions.wrench.setZero(kLanes, 6);
   for (int lane = 0; lane < kLanes; ++lane)
     block.conditions.wrench.row(lane).head<3>() =
-        (settings_.payload * X.R(lane).transpose() * robot_->statics()->mechanics().gravity)
-            .transpose();
+        (settings_.payload * X.R(lane).transpose() * gravity_of(*robot_)).transpose();
 }
 
 std::vector<Machine::Crossing> Machine::crossings(const MotionRequest& request,

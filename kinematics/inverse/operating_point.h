@@ -26,8 +26,7 @@ MeasurementConditions conditions_at(const OperatingPoint& at, const Robot& robot
   if (at.temperature == at.temperature)
     conditions.temperature = Eigen::VectorXd::Constant(lanes, at.temperature);
   if (at.mass == 0) return conditions;
-  const PointMasses* masses = robot.masses();
-  const Eigen::Vector3d weight = at.mass * (masses ? masses->gravity : Mechanics().gravity);
+  const Eigen::Vector3d weight = at.mass * gravity_of(robot);
   conditions.wrench.resize(lanes, 6);
   for (int lane = 0; lane < lanes; ++lane) {
     const Eigen::Vector3d force = R(lane).transpose() * weight;

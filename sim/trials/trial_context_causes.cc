@@ -74,7 +74,7 @@ TrialCause tool_compliance(const TrialWorld& world, Random& random) {
             const Eigen::Vector3d arm = at.poses.back().translation() - mount.translation();
             Eigen::Vector3d force, moment;
             world.load(at, last + 1, mount.translation(), force, moment);
-            moment += arm.cross(2.0 * Eigen::Vector3d(0, 0, -9.81));  // a tool of 2 kg
+            moment += arm.cross(2.0 * world.gravity());  // a tool of 2 kg
             const Eigen::Vector3d M = mount.linear().transpose() * moment;
             Eigen::Vector3d turn = M.cwiseProduct(Eigen::Vector3d(1, 1, 0));
             turn -= (1 - other) * axis * axis.dot(turn);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/statics.h"
+
 namespace selfcal {
 
 double AirRecord::at(double time) const {
@@ -69,9 +71,7 @@ void TrialWorld::load(const Instant& at, int first, const Eigen::Vector3d& point
   }
 }
 
-Eigen::Vector3d TrialWorld::gravity() const {
-  return on_legs() ? Eigen::Vector3d(0, 0, -9.81) : robot->statics()->mechanics().gravity;
-}
+Eigen::Vector3d TrialWorld::gravity() const { return gravity_of(*robot); }
 
 double TrialWorld::torque(const Instant& at, int joint) const {
   if (on_legs()) {  // virtual work: a leg's growth times its pull is what the loads do meanwhile

@@ -12,6 +12,7 @@
 #include "kinematics/corrected_robot.h"
 #include "kinematics/effect.h"
 #include "kinematics/expects.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
@@ -123,7 +124,7 @@ class TouchPool {
       if (touch.loaded)
         out.wrench.row(i).head<3>() =
             (*config_.causes.payload * locate(robot_, xi_, touch.touch).R.transpose() *
-             robot_.statics()->mechanics().gravity)
+             gravity_of(robot_))
                 .transpose();
       const auto set = std::ranges::find(data_.sets, config_.sets[touch.set].name, &Set::name);
       out.set.push_back(static_cast<int>(set - data_.sets.begin()));

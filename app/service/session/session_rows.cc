@@ -7,6 +7,7 @@
 
 #include "constraints/equations/equations.h"
 #include "constraints/estimation/engagements.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
@@ -35,14 +36,11 @@ double speed_out(const Robot& robot, const Reading& reading, const Eigen::Vector
   return outward.dot(ahead.p(0) - behind.p(0)) / kSpeedStep;
 }
 
-/// Of a mass (kg) whose centre is at the tip: on the tool, in its axes; nothing of a robot without
-/// statics.
+/// Of a mass (kg) whose centre is at the tip: on the tool, in its axes.
 Eigen::RowVectorXd wrench_of(const Robot& robot, const Eigen::VectorXd& q, double mass) {
   Eigen::RowVectorXd wrench = Eigen::RowVectorXd::Zero(6);
-  if (robot.statics())
-    wrench.head<3>() = (mass * locate(robot, values(robot), q).R.transpose() *
-                        robot.statics()->mechanics().gravity)
-                           .transpose();
+  wrench.head<3>() =
+      (mass * locate(robot, values(robot), q).R.transpose() * gravity_of(robot)).transpose();
   return wrench;
 }
 
