@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "kinematics/corrected_robot.h"
-#include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -86,17 +85,18 @@ MeasurementContext context_of(const Robot& robot, const DataSet& data) {
   return context;
 }
 
-std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data) {
-  const std::vector<Node> entries = effect_entries(*robot);
-  if (entries.empty()) return robot;
+std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data,
+                                        Problems& problems) {
+  const std::vector<const Effect*> effects = effects_of(*robot);
+  if (effects.empty()) return robot;
   MeasurementContext context = context_of(*robot, data);
-  for (const Effect* effect : effects_of(*robot))
+  std::vector<Node> entries;
+  for (const Effect* effect : effects) {
+    entries.push_back(effect->entry());
     if (!effect->of_machine() && context.find(effect->at()) < 0)
       context.sets.push_back({effect->at()});
-  Problems problems;
-  std::shared_ptr<const Robot> there = correct(robot, entries, context, problems);
-  expects(there != nullptr, problems.any() ? problems.list.front() : "effects fit their rows");
-  return there;
+  }
+  return correct(robot, entries, context, problems);
 }
 
 }  // namespace selfcal

@@ -11,7 +11,9 @@ namespace selfcal {
 MeasurementContext context_of(const Robot& robot, const DataSet& data);
 
 /// `robot` with its effects as they act on these rows: a surface's on the rows of its set, none of
-/// a surface that the data set lacks. The robot itself when it has no effects.
-std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data);
+/// a surface that the data set lacks, and what its file leaves to the rows by these. The robot
+/// itself when it has no effects; null after a problem, an effect that these rows cannot have.
+std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, const DataSet& data,
+                                        Problems& problems);
 
 }  // namespace selfcal

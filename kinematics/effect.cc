@@ -107,6 +107,7 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
     std::unique_ptr<Effect> effect = family.make({fields, robot, context, at});
     if (problems.list.size() > before) return nullptr;
     effect->name_ = name;
+    effect->entry_ = node;
     effect->at_ = std::move(at);
     if (fields.has("named")) effect->named_ = fields.flag("named", false);
     for (EffectParameter& p : effect->parameters_) p.value = fields.number(p.name, 0.0);

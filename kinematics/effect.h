@@ -94,6 +94,8 @@ class Effect {
   /// Of a robot that a diagnosis corrected: it was named, or only found beside what was. Nothing
   /// where its entry does not say.
   const std::optional<bool>& named() const { return named_; }
+  /// The entry that it was made from.
+  const Node& entry() const { return entry_; }
   /// The entry of a robot file with parameters `v`.
   Node describe(const Eigen::VectorXd& v) const;
   /// True when the robot itself deviates, false when only its measurement does.
@@ -119,6 +121,7 @@ class Effect {
  private:
   std::string name_;
   std::optional<bool> named_;
+  Node entry_;
 };
 
 /// Why an effect of load or of links says nothing of a robot without either.

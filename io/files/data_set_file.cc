@@ -96,7 +96,8 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path, Readings 
   if (!read) return tl::unexpected(read.error());
   if (const auto checked = check_references(loaded.data, file.string()); !checked)
     return tl::unexpected(checked.error());
-  loaded.robot = in_context(std::move(loaded.robot), loaded.data);
+  loaded.robot = in_context(std::move(loaded.robot), loaded.data, problems);
+  if (problems.any()) return bad_input(problems);
   return loaded;
 }
 

@@ -154,7 +154,10 @@ void Analyst::identify() {
   auto found = std::make_shared<Engagements>();
   computation_.start(
       [found, robot = c_.models.active(), data = data_](const Computation::Tell& tell) {
-        *found = identify_engagements(*in_context(robot, *data), *data, {}, tell);
+        Problems problems;
+        const auto there = in_context(robot, *data, problems);
+        if (!there) return problems.list.front();
+        *found = identify_engagements(*there, *data, {}, tell);
         return std::string();
       });
   when_computed_ = [this, found](const std::string& failure) {
@@ -209,8 +212,12 @@ void Analyst::judge() {
   computation_.start([unchanged = unchanged_, then = check ? solution_ : nullptr,
                       robot = c_.models.active(), data = data_,
                       base = base_](const Computation::Tell& tell) {
-    *unchanged = judge_as_it_is(*in_context(robot, *data), *data, tell);
-    if (then) *then = judge_as_it_is(*in_context(robot, *base), *base, tell);
+    Problems problems;
+    const auto now = in_context(robot, *data, problems);
+    const auto before = then ? in_context(robot, *base, problems) : nullptr;
+    if (problems.any()) return problems.list.front();
+    *unchanged = judge_as_it_is(*now, *data, tell);
+    if (then) *then = judge_as_it_is(*before, *base, tell);
     return std::string();
   });
   when_computed_ = [this, check](const std::string& failure) {

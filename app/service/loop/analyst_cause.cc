@@ -77,7 +77,11 @@ void Analyst::diagnose(const std::string& why) {
     if (!diagnosis.problem.empty()) return diagnosis.problem;
     if (options.possible && !diagnosis.next.empty()) return std::string();
     found->corrected = corrected_model(*robot, *data, diagnosis, tell);
-    if (found->corrected) found->unchanged = judge_as_it_is(*in_context(robot, *data), *data, tell);
+    if (!found->corrected) return std::string();
+    Problems problems;
+    const auto there = in_context(robot, *data, problems);
+    if (!there) return problems.list.front();
+    found->unchanged = judge_as_it_is(*there, *data, tell);
     return std::string();
   });
   when_computed_ = [this, found, why](const std::string& failure) {
