@@ -43,7 +43,8 @@ MeasuredSet measured_set(const Robot& robot, const DataSet& data, int set) {
   context.touch = data.sets[set].method->touches() == TouchedSurface::plane;
   context.lengths = measures_lengths(*data.sets[set].method);
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
-  if (points.empty()) return context;
+  context.without_rows = points.empty();
+  if (context.without_rows) return context;
   for (const Eigen::Vector3d& p : points) context.centre += p / static_cast<double>(points.size());
   if (!context.touch) return context;
   for (int row = 0; row < data.rows.rows() && data.rows.normal.rows() > 0; ++row)
@@ -94,7 +95,7 @@ std::shared_ptr<const Robot> in_context(std::shared_ptr<const Robot> robot, cons
   for (const Effect* effect : effects) {
     entries.push_back(effect->entry());
     if (!effect->of_machine() && context.find(effect->at()) < 0)
-      context.sets.push_back({effect->at()});
+      context.sets.push_back({.name = effect->at(), .without_rows = true});
   }
   return correct(robot, entries, context, problems);
 }

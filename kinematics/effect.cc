@@ -38,8 +38,8 @@ int MeasurementContext::find(std::string_view set) const {
 
 bool MeasurementContext::touched() const { return std::ranges::any_of(sets, &MeasuredSet::touch); }
 
-double MeasurementContext::mean_temperature() const {
-  if (temperatures.empty()) return 20;
+std::optional<double> MeasurementContext::mean_temperature() const {
+  if (temperatures.empty()) return std::nullopt;
   return std::accumulate(temperatures.begin(), temperatures.end(), 0.0) /
          static_cast<double>(temperatures.size());
 }
@@ -86,6 +86,11 @@ bool EffectPlan::torques() const {
   if (robot.statics() || weighs(robot)) return true;
   fields.fail("effect", "an effect without load: " + std::string(kNoStatics));
   return false;
+}
+
+std::optional<double> EffectPlan::reference() const {
+  const std::optional<double> written = fields.optional_number("reference");
+  return written ? written : context.mean_temperature();
 }
 
 void EffectPlan::expect_place(std::string_view only) const {

@@ -59,8 +59,12 @@ struct MeasuredSet {
   bool touch = false;                                ///< a flat surface was touched
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
-  bool lengths = false;  ///< an instrument measured positions or lengths
+  bool lengths = false;       ///< an instrument measured positions or lengths
+  bool without_rows = false;  ///< it has none here, so that nothing is known of it
 };
+
+/// T0 where neither an entry nor a record says one (C).
+inline constexpr double kRoomTemperature = 20;
 
 /// Where and when the rows of a data set were taken; empty for a robot outside one.
 struct MeasurementContext {
@@ -70,9 +74,9 @@ struct MeasurementContext {
   bool loads = false;                       ///< rows carry wrenches
   bool velocities = false, speeds = false;  ///< rows carry dq; and it is more than a sign
 
-  int find(std::string_view set) const;  ///< -1 when there is none
-  bool touched() const;                  ///< a flat surface, in some set
-  double mean_temperature() const;       ///< 20 C without a record
+  int find(std::string_view set) const;            ///< -1 when there is none
+  bool touched() const;                            ///< a flat surface, in some set
+  std::optional<double> mean_temperature() const;  ///< C; nothing without a record
 };
 
 struct EffectParameter {
@@ -112,7 +116,8 @@ class Effect {
  protected:
   friend std::unique_ptr<Effect> make_effect(const Node&, const Robot&, const MeasurementContext&,
                                              Problems&);
-  /// What describe() adds beside effect, at, named and the parameters.
+  /// What describe() adds beside effect, at, named and the parameters. What neither the entry nor
+  /// the rows say is left out: other rows may.
   virtual void describe_shape(Node&) const {}
 
   std::string at_;
@@ -149,6 +154,8 @@ struct EffectPlan {
   /// What loads the joints is known: a chain's links, or what the file says weighs. Notes a problem
   /// otherwise.
   bool torques() const;
+  /// T0 of what warms (C): `reference` of the entry, else the record's mean; nothing without both.
+  std::optional<double> reference() const;
   /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
   void expect_place(std::string_view only) const;
 };

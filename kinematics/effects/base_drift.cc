@@ -20,8 +20,7 @@ namespace {
 class BaseDrift final : public Effect {
  public:
   explicit BaseDrift(const EffectPlan& plan) {
-    begin_ = plan.fields.number("begin", plan.context.begin);
-    end_ = plan.fields.number("end", plan.context.end);
+    read_span(plan);
     settle_ = plan.fields.number("settle", 0.0);
     if (settle_ < 0) plan.fields.fail("settle", "a time of at least 0 s");
     half_waves_ = plan.fields.positives("half_waves", "half waves over the rows");
@@ -34,15 +33,30 @@ class BaseDrift final : public Effect {
   std::string needs() const override { return "rows with times, spread over the drift"; }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    if (std::isnan(at.time) || end_ <= begin_) return;
+    if (std::isnan(at.time) || !drifts()) return;
     if (half_waves_.empty()) return move(at, share(at.time), 0, into);
     for (size_t i = 0; i < half_waves_.size(); ++i) {
-      const double angle = half_waves_[i] * std::numbers::pi * (at.time - begin_) / (end_ - begin_);
+      const double angle = half_waves_[i] * std::numbers::pi * line(at.time);
       move(at, (1 - std::cos(angle)) / 2, 6 * static_cast<Eigen::Index>(i), into);
     }
   }
 
  private:
+  /// What the entry leaves open is the rows', where that makes a span.
+  void read_span(const EffectPlan& plan) {
+    begin_ = plan.fields.optional_number("begin");
+    end_ = plan.fields.optional_number("end");
+    if (begin_ && end_ && !drifts()) plan.fields.fail("end", "a time after `begin`");
+    if (plan.context.end <= plan.context.begin) return;
+    const double begin = begin_.value_or(plan.context.begin);
+    const double end = end_.value_or(plan.context.end);
+    if (end <= begin) return;
+    begin_ = begin;
+    end_ = end;
+  }
+
+  bool drifts() const { return begin_ && end_ && *end_ > *begin_; }
+
   void add_motion(const std::string& suffix, double smaller) {
     for (const char* name : {"x", "y", "z"})
       parameters_.push_back({name + suffix, "m", 5e-6 / smaller, 2e-4 / smaller});
@@ -61,19 +75,22 @@ class BaseDrift final : public Effect {
     }
   }
 
+  double line(double time) const { return (time - *begin_) / (*end_ - *begin_); }
+
   double share(double time) const {
-    if (settle_ == 0) return (time - begin_) / (end_ - begin_);
-    return std::expm1(-(time - begin_) / settle_) / std::expm1(-(end_ - begin_) / settle_);
+    if (settle_ == 0) return line(time);
+    return std::expm1(-(time - *begin_) / settle_) / std::expm1(-(*end_ - *begin_) / settle_);
   }
 
   void describe_shape(Node& node) const override {
-    node.set("begin", Node::of(begin_));
-    node.set("end", Node::of(end_));
+    if (begin_) node.set("begin", Node::of(*begin_));
+    if (end_) node.set("end", Node::of(*end_));
     if (settle_ > 0) node.set("settle", Node::of(settle_));
     if (!half_waves_.empty()) node.set("half_waves", Node::of(half_waves_));
   }
 
-  double begin_ = 0, end_ = 0, settle_ = 0;
+  std::optional<double> begin_, end_;  ///< s
+  double settle_ = 0;
   std::vector<double> half_waves_;
 };
 

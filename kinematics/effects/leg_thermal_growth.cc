@@ -12,8 +12,7 @@ namespace {
 class LegThermalGrowth final : public Effect {
  public:
   explicit LegThermalGrowth(const EffectPlan& plan)
-      : leg_(plan.leg()),
-        reference_(plan.fields.number("reference", plan.context.mean_temperature())) {
+      : leg_(plan.leg()), reference_(plan.reference()) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
   }
 
@@ -22,14 +21,17 @@ class LegThermalGrowth final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (std::isnan(at.temperature)) return;
-    into.tip.col(0) = (at.temperature - reference_) * at.leg_lengths[leg_] * at.legs.col(leg_);
+    const double warmer = at.temperature - reference_.value_or(kRoomTemperature);
+    into.tip.col(0) = warmer * at.leg_lengths[leg_] * at.legs.col(leg_);
   }
 
  private:
-  void describe_shape(Node& node) const override { node.set("reference", Node::of(reference_)); }
+  void describe_shape(Node& node) const override {
+    if (reference_) node.set("reference", Node::of(*reference_));
+  }
 
   int leg_;
-  double reference_;  ///< C
+  std::optional<double> reference_;  ///< C
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ class ScaleError final : public Effect {
     by_temperature_ = by == "temperature";
     if (by_temperature_) {
       parameters_ = {{"k", "1/K", 1e-7, 2e-5}};
-      reference_ = plan.fields.number("reference", plan.context.mean_temperature());
+      reference_ = plan.reference();
     } else {
       parameters_ = {{"s", "1", 1e-6, 5e-5}};
     }
@@ -33,7 +33,8 @@ class ScaleError final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
-    const double share = by_temperature_ ? at.temperature - reference_ : 1;
+    const double share =
+        by_temperature_ ? at.temperature - reference_.value_or(kRoomTemperature) : 1;
     if (std::isnan(share)) return;
     into.tip.col(0).head<3>() = share * at.poses.back().translation();
   }
@@ -42,12 +43,12 @@ class ScaleError final : public Effect {
   void describe_shape(Node& node) const override {
     if (!by_temperature_) return;
     node.set("by", Node::of(std::string("temperature")));
-    node.set("reference", Node::of(reference_));
+    if (reference_) node.set("reference", Node::of(*reference_));
   }
 
   int set_;
   bool by_temperature_ = false;
-  double reference_ = 0;
+  std::optional<double> reference_;  ///< C
 };
 
 }  // namespace

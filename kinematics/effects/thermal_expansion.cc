@@ -34,7 +34,7 @@ class ThermalExpansion final : public Effect {
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.context.times;
     temperatures_ = lagged(times_, plan.context.temperatures, lag_);
-    reference_ = plan.fields.number("reference", plan.context.mean_temperature());
+    reference_ = plan.reference();
   }
 
   std::string needs() const override { return "temperatures that change"; }
@@ -46,7 +46,7 @@ class ThermalExpansion final : public Effect {
     const int last = at.mechanics->link_of(static_cast<int>(at.q.size()) - 1);
     Eigen::Vector3d grown = at.poses[last].translation();
     if (first > 0) grown -= at.poses[first - 1].translation();
-    into.tip.col(0).head<3>() = (T - reference_) * grown;
+    into.tip.col(0).head<3>() = (T - reference_.value_or(kRoomTemperature)) * grown;
   }
 
  private:
@@ -63,10 +63,11 @@ class ThermalExpansion final : public Effect {
 
   void describe_shape(Node& node) const override {
     node.set("lag", Node::of(lag_));
-    node.set("reference", Node::of(reference_));
+    if (reference_) node.set("reference", Node::of(*reference_));
   }
 
-  double lag_ = 0, reference_ = 20;
+  double lag_ = 0;
+  std::optional<double> reference_;  ///< C
   std::vector<double> times_, temperatures_;
 };
 

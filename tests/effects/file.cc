@@ -155,8 +155,7 @@ TEST_P(EffectFile, IsRefusedForAnUnknownKey) {
                 AllOf(StartsWith("arm.yaml:9: "), HasSubstr("no legs carry this kind of robot")));
     return;
   }
-  std::string entry = entry_text(GetParam(), "j2", "j1");
-  if (entry.find("table") != entry.npos) entry += ", normal: [0, 0, 1]";
+  const std::string entry = entry_text(GetParam(), "j2", "j1");
   EXPECT_THAT(refusal("  - {effect: backlash, at: j1}\n  - {" + entry + ", colour: red}\n"),
               AllOf(StartsWith("arm.yaml:10: "), HasSubstr("'colour'")));
 }
@@ -188,7 +187,7 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: zero_shift, at: j1}", "moment"},
       {"{effect: probe_pretravel, at: j1}", "probe"},
       {"{effect: trigger_latency, at: base}", "probe"},
-      {"{effect: plane_form_error, at: table}", "normal"},
+      {"{effect: base_drift, begin: 100, end: 50}", "a time after `begin`"},
       {"{effect: plane_form_error, at: table, normal: [0, 0, 0]}", "normal"},
       {"{effect: fixture_shift, at: table, normal: [0, 0, 1]}", "moment"},
       {"{effect: fixture_shift, at: table, moment: 1, normal: [0, 1]}", "normal"},
@@ -197,6 +196,20 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
     EXPECT_THAT(refusal("  - " + std::string(entry) + "\n"),
                 AllOf(StartsWith("arm.yaml:9: "), HasSubstr(expected)))
         << entry;
+}
+
+TEST(EffectsOfAFile, LeaveOpenWhatRowsAreToSay) {
+  for (const char* entry :
+       {"effect: thermal_expansion, alpha: 1.0e-5", "effect: base_drift, x: 1.0e-4",
+        "effect: base_drift, begin: 50, x: 1.0e-4", "effect: plane_form_error, at: table, a: 1e-3",
+        "effect: scale_error, at: tracker, by: temperature, k: 1.0e-6",
+        "effect: fixture_shift, at: table, moment: 1, normal: [0, 0, 1], shift: 1.0e-4"}) {
+    const auto robot = robot_of(std::string(kArm) + "  - {" + entry + "}\n", "arm.yaml");
+    ASSERT_TRUE(robot) << robot.error().what;
+    const std::vector<Node> written = effect_entries(**robot);
+    for (const char* key : {"reference", "end", "center"})
+      EXPECT_EQ(written.front().find(key), nullptr) << entry << ": " << key;
+  }
 }
 
 TEST(EffectsOfAFile, AreRefusedWhenOneIsThereTwice) {

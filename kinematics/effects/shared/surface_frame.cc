@@ -3,21 +3,23 @@
 namespace selfcal {
 
 void SurfaceFrame::describe(Node& node) const {
-  node.set("center", Node::of(Eigen::VectorXd(centre)));
-  node.set("normal", Node::of(Eigen::VectorXd(normal)));
+  if (centre_known) node.set("center", Node::of(Eigen::VectorXd(centre)));
+  if (normal_known) node.set("normal", Node::of(Eigen::VectorXd(normal)));
 }
 
 SurfaceFrame surface_frame(const EffectPlan& plan, int set) {
+  const std::optional<Eigen::VectorXd> centre = plan.fields.numbers("center", 3);
+  const std::optional<Eigen::VectorXd> normal = plan.fields.numbers("normal", 3);
+  MeasuredSet rows;
+  rows.without_rows = true;
+  if (set >= 0) rows = plan.context.sets[set];
   SurfaceFrame frame;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  if (set >= 0) {
-    frame.centre = plan.context.sets[set].centre;
-    normal = plan.context.sets[set].normal;
-  }
-  if (const auto given = plan.fields.numbers("center", 3)) frame.centre = *given;
-  if (const auto given = plan.fields.numbers("normal", 3)) normal = *given;
-  if (normal.norm() > 1e-6)
-    frame.normal = normal.normalized();
+  frame.centre = centre.value_or(rows.centre);
+  frame.centre_known = centre || !rows.without_rows;
+  frame.normal_known = normal || !rows.without_rows;
+  if (frame.normal_known) frame.normal = normal.value_or(rows.normal);
+  if (frame.normal.norm() > 1e-6)
+    frame.normal.normalize();
   else
     plan.fields.fail("normal", "a normal, or a set of touches");
   int least = 0;
