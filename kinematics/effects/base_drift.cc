@@ -1,11 +1,13 @@
 // Drift of the base frame: a slow motion of the robot against everything that it measures,
 //   shift = s(t) (x y z),   turn = s(t) (rx ry rz) about the world's origin
-// with s from 0 at `begin` to 1 at `end` of the rows: a straight line, or, with a time constant
-// `settle` (s), (1 - exp(-(t - begin) / settle)) / (1 - exp(-(end - begin) / settle)).
+// with s from 0 at `begin` to 1 at `end`, by default of the rows: a straight line, or, with a time
+// constant `settle` (s), (1 - exp(-(t - begin) / settle)) / (1 - exp(-(end - begin) / settle));
+// before and after it is as at `begin` and at `end`.
 // x y z: m, rx ry rz: rad, over the whole data set. Or it wanders: with K half waves over the rows
 // (`half_waves`: [1, 2, 3]),
 //   shift = sum over K of (1 - cos(K pi u)) / 2 (xK yK zK),   turn likewise by (rxK ryK rzK)
 // u the straight line above; the larger K, the smaller each is expected to be.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -34,9 +36,10 @@ class BaseDrift final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (std::isnan(at.time) || !drifts()) return;
-    if (half_waves_.empty()) return move(at, share(at.time), 0, into);
+    const double time = std::clamp(at.time, *begin_, *end_);
+    if (half_waves_.empty()) return move(at, share(time), 0, into);
     for (size_t i = 0; i < half_waves_.size(); ++i) {
-      const double angle = half_waves_[i] * std::numbers::pi * line(at.time);
+      const double angle = half_waves_[i] * std::numbers::pi * line(time);
       move(at, (1 - std::cos(angle)) / 2, 6 * static_cast<Eigen::Index>(i), into);
     }
   }

@@ -112,6 +112,17 @@ TEST(BaseDriftByHand, SettlesWithItsTimeConstant) {
   expect_near(moved(kTurntable, settling, held, an_hour()).p, 0, 100e-6, 0, 1e-15);
 }
 
+TEST(BaseDriftByHand, HasNotBegunBeforeItsBeginAndIsOverAfterItsEnd) {
+  Held held;
+  for (const char* shape : {"x: 1.0e-4", "settle: 10, x: 1.0e-4", "half_waves: [1], x1: 1.0e-4"}) {
+    const std::string away = "[{effect: base_drift, " + std::string(shape) + "}]";
+    held.time = 0;
+    expect_near(moved(kTurntable, away, held, an_hour()).p, 0, 0, 0, 1e-15);
+    held.time = 9000;
+    expect_near(moved(kTurntable, away, held, an_hour()).p, 100e-6, 0, 0, 1e-15);
+  }
+}
+
 TEST(BaseDriftByHand, WandersBySoManyHalfWaves) {
   // A third of the way: (1 - cos 60 deg) / 2 = 0.25 of the first, (1 - cos 120 deg) / 2 = 0.75 of
   // the second; at the end 1 and 0.
