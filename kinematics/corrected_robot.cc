@@ -95,6 +95,9 @@ class CorrectedRobot final : public Robot, public RobotText {
         geometry_->variable_change(xi.head(geometry_parameters()), j);
     return change;
   }
+  Eigen::MatrixXd variables_per_reading(const Eigen::VectorXd& xi) const override {
+    return geometry_->variables_per_reading(xi.head(geometry_parameters()));
+  }
   int leg_parameter(int j) const override { return geometry_->leg_parameter(j); }
   Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd& q) const override {
     return geometry_->leg_lengths(xi.head(geometry_parameters()), q);

@@ -27,6 +27,7 @@ RegressorInput input_of(const Robot& geometry, const ConfigurationBlock& block, 
   at.gravity = gravity_of(geometry);
   at.velocity = c.velocity.rows() > 0 ? Eigen::VectorXd(c.velocity.row(lane).transpose())
                                       : Eigen::VectorXd::Constant(n, unknown);
+  at.variable_velocity = geometry.variables_per_reading(values(geometry)) * at.velocity;
   at.temperature = c.temperature.size() > 0 ? c.temperature[lane] : unknown;
   at.time = c.time.size() > 0 ? c.time[lane] : unknown;
   at.normal = c.normal.rows() > 0 ? Eigen::Vector3d(c.normal.row(lane).transpose())

@@ -35,10 +35,11 @@ struct RegressorInput {
   /// By joint, of gravity and wrench (N m, N); of a machine that is no chain only where an effect
   /// asks (Effect::of_torques).
   Eigen::VectorXd torque;
-  Eigen::VectorXd velocity;          ///< by joint, just before the reading (rad/s, m/s)
-  double temperature = 0, time = 0;  ///< C, s
-  Eigen::Vector3d normal;            ///< outward, of the touched surface, world, unit
-  int set = -1;                      ///< of the data set; -1 outside one
+  Eigen::VectorXd velocity;           ///< of the readings, by joint, just before (rad/s, m/s)
+  Eigen::VectorXd variable_velocity;  ///< of the joint variables, the same
+  double temperature = 0, time = 0;   ///< C, s
+  Eigen::Vector3d normal;             ///< outward, of the touched surface, world, unit
+  int set = -1;                       ///< of the data set; -1 outside one
   /// How the tip moves per length of each leg, 6 x joints (m/m, rad/m; world axes), and the legs'
   /// lengths (m), with the file's own values. Only where an effect asks (Effect::of_legs); zero
   /// where the loops do not close.

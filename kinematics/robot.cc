@@ -65,6 +65,11 @@ Eigen::VectorXd Robot::variable_change(const Eigen::VectorXd& xi, int j) const {
   return Eigen::VectorXd::Unit(xi.size(), variable_parameter(j));
 }
 
+Eigen::MatrixXd Robot::variables_per_reading(const Eigen::VectorXd&) const {
+  const auto n = static_cast<Eigen::Index>(joints().size());
+  return Eigen::MatrixXd::Identity(n, n);
+}
+
 const std::vector<PassiveJoint>& Robot::passive_joints() const {
   static const std::vector<PassiveJoint> none;
   return none;

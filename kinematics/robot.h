@@ -197,6 +197,10 @@ class Robot {
   /// The change of the parameters that does as much as one of the variable of joint `j`.
   virtual Eigen::VectorXd variable_change(const Eigen::VectorXd& xi, int j) const;
 
+  /// Changes of the joint variables per reading at values `xi`, joints x joints: for a chain
+  /// coupling K (11.16).
+  virtual Eigen::MatrixXd variables_per_reading(const Eigen::VectorXd& xi) const;
+
   /// Of a machine that legs carry (struts, rods or links, one behind each joint): index of the
   /// parameter that is the length of joint `j`'s, or is added to it; -1 of one without.
   virtual int leg_parameter(int) const { return -1; }

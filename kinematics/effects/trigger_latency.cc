@@ -1,6 +1,6 @@
 // Latency of the trigger: the joints are read `delay` (s) after the touch, so that they stood at
-//   delta q = -delay dq
-// when it happened. dq: rad/s, of the approach.
+//   delta q = -delay coupling K dq
+// when it happened. dq: of the readings in the approach (rad/s, m/s), q the joint variables.
 #include <cmath>
 
 #include "kinematics/effect.h"
@@ -18,7 +18,8 @@ class TriggerLatency final : public Effect {
   std::string needs() const override { return "touches with velocities dq, at different speeds"; }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    if (at.normal.allFinite() && at.velocity.allFinite()) into.joints.col(0) = -at.velocity;
+    if (at.normal.allFinite() && at.variable_velocity.allFinite())
+      into.joints.col(0) = -at.variable_velocity;
   }
 };
 

@@ -75,6 +75,10 @@ class LinearDelta final : public Robot, public RobotText {
   const std::vector<std::string>& links() const override { return carriages_; }
   const PointMasses* masses() const override { return weights_ ? &*weights_ : nullptr; }
   int variable_parameter(int joint) const override { return index(joint, kEndstop); }
+  Eigen::MatrixXd variables_per_reading(const Eigen::VectorXd& xi) const override {
+    return Eigen::Vector3d(xi[index(0, kScale)], xi[index(1, kScale)], xi[index(2, kScale)])
+        .asDiagonal();
+  }
   int leg_parameter(int joint) const override { return index(joint, kRod); }
   Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd&) const override {
     return Eigen::Vector3d(xi[index(0, kRod)], xi[index(1, kRod)], xi[index(2, kRod)]);

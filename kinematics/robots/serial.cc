@@ -99,6 +99,10 @@ class SerialRobot final : public Robot, public Statics, public RobotText {
     return first_[f] + (model_.frames[f].motion == Motion::revolute ? serial::kTheta : serial::kR);
   }
 
+  Eigen::MatrixXd variables_per_reading(const Eigen::VectorXd& xi) const override {
+    return coupling_ * xi.tail(joint_count()).asDiagonal();
+  }
+
   Node describe(const Eigen::VectorXd& xi) const override {
     Model model = model_;
     for (int f = 0; f < frame_count(); ++f) serial::set_values(model.frames[f], of_frame(xi, f));

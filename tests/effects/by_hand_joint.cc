@@ -101,5 +101,21 @@ TEST(TriggerLatencyByHand, TakesTheJointsBackByVelocityTimesDelay) {
   expect_near(moved(kTurntable, late, held).turn, 0, 0, 0);
 }
 
+TEST(TriggerLatencyByHand, TakesCoupledJointsBackByTheVelocityOfTheirVariables) {
+  // Two arms of 1 m along x, the second driven from the base by a gear of 0.5: its own angle turns
+  // by 0.5 x 0.06 - 0.02 = 0.01 rad/s. In 2 ms 40 urad of the first at 2 m and 20 urad of the
+  // second at 1 m: 100 um back along y, 60 urad about z.
+  const std::string coupled =
+      "robot: arm\nkind: serial\ncoupling: [[1, 0], [-1, 1]]\nframes:\n"
+      "  - {name: j1, joint: revolute}\n  - {name: j2, joint: revolute, d: 1, gear: 0.5}\n"
+      "  - {name: tool, joint: fixed, d: 1}\n";
+  Held held{numbers({0, 0})};
+  held.velocity = numbers({0.02, 0.06});
+  held.normal = Eigen::Vector3d::UnitZ();
+  const Moved by = moved(coupled, "[{effect: trigger_latency, delay: 2.0e-3}]", held);
+  expect_near(by.turn, 0, 0, -60e-6);
+  expect_near(by.p, 0, -100e-6, 0);
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -127,6 +127,20 @@ TEST_P(RobotKind, HasForEveryReadingTheColumnThatDifferencesGive) {
   }
 }
 
+TEST_P(RobotKind, SaysHowItsVariablesFollowItsReadings) {
+  for (const auto& [name, body] : named_bodies(*robot_)) {
+    Locations X;
+    PsiBlock psi;
+    Eigen::MatrixXd J, by_variable(6 * kLanes, block_.q.cols());
+    robot_->locate(block_, xi_, body, X, &psi);
+    robot_->joint_jacobian(block_, xi_, body, psi, J);
+    for (int j = 0; j < static_cast<int>(J.cols()); ++j)
+      by_variable.col(j) = psi * robot_->variable_change(xi_, j);
+    EXPECT_LT((by_variable * robot_->variables_per_reading(xi_) - J).cwiseAbs().maxCoeff(), 1e-12)
+        << name;
+  }
+}
+
 TEST_P(RobotKind, FindsEveryBodyByItsName) {
   std::set<std::string> names;
   for (const auto& [name, body] : named_bodies(*robot_)) {
