@@ -10,6 +10,8 @@
 namespace selfcal {
 namespace {
 
+constexpr int kMostStarted = 300;  // rows that say where a device stands
+
 std::vector<Eigen::Vector3d> tips(const Robot& robot, const DataSet& data, int set) {
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < data.rows.rows(); ++row)
@@ -37,6 +39,29 @@ bool measures_lengths(const Method& method) {
              own, [](const MeasuredColumn& each) { return each.quantity == Quantity::length; });
 }
 
+/// Where the device of a set stands, by what fits the rows best with the robot as it is: what is
+/// off it matters times an error of scale, which is of second order.
+Eigen::Vector3d device_of(const Robot& robot, const DataSet& data, int set) {
+  const Method& method = *data.sets[set].method;
+  const Eigen::VectorXd xi = values(robot);
+  const auto all = std::ranges::count(data.rows.set, set);
+  std::vector<int> rows;
+  std::vector<Location> X;
+  Locations link, tip;
+  for (int row = 0, i = 0; row < data.rows.rows(); ++row) {
+    if (data.rows.set[row] != set || i++ % (1 + all / kMostStarted) != 0) continue;
+    const ConfigurationBlock block = block_of(data.rows.q.row(row).transpose());
+    if (!robot.locate(block, xi, Body::endpoint, tip, nullptr).closes()) continue;
+    robot.locate(block, xi, Body::last_link, link, nullptr);
+    rows.push_back(row);
+    X.push_back(method.body() == Body::last_link ? link.at(0) : tip.at(0));
+  }
+  if (rows.empty()) return Eigen::Vector3d::Zero();
+  const Location tool = {link.R(0).transpose() * tip.R(0),
+                         link.R(0).transpose() * (tip.p(0) - link.p(0))};
+  return method.device(method.start(X, rows, data.rows, nullptr, tool));
+}
+
 MeasuredSet measured_set(const Robot& robot, const DataSet& data, int set) {
   MeasuredSet context;
   context.name = data.sets[set].name;
@@ -45,6 +70,7 @@ MeasuredSet measured_set(const Robot& robot, const DataSet& data, int set) {
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
   context.without_rows = points.empty();
   if (context.without_rows) return context;
+  if (context.lengths) context.device = device_of(robot, data, set);
   for (const Eigen::Vector3d& p : points) context.centre += p / static_cast<double>(points.size());
   if (!context.touch) return context;
   for (int row = 0; row < data.rows.rows() && data.rows.normal.rows() > 0; ++row)

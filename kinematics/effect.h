@@ -62,6 +62,7 @@ struct MeasuredSet {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
   bool lengths = false;       ///< an instrument measured positions or lengths
   bool without_rows = false;  ///< it has none here, so that nothing is known of it
+  Eigen::Vector3d device = Eigen::Vector3d::Zero();  ///< origin of the lengths (m, world)
 };
 
 /// T0 where neither an entry nor a record says one (C).

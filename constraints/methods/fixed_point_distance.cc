@@ -56,6 +56,10 @@ class FixedPointDistance final : public Method {
     return nuisance;
   }
 
+  Eigen::Vector3d device(const Eigen::VectorXd& nuisance) const override {
+    return nuisance.head<3>();
+  }
+
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     if (!centre_) nuisance.head<3>() += step.head<3>();
     if (unknown_.offset) nuisance[kOffset] += step[offset_at()];

@@ -46,6 +46,10 @@ class LocationMethod final : public Method {
     return to_values(F);
   }
 
+  Eigen::Vector3d device(const Eigen::VectorXd& nuisance) const override {
+    return DeviceFrame::pose(nuisance).p;
+  }
+
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     if (frame_) DeviceFrame::retract(nuisance, step);
   }

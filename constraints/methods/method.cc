@@ -34,6 +34,7 @@ bool Method::every_row_alone() const {
          !vectors();
 }
 
+Eigen::Vector3d Method::device(const Eigen::VectorXd&) const { return Eigen::Vector3d::Zero(); }
 std::optional<Plane> Method::plane(const Eigen::VectorXd&, const Eigen::VectorXd*) const {
   return std::nullopt;
 }

@@ -135,6 +135,9 @@ class Method {
   /// True when rows are measured in the frame of a device whose pose is a nuisance parameter, or
   /// from a point that is: the base is not seen then.
   virtual bool frame_unknown() const { return false; }
+  /// Where the device stands from which lengths are measured (m, world): with `frame_unknown` it
+  /// follows from the own values.
+  virtual Eigen::Vector3d device(const Eigen::VectorXd& nuisance) const;
   /// True when the target point is an unknown of the set, in place of the tool frames.
   virtual bool point_unknown() const { return false; }
   /// True when every three equations are a vector in the world's axes of which only the length

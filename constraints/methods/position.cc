@@ -34,6 +34,10 @@ class Position final : public Method {
     return nuisance;
   }
 
+  Eigen::Vector3d device(const Eigen::VectorXd& nuisance) const override {
+    return DeviceFrame::pose(nuisance).p;
+  }
+
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     seen_.retract(nuisance, step);
   }

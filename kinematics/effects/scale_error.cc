@@ -1,8 +1,8 @@
 // Scale error of a measuring device: the lengths that it measures are too long by a share
 //   s   or, with `by: temperature`,   k (T - T0),   T0 the reference (C; the rows' mean)
-// so that what it measures stands off the robot's model as if the tip, seen from the world's
-// origin, were that much farther out: shift = s p. Where the device's own origin is another, the
-// difference is a shift that its frame takes up. s: 1, k: 1/K.
+// so that what it measures stands off the robot's model as if the tip, seen from the device's
+// `origin` o, were that much farther out: shift = s (p - o). o is where the set's rows have the
+// device, the world's origin of one that measures in the world's frame. s: 1, k: 1/K.
 #include <cmath>
 
 #include "kinematics/effect.h"
@@ -15,6 +15,10 @@ namespace {
 class ScaleError final : public Effect {
  public:
   ScaleError(const EffectPlan& plan, int set) : set_(set) {
+    if (const auto written = plan.fields.numbers("origin", 3))
+      origin_ = *written;
+    else if (set >= 0 && !plan.context.sets[set].without_rows)
+      origin_ = plan.context.sets[set].device;
     const std::string by = plan.fields.text("by", "");
     if (!by.empty() && by != "temperature") plan.fields.fail("by", "temperature");
     by_temperature_ = by == "temperature";
@@ -36,17 +40,20 @@ class ScaleError final : public Effect {
     const double share =
         by_temperature_ ? at.temperature - reference_.value_or(kRoomTemperature) : 1;
     if (std::isnan(share)) return;
-    into.tip.col(0).head<3>() = share * at.poses.back().translation();
+    into.tip.col(0).head<3>() =
+        share * (at.poses.back().translation() - origin_.value_or(Eigen::Vector3d::Zero()));
   }
 
  private:
   void describe_shape(Node& node) const override {
+    if (origin_) node.set("origin", Node::of(Eigen::VectorXd(*origin_)));
     if (!by_temperature_) return;
     node.set("by", Node::of(std::string("temperature")));
     if (reference_) node.set("reference", Node::of(*reference_));
   }
 
   int set_;
+  std::optional<Eigen::Vector3d> origin_;  ///< m, world
   bool by_temperature_ = false;
   std::optional<double> reference_;  ///< C
 };

@@ -71,7 +71,20 @@ MeasurementContext tracked() {
   return context;
 }
 
-TEST(ScaleErrorByHand, StretchesWhatTheDeviceMeasuresFromTheWorldsOrigin) {
+TEST(ScaleErrorByHand, StretchesWhatTheDeviceMeasuresFromWhereItStands) {
+  // 5 ppm/K x 4 K = 20 ppm of (1, 0, 0) - (3, -2, 0.5) = (-2, 2, -0.5) m: (-40, 40, -10) um.
+  MeasurementContext context = tracked();
+  context.sets[1].device = {3, -2, 0.5};
+  Held held;
+  held.set = 1;
+  held.temperature = 26;
+  const std::string warm = "{effect: scale_error, at: tracker, by: temperature, k: 5.0e-6";
+  expect_near(moved(kTurntable, "[" + warm + "}]", held, context).p, -40e-6, 40e-6, -10e-6, 1e-15);
+  expect_near(moved(kTurntable, "[" + warm + ", origin: [0, 0, 1]}]", held, context).p, 20e-6, 0,
+              -20e-6, 1e-15);
+}
+
+TEST(ScaleErrorByHand, StretchesWhatIsMeasuredInTheWorldsFrameFromItsOrigin) {
   // 50 ppm of the tip at (1, 0, 0), and at 90 degrees of (0, 1, 0); not of the other set's rows.
   const std::string long_unit = "[{effect: scale_error, at: tracker, s: 5.0e-5}]";
   Held held;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/files/robot_file.h"
 #include "kinematics/corrected_robot.h"
 #include "tests/io/data_set_folder.h"
 
@@ -91,6 +92,35 @@ TEST_F(EffectsOfRows, OfASurfaceNeedANormalWhereTheRowsTouchNone) {
   have("{effect: plane_form_error, at: tracker, a: 1.0e-3}");
   sets = only("tracker: {method: position}");
   EXPECT_THAT(error(kAnHour), AllOf(StartsWith("arm.robot.yaml:9: effect: key 'normal'")));
+}
+
+TEST_F(EffectsOfRows, HaveTheDeviceWhereTheirRowsHaveIt) {
+  const auto arm = robot_of(robot, "arm.yaml");
+  ASSERT_TRUE(arm) << arm.error().what;
+  std::string tracked = "set,q1,q2,x,y,z\n", wired = "set,q1,q2,distance\n";
+  const Eigen::Vector3d device(3, -2, 0.5);
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::Vector2d q(-1.5 + 0.25 * i, 0.1 * (i % 4));
+    const Eigen::Vector3d p = locate(**arm, values(**arm), q).p - device;
+    const std::string readings = format_number(q[0]) + "," + format_number(q[1]) + ",";
+    tracked += "device," + readings + format_number(p.x()) + "," + format_number(p.y()) + "," +
+               format_number(p.z()) + "\n";
+    wired += "device," + readings + format_number(p.norm()) + "\n";
+  }
+  have("{effect: scale_error, at: device, s: 1.0e-5}");
+  for (const auto& [method, rows] :
+       {std::pair("{method: position, frame: unknown}", &tracked),
+        std::pair("{method: fixed-point-distance, center: [3, -2, 0.5]}", &wired)}) {
+    sets = only("device: " + std::string(method));
+    const auto loaded = load(*rows);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    const Node entry = effect_entries(*loaded->robot).front();
+    const Node* origin = entry.find("origin");
+    ASSERT_NE(origin, nullptr) << method;
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(std::stod(origin->items[static_cast<size_t>(axis)].text), device[axis], 1e-9)
+          << method;
+  }
 }
 
 }  // namespace
