@@ -25,7 +25,8 @@ class ToolCompliance final : public Effect {
     parameters_ = {{"bend_x", "rad/(N m)", 1e-6, 2e-4, true},
                    {"bend_y", "rad/(N m)", 1e-6, 2e-4, true},
                    {"twist", "rad/(N m)", 1e-6, 2e-4, true}};
-    if (!has_weight(mechanics, last_)) mass_ = plan.fields.number("mass", 1.0);
+    weightless_ = !has_weight(mechanics, last_);
+    if (weightless_) mass_ = plan.fields.number("mass", 1.0);
     if (mass_ < 0) plan.fields.fail("mass", "at least 0 kg");
   }
 
@@ -49,11 +50,12 @@ class ToolCompliance final : public Effect {
 
  private:
   void describe_shape(Node& node) const override {
-    if (mass_ > 0) node.set("mass", Node::of(mass_));
+    if (weightless_) node.set("mass", Node::of(mass_));
   }
 
   int last_;
-  double mass_ = 0;  ///< kg, at the tip
+  bool weightless_ = false;  ///< its frames have no mass
+  double mass_ = 0;          ///< kg, at the tip
 };
 
 }  // namespace

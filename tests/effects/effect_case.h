@@ -21,7 +21,8 @@ struct EffectCase {
   const char* title;
   const char* entry;
   const char* kind = "serial";
-  bool heavy = false;  ///< of a machine with loops: its file says what it weighs
+  bool heavy = false;       ///< of a machine with loops: its file says what it weighs
+  bool light_tool = false;  ///< of a serial robot: no frame behind the last joint has a mass
 };
 
 inline std::vector<EffectCase> effect_cases() {
@@ -47,6 +48,9 @@ inline std::vector<EffectCase> effect_cases() {
       {"FixtureShift", "effect: fixture_shift, at: table, moment: 1000"},
       {"ToolShift", "effect: tool_shift, at: probe, moment: 1000"},
       {"ToolCompliance", "effect: tool_compliance, at: probe"},
+      {"ToolComplianceOfALightTool", "effect: tool_compliance, at: probe", "serial", false, true},
+      {"ToolComplianceByTheWrenchAlone", "effect: tool_compliance, at: probe, mass: 0", "serial",
+       false, true},
       {"ScaleError", "effect: scale_error, at: tracker"},
       {"ScaleErrorByTemperature", "effect: scale_error, at: tracker, by: temperature"},
       {"LegCompliance", "effect: leg_compliance, at: JOINT", "gough-stewart"},
@@ -120,12 +124,14 @@ struct EffectInstance {
   Eigen::Index own() const { return static_cast<Eigen::Index>(geometry->parameters().size()); }
 };
 
-inline std::shared_ptr<const Robot> heavy_robot(std::mt19937_64& random) {
+inline std::shared_ptr<const Robot> heavy_robot(bool light_tool, std::mt19937_64& random) {
   const RandomRobot made = random_robot(random);
   Node node = robot_node(made.frames, made.coupling);
+  std::size_t heavy = made.frames.size();
+  while (light_tool && !made.frames[heavy - 1].moves()) --heavy;
   for (size_t k = 0; k < node.keys.size(); ++k)
-    for (Node& frame : node.items[k].items) {
-      if (node.keys[k] != "frames") continue;
+    for (size_t f = 0; f < heavy && node.keys[k] == "frames"; ++f) {
+      Node& frame = node.items[k].items[f];
       frame.set("mass", Node::of(uniform(random, 1, 20)));
       frame.set("com", Node::of(Eigen::VectorXd(random_matrix(3, 1, 0.3, random))));
     }
@@ -143,7 +149,8 @@ inline ConfigurationBlock closing_block(const Robot& robot, std::mt19937_64& ran
 inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& random) {
   const bool legs = std::string(each.kind) != "serial";
   const std::string weight = each.heavy ? kind_masses().at(each.kind) : "";
-  EffectInstance made{legs ? robot_of(kind_examples().at(each.kind) + weight) : heavy_robot(random),
+  EffectInstance made{legs ? robot_of(kind_examples().at(each.kind) + weight)
+                           : heavy_robot(each.light_tool, random),
                       random_context(random),
                       {},
                       {},
