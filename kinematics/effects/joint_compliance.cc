@@ -1,11 +1,12 @@
 // Compliance of a joint: it gives way to the torque that it carries,
 //   delta q_j = c tau_j(q, load)
-// (Kamali et al., equations 6 to 16, with one stiffness 1 / c a joint). Where the maker gives no
-// masses, or `lumps: true` asks for it, gravity's torque is made of free first moments instead:
-//   delta q_j = sum over carried links k of z_j . (x_k X_k + y_k Y_k) x g / |g|
-// X_k, Y_k the axes of link k: the least set that gives any chain of revolute joints its torque.
-// The drives of a machine with loops (a delta's carriages) give way to the torque by virtual work
-// of what the file says weighs. c: rad/(N m), m/N prismatic; x_k, y_k: rad.
+// (Kamali et al., equations 6 to 16, with one stiffness 1 / c a joint), in a machine with loops by
+// virtual work. Without masses, or with `lumps: true`, free first moments of carried links make it,
+//   delta q_j = z_j . (sum over links k that turn of x_k X_k + y_k Y_k
+//                      + sum over slides k of z_k l_k Z_k) x g / |g|
+// X_k Y_k Z_k the link's axes, l_k how far a slide is out: the least set that gives any chain its
+// torque. The force on a slide is its weight alone, delta q_j = z_j Z_j . g / |g|.
+// c: rad/(N m), m/N prismatic; x_k, y_k: rad; z_k: rad/m, of a slide itself m.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
 #include "kinematics/statics.h"
@@ -25,12 +26,16 @@ class JointCompliance final : public Effect {
       parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4, true}};
       return;
     }
-    const Mechanics& mechanics = *chain;
-    for (int k = mechanics.link_of(joint); k < static_cast<int>(mechanics.links.size()); ++k) {
-      if (!mechanics.links[k].turns) continue;
-      carried_.push_back(k);
-      for (const char* axis : {"x_", "y_"})
-        parameters_.push_back({axis + mechanics.links[k].frame, "rad", 1e-5, 5e-3});
+    const int own = chain->link_of(joint);
+    if (!turns) add_lump(*chain, own, Axis::z, "m");
+    for (int k = own; turns && k < static_cast<int>(chain->links.size()); ++k) {
+      if (chain->links[k].joint < 0) continue;
+      if (!chain->links[k].turns) {
+        add_lump(*chain, k, Axis::z, "rad/m");
+        continue;
+      }
+      add_lump(*chain, k, Axis::x, "rad");
+      add_lump(*chain, k, Axis::y, "rad");
     }
   }
 
@@ -42,15 +47,39 @@ class JointCompliance final : public Effect {
       into.joints(joint_, 0) = at.torque[joint_];
       return;
     }
+    const Link& own = at.mechanics->links[at.mechanics->link_of(joint_)];
     const Eigen::Vector3d z = at.poses[at.mechanics->link_of(joint_)].linear().col(2);
     const Eigen::Vector3d down = at.mechanics->gravity.normalized();
-    for (size_t i = 0; i < carried_.size(); ++i)
-      for (int axis = 0; axis < 2; ++axis)
-        into.joints(joint_, 2 * static_cast<Eigen::Index>(i) + axis) =
-            z.dot(at.poses[carried_[i]].linear().col(axis).cross(down));
+    for (size_t i = 0; i < lumps_at_.size(); ++i)
+      into.joints(joint_, static_cast<Eigen::Index>(i)) =
+          own.turns ? z.dot(arm(at, lumps_at_[i]).cross(down)) : z.dot(down);
   }
 
  private:
+  enum class Axis { x, y, z };
+  struct Lump {
+    int link = 0;
+    Axis axis = Axis::x;
+  };
+
+  void add_lump(const Mechanics& chain, int link, Axis axis, const char* unit) {
+    const char* const names[] = {"x_", "y_", "z_"};
+    lumps_at_.push_back({link, axis});
+    // A moment lies on either side of the joint, a mass pulls downwards.
+    parameters_.push_back({names[static_cast<int>(axis)] + chain.links[link].frame, unit, 1e-5,
+                           5e-3, axis == Axis::z});
+  }
+
+  /// Along the axis: a unit of a link that turns, as far as it is out of a slide.
+  static Eigen::Vector3d arm(const RegressorInput& at, const Lump& lump) {
+    const auto k = static_cast<size_t>(lump.link);
+    const Eigen::Vector3d along = at.poses[k].linear().col(static_cast<int>(lump.axis));
+    if (lump.axis != Axis::z) return along;
+    Eigen::Vector3d out = at.poses[k].translation();
+    if (k > 0) out -= at.poses[k - 1].translation();
+    return along * along.dot(out);
+  }
+
   void describe_shape(Node& node) const override {
     // Which of the two a file without masses means depends on where it is read: it says so.
     if (lumps_ || silent_) node.set("lumps", Node::of(std::string(lumps_ ? "true" : "false")));
@@ -58,7 +87,7 @@ class JointCompliance final : public Effect {
 
   int joint_;
   bool lumps_ = false, silent_ = false;  ///< silent_: the maker gives no masses
-  std::vector<int> carried_;
+  std::vector<Lump> lumps_at_;
 };
 
 }  // namespace

@@ -75,6 +75,32 @@ TEST(JointComplianceByHand, HasLumpsThatAreTheFirstMomentsTimesTheCompliance) {
   expect_near(beside.turn, 0, -50e-6, 0);
 }
 
+TEST(JointComplianceByHand, HasForASlideOneLumpThatItsAxisTakesDown) {
+  // An axis 60 degrees off the vertical, (0, -sin 60, cos 60): gravity pulls along it by -cos 60 of
+  // what hangs there, 100 um for all of it: 50 um back, whatever turns behind it.
+  const std::string slide =
+      "robot: slide\nkind: serial\nframes:\n"
+      "  - {name: j1, joint: prismatic, alpha: pi/3}\n"
+      "  - {name: j2, joint: revolute, d: 0.3}\n  - {name: tool, joint: fixed, d: 1}\n";
+  const Moved by =
+      moved(slide, "[{effect: joint_compliance, at: j1, z_j1: 1.0e-4}]", {numbers({0.4, 1.2})});
+  expect_near(by.p, 0, 43.301e-6, -25e-6);
+  expect_near(by.turn, 0, 0, 0);
+}
+
+TEST(JointComplianceByHand, HasForACarriedSlideALumpTimesHowFarItIsOut) {
+  // j1 about the world's y, a slide along the arm that is 0.1 + 0.4 m out: of 200 urad a metre 100
+  // urad down, and of the arm's own moment 30 urad more. 60 degrees down half of both.
+  const std::string boom =
+      "robot: boom\nkind: serial\nframes:\n"
+      "  - {name: j1, joint: revolute, alpha: -pi/2}\n"
+      "  - {name: j2, joint: prismatic, d: 0.2, beta: pi/2, r: 0.1}\n"
+      "  - {name: tool, joint: fixed, r: 0.3}\n";
+  const std::string soft = "[{effect: joint_compliance, at: j1, x_j1: 3.0e-5, z_j2: 2.0e-4}]";
+  expect_near(moved(boom, soft, {numbers({0, 0.4})}).turn, 0, 130e-6, 0);
+  expect_near(moved(boom, soft, {numbers({60 * kDegree, 0.4})}).turn, 0, 65e-6, 0);
+}
+
 TEST(JointComplianceByHand, IsUsedAboutTheSecondJointWithWhatItCarriesAlone) {
   // tau_2 = g 3 x 0.5 cos 60 = 7.3575 N m.
   const Held held{numbers({30 * kDegree, 30 * kDegree})};

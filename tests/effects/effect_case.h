@@ -156,12 +156,7 @@ inline EffectInstance random_instance(const EffectCase& each, std::mt19937_64& r
                       {},
                       {}};
   const std::vector<Joint>& joints = made.geometry->joints();
-  auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
-  // Lumps need a joint that turns at or behind the one picked.
-  const auto turns = [](const Joint& joint) { return joint.quantity == Quantity::angle; };
-  while (!legs && pick > 0 &&
-         std::none_of(joints.begin() + static_cast<long>(pick), joints.end(), turns))
-    --pick;
+  const auto pick = static_cast<size_t>(uniform(random, 0, static_cast<double>(joints.size() - 1)));
   const std::string text = entry_text(each, joints[pick].name, joints[pick + 1].name);
   Problems problems;
   made.robot = correct(made.geometry, {parsed("{" + text + "}")}, made.context, problems);
