@@ -59,6 +59,9 @@ struct Problems {
 
 inline constexpr double kLongestPart = 50;      ///< m: no link, tool or gauge is longer
 inline constexpr double kFarthestPlace = 1000;  ///< m, from the world's origin
+/// C, of a robot at work: in a freezer -30; a motor's winding switches off before, and kelvin of a
+/// workshop are more.
+inline constexpr double kColdest = -100, kHottest = 150;
 inline constexpr double kMostTurned = 8 * std::numbers::pi;  ///< rad: more turns than any wrist has
 
 /// Reads the fields of one mapping. A getter of a missing or broken field returns its fallback

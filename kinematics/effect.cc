@@ -2,8 +2,10 @@
 #include "kinematics/effect.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "kinematics/robot.h"
 #include "kinematics/statics.h"
@@ -28,6 +30,33 @@ constexpr Family kFamilies[] = {
 #undef X
 };
 
+constexpr double kImpossible = 100;  // times the largest usual size
+
+/// What may have been taken for a unit, as a question; nothing where none is likely.
+std::string likely_slip(std::string_view unit) {
+  const std::pair<std::string_view, std::string_view> slips[] = {
+      {"m", "millimetres"},
+      {"rad", "degrees"},
+      {"s", "milliseconds"},
+      {"1", "parts per million"},
+      {"1/K", "parts per million per kelvin"}};
+  const auto* slip =
+      std::ranges::find(slips, unit, &std::pair<std::string_view, std::string_view>::first);
+  return slip == std::end(slips) ? "" : " (" + std::string(slip->second) + "?)";
+}
+
+/// Far beyond what any machine has. A fit may find a little of the wrong sign.
+bool impossible(const EffectParameter& p, double value) {
+  return std::abs(value) > kImpossible * p.usual_most || (p.positive && value < -p.usual_most);
+}
+
+std::string possible_range(const EffectParameter& p) {
+  const double most = kImpossible * p.usual_most;
+  return "from " + format_number(p.positive ? -p.usual_most : -most) + " to " +
+         format_number(most) + (p.unit == "1" ? "" : " " + p.unit) + likely_slip(p.unit) +
+         ", or `unusual: true` beside it";
+}
+
 }  // namespace
 
 int MeasurementContext::find(std::string_view set) const {
@@ -50,6 +79,9 @@ Node Effect::describe(const Eigen::VectorXd& v) const {
   if (!at_.empty()) node.set("at", Node::of(at_));
   if (named_) node.set("named", Node::of(std::string(*named_ ? "true" : "false")));
   describe_shape(node);
+  for (size_t i = 0; i < parameters_.size() && !node.find("unusual"); ++i)
+    if (impossible(parameters_[i], v[static_cast<Eigen::Index>(i)]))
+      node.set("unusual", Node::of(std::string("true")));
   for (size_t i = 0; i < parameters_.size(); ++i)
     node.set(parameters_[i].name, Node::of(v[static_cast<Eigen::Index>(i)]));
   return node;
@@ -90,13 +122,23 @@ bool EffectPlan::torques() const {
 
 std::optional<double> EffectPlan::reference() const {
   const std::optional<double> written = fields.optional_number("reference");
-  return written ? written : context.mean_temperature();
+  if (!written) return context.mean_temperature();
+  if (*written < kColdest || *written > kHottest)
+    fields.fail("reference", "degrees Celsius from " + format_number(kColdest) + " to " +
+                                 format_number(kHottest) +
+                                 (*written > kHottest ? " (kelvin?)" : ""));
+  return written;
 }
 
 void EffectPlan::expect_place(std::string_view only) const {
   if (fields.text("at", std::string(only)) != only)
     fields.fail("at", only.empty() ? "nothing: it acts on the whole robot" : std::string(only));
   place = only;
+}
+
+bool all_differ(std::vector<double> numbers) {
+  std::ranges::sort(numbers);
+  return std::ranges::adjacent_find(numbers) == numbers.end();
 }
 
 std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
@@ -115,7 +157,11 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
     effect->entry_ = node;
     effect->at_ = std::move(at);
     if (fields.has("named")) effect->named_ = fields.flag("named", false);
-    for (EffectParameter& p : effect->parameters_) p.value = fields.number(p.name, 0.0);
+    const bool unusual = fields.flag("unusual", false);
+    for (EffectParameter& p : effect->parameters_) {
+      p.value = fields.number(p.name, 0.0);
+      if (!unusual && impossible(p, p.value)) fields.fail(p.name, possible_range(p));
+    }
     fields.refuse_unknown();
     return problems.list.size() > before ? nullptr : std::move(effect);
   }

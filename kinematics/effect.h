@@ -102,7 +102,8 @@ class Effect {
   const std::optional<bool>& named() const { return named_; }
   /// The entry that it was made from.
   const Node& entry() const { return entry_; }
-  /// The entry of a robot file with parameters `v`.
+  /// The entry of a robot file with parameters `v`; where they are beyond what any machine has, it
+  /// says that they are meant.
   Node describe(const Eigen::VectorXd& v) const;
   /// True when the robot itself deviates, false when only its measurement does.
   virtual bool of_machine() const { return true; }
@@ -161,6 +162,9 @@ struct EffectPlan {
   /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
   void expect_place(std::string_view only) const;
 };
+
+/// None is there twice.
+bool all_differ(std::vector<double> numbers);
 
 /// The effect that an entry of a robot file's `effects` describes:
 /// {effect: joint_compliance, at: j2, c: 2.1e-6}. Null after a problem.

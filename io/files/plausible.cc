@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kRounding = 1e-3;   // of the limits' range
 constexpr double kFarOutside = 0.1;  // of the limits' range
-constexpr double kColdest = -100;    // degrees Celsius: a freezer's robots work at -30
-constexpr double kHottest = 150;  // a motor's winding switches off; kelvin of a workshop are more
 
 /// How far beyond the joint's limits, 0 inside or without limits.
 double excess(const Joint& joint, double reading) {

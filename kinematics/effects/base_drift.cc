@@ -26,6 +26,7 @@ class BaseDrift final : public Effect {
     settle_ = plan.fields.number("settle", 0.0);
     if (settle_ < 0) plan.fields.fail("settle", "a time of at least 0 s");
     half_waves_ = plan.fields.positives("half_waves", "half waves over the rows");
+    if (!all_differ(half_waves_)) plan.fields.fail("half_waves", "numbers that differ");
     if (settle_ > 0 && !half_waves_.empty())
       plan.fields.fail("settle", "a drift that settles or one that wanders");
     if (half_waves_.empty()) add_motion("", 1);

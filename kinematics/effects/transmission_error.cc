@@ -19,6 +19,7 @@ class TransmissionError final : public Effect {
     scale_ = turns ? 1 : 2 * std::numbers::pi;
     waves_ = plan.fields.positives("waves", "waves a turn");
     if (waves_.empty()) waves_ = {1};
+    if (!all_differ(waves_)) plan.fields.fail("waves", "numbers that differ");
     for (const double k : waves_)
       for (const char* function : {"sin", "cos"})
         parameters_.push_back({function + format_number(k), turns ? "rad" : "m", 2.4e-5, 4.4e-4});

@@ -176,6 +176,21 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: transmission_error, at: j1, waves: [1, 0]}", "waves"},
       {"{effect: transmission_error, at: j1, waves: []}", "waves"},
       {"{effect: transmission_error, at: j1, waves: -1}", "waves"},
+      {"{effect: transmission_error, at: j1, waves: [1, 2, 1]}", "numbers that differ"},
+      {"{effect: base_drift, half_waves: [2, 2]}", "numbers that differ"},
+      {"{effect: backlash, at: j1, play: 120}",
+       "'play': expected from -0.0015 to 0.15 rad (degrees?)"},
+      {"{effect: backlash, at: j1, play: -2.0e-3}", "from -0.0015 to 0.15 rad"},
+      {"{effect: backlash, at: j3, play: 0.2}", "m (millimetres?)"},
+      {"{effect: tool_shift, moment: 0, x: 100}", "from -0.2 to 0.2 m (millimetres?)"},
+      {"{effect: scale_error, at: tracker, s: 1000}", "(parts per million?)"},
+      {"{effect: trigger_latency, delay: 5}", "s (milliseconds?), or `unusual: true`"},
+      {"{effect: thermal_expansion, alpha: 11.5}", "1/K (parts per million per kelvin?)"},
+      {"{effect: joint_compliance, at: j2, c: 0.1}", "to 0.01 rad/(N m), or"},
+      {"{effect: thermal_expansion, reference: 293.15}", "Celsius from -100 to 150 (kelvin?)"},
+      {"{effect: scale_error, at: t, by: temperature, reference: -273}",
+       "Celsius from -100 to 150,"},
+      {"{effect: backlash, at: j1, unusual: maybe}", "unusual"},
       {"{effect: backlash, at: j1, by: luck}", "motion or load"},
       {"{effect: joint_coupling, at: j1}", "from"},
       {"{effect: joint_coupling, at: j1, from: j1}", "another joint"},
@@ -216,6 +231,21 @@ TEST(EffectsOfAFile, AreRefusedWhenOneIsThereTwice) {
   EXPECT_THAT(refusal("  - {effect: backlash, at: j1, play: 1.0e-4}\n"
                       "  - {effect: backlash, at: j1, play: 2.0e-4}\n"),
               AllOf(StartsWith("arm.yaml:"), HasSubstr("one is there twice")));
+}
+
+TEST(EffectsOfAFile, AreReadAgainWhateverAFitMadeOfThem) {
+  const auto robot = robot_of(std::string(kArm) + "  - {effect: backlash, at: j1}\n", "arm.yaml");
+  ASSERT_TRUE(robot) << robot.error().what;
+  Eigen::VectorXd xi = values(**robot);
+  for (const double play : {-1.0e-3, -2.0e-3, 0.1, 7.0}) {
+    xi.tail<1>()[0] = play;
+    const std::string text = robot_text(**robot, xi);
+    const auto back = robot_of(text, "arm.yaml");
+    ASSERT_TRUE(back) << back.error().what;
+    EXPECT_EQ(values(**back), xi);
+    EXPECT_EQ(text.find("unusual: true") != text.npos, play < -1.5e-3 || play > 0.15) << play;
+    EXPECT_EQ(robot_text(**back, xi), text);
+  }
 }
 
 TEST(EffectsOfAFile, AreRefusedWhenTheyAreNoList) {
