@@ -97,6 +97,10 @@ void take_record(const Observations& rows, MeasurementContext& context) {
       context.times.push_back(rows.time[row]);
       context.temperatures.push_back(rows.temperature[row]);
     }
+  if (context.temperatures.empty()) return;
+  context.reference =
+      std::accumulate(context.temperatures.begin(), context.temperatures.end(), 0.0) /
+      static_cast<double>(context.temperatures.size());
 }
 
 }  // namespace

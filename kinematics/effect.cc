@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <utility>
 
 #include "kinematics/robot.h"
@@ -67,12 +66,6 @@ int MeasurementContext::find(std::string_view set) const {
 
 bool MeasurementContext::touched() const { return std::ranges::any_of(sets, &MeasuredSet::touch); }
 
-std::optional<double> MeasurementContext::mean_temperature() const {
-  if (temperatures.empty()) return std::nullopt;
-  return std::accumulate(temperatures.begin(), temperatures.end(), 0.0) /
-         static_cast<double>(temperatures.size());
-}
-
 Node Effect::describe(const Eigen::VectorXd& v) const {
   Node node = Node::map();
   node.set("effect", Node::of(std::string(name_)));
@@ -122,7 +115,7 @@ bool EffectPlan::torques() const {
 
 std::optional<double> EffectPlan::reference() const {
   const std::optional<double> written = fields.optional_number("reference");
-  if (!written) return context.mean_temperature();
+  if (!written) return context.reference;
   if (*written < kColdest || *written > kHottest)
     fields.fail("reference", "degrees Celsius from " + format_number(kColdest) + " to " +
                                  format_number(kHottest) +

@@ -75,10 +75,11 @@ struct MeasurementContext {
   double begin = 0, end = 0;                ///< s, of the rows
   bool loads = false;                       ///< rows carry wrenches
   bool velocities = false, speeds = false;  ///< rows carry dq; and it is more than a sign
+  /// C, T0 where an entry gives none: the mean of the record, or what a simulated robot starts at.
+  std::optional<double> reference = {};
 
-  int find(std::string_view set) const;            ///< -1 when there is none
-  bool touched() const;                            ///< a flat surface, in some set
-  std::optional<double> mean_temperature() const;  ///< C; nothing without a record
+  int find(std::string_view set) const;  ///< -1 when there is none
+  bool touched() const;                  ///< a flat surface, in some set
 };
 
 struct EffectParameter {
@@ -157,7 +158,7 @@ struct EffectPlan {
   /// What loads the joints is known: a chain's links, or what the file says weighs. Notes a problem
   /// otherwise.
   bool torques() const;
-  /// T0 of what warms (C): `reference` of the entry, else the record's mean; nothing without both.
+  /// T0 of what warms (C): `reference` of the entry, else the context's; nothing without both.
   std::optional<double> reference() const;
   /// Notes a problem unless `at` is `only`, or missing: then it is `only`.
   void expect_place(std::string_view only) const;

@@ -100,6 +100,7 @@ void Machine::add_effects(Problems& problems) {
   MeasurementContext context;
   context.end = kDrifts;
   context.velocities = context.speeds = true;
+  context.reference = settings_.temperature;
   for (const Set& set : sets_) context.sets.emplace_back().name = set.name;
   for (const TrueSurface& surface : surfaces_) {
     MeasuredSet& set = context.sets[static_cast<std::size_t>(surface.set)];

@@ -15,7 +15,8 @@
 //   warming         0         -20 to 20      °C per hour
 //   effects         []                       what the model lacks: entries as of a robot file's
 //                                            `effects` ({effect: backlash, at: j2, play: 5e-4});
-//                                            moment, begin, end (3600) are s from the start
+//                                            moment, begin, end (3600) are s from the start,
+//                                            reference is the temperature then
 //   payload         0         0 to 1000 kg   on the tool, its centre at the tip, in moves whose
 //                                            label ends with ", payload"
 //   trigger_pull    none                     played in a process of its own with a trigger of

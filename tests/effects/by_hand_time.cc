@@ -46,6 +46,7 @@ MeasurementContext ramp() {
     context.temperatures.push_back(20 + minute / 6.0);
   }
   context.end = 3600;
+  context.reference = 25;
   return context;
 }
 
@@ -63,8 +64,8 @@ TEST(ThermalExpansionByHand, LagsBehindARampAsAFirstOrderSystemDoes) {
   EXPECT_NEAR(moved(kColumn, slow, held, ramp()).p.x(), 127.7137e-6, 1e-10);
 }
 
-TEST(ThermalExpansionByHand, HasTheMeanOfTheRecordForReference) {
-  // The ramp's mean is 25 C: at 23 C, -2 K x 50e-6 /K x 1.3 m = -130 um.
+TEST(ThermalExpansionByHand, HasTheReferenceOfItsRows) {
+  // 25 C, the ramp's mean: at 23 C, -2 K x 50e-6 /K x 1.3 m = -130 um.
   Held held{numbers({0, 0})};
   held.temperature = 23;
   const std::string warm = "[{effect: thermal_expansion, alpha: 5.0e-5}]";

@@ -68,6 +68,7 @@ MeasurementContext tracked() {
   context.sets = {{"table", true, {0, 0, 0}, {0, 0, 1}}, {"tracker", false, {}, {}, true}};
   context.times = {0, 100};
   context.temperatures = {20, 24};
+  context.reference = 22;
   return context;
 }
 

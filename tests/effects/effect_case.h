@@ -91,6 +91,7 @@ inline MeasurementContext random_context(std::mt19937_64& random) {
     context.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));
   }
   context.end = 3600;
+  context.reference = 22;
   context.loads = context.velocities = context.speeds = true;
   return context;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "kinematics/corrected_robot.h"
 #include "tests/sim/machine_cell.h"
 
 namespace selfcal {
@@ -165,6 +166,19 @@ TEST(Machine, AnswersEachRequestWithWhatCameOfIt) {
 }
 
 // ------------------------------------------------------------------- what the model lacks
+
+TEST(Machine, IsAsItsFileHasItAtTheTemperatureOfItsStart) {
+  for (const char* warming : {"0", "10"}) {
+    const Machine machine = machine_of(
+        table("temperature: 35, warming: " + std::string(warming) +
+              ", effects: [{effect: thermal_expansion, alpha: 1.2e-5}, {effect: thermal_expansion, "
+              "lag: 600, reference: 20, alpha: 1.2e-5}]"));
+    const std::vector<Node> effects = effect_entries(machine.robot());
+    ASSERT_EQ(effects.size(), 2U);
+    EXPECT_EQ(effects[0].find("reference")->text, "35") << warming;
+    EXPECT_EQ(effects[1].find("reference")->text, "20") << warming;
+  }
+}
 
 /// Height of the end position at a moment, as the model without effects has it (m).
 double height_of_model(const Machine& plain, const Eigen::VectorXd& readings) {
