@@ -14,12 +14,25 @@ constexpr std::int64_t kJustNow = 10 * kMinute;
 // A wall clock that was set back must not put the next session off for years.
 bool ahead(const Since& since, std::int64_t unix_ms) { return since.unix_ms > unix_ms + kHour; }
 
-/// First moment after `from` at which the local clock shows the minute of the day.
-std::int64_t next_at(int minute, std::int64_t from, int utc_offset_s) {
-  const std::int64_t offset = std::int64_t{utc_offset_s} * 1000;
-  const std::int64_t midnight = (from + offset) / kDay * kDay - offset;
-  const std::int64_t today = midnight + minute * kMinute;
-  return today > from ? today : today + kDay;
+/// First moment at which the local clock, which is set at most once about then, shows `local` (ms
+/// since 1970 of a clock that runs as UTC does) or more.
+std::int64_t first_at(std::int64_t local, const UtcOffset& offset) {
+  const int before = offset(local - kDay), after = offset(local + kDay);
+  const std::int64_t unchanged = local - std::int64_t{before} * 1000;
+  if (before == after) return unchanged;
+  std::int64_t earlier = local - kDay, set = local + kDay;
+  while (set - earlier > 1) {
+    const std::int64_t middle = earlier + (set - earlier) / 2;
+    (offset(middle) == before ? earlier : set) = middle;
+  }
+  return unchanged < set ? unchanged : std::max(set, local - std::int64_t{after} * 1000);
+}
+
+/// First moment after `from` at which a local day comes to the minute.
+std::int64_t next_at(int minute, std::int64_t from, const UtcOffset& offset) {
+  const std::int64_t today = (from + std::int64_t{offset(from)} * 1000) / kDay * kDay;
+  for (std::int64_t day = today - kDay;; day += kDay)
+    if (const std::int64_t t = first_at(day + minute * kMinute, offset); t > from) return t;
 }
 
 std::string hours(double value) {
@@ -38,27 +51,26 @@ int utc_offset(std::int64_t unix_ms) {
 }
 
 std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
-                      int utc_offset_s) {
+                      const UtcOffset& offset) {
   const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
   std::int64_t next = 0;
   const auto earlier = [&](std::int64_t t) { next = next == 0 ? t : std::min(next, t); };
   if (schedule.every_hours)
     earlier(unknown ? unix_ms : since.unix_ms + std::llround(*schedule.every_hours * kHour));
   if (schedule.at_minute)
-    earlier(next_at(*schedule.at_minute, unknown ? unix_ms : since.unix_ms, utc_offset_s));
+    earlier(next_at(*schedule.at_minute, unknown ? unix_ms : since.unix_ms, offset));
   return next;
 }
 
 std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
-                       std::optional<double> temperature, int utc_offset_s) {
+                       std::optional<double> temperature, const UtcOffset& offset) {
   std::string why;
   const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
   if (schedule.every_hours &&
       (unknown || static_cast<double>(unix_ms - since.unix_ms) >= *schedule.every_hours * kHour))
     why = "every " + hours(*schedule.every_hours) + " h";
   if (schedule.at_minute &&
-      next_at(*schedule.at_minute, unknown ? unix_ms - kJustNow : since.unix_ms, utc_offset_s) <=
-          unix_ms)
+      next_at(*schedule.at_minute, unknown ? unix_ms - kJustNow : since.unix_ms, offset) <= unix_ms)
     why = "at the time of day";
   if (schedule.after_motion_hours && since.motion_hours >= *schedule.after_motion_hours)
     why = "after " + hours(since.motion_hours) + " h of motion";

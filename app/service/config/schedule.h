@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -35,15 +36,20 @@ struct Due {
   std::string why;
 };
 
-/// By how much local time is ahead of UTC (s), as the system has it.
+/// By how much local time is ahead of UTC (s) at a moment (ms since 1970).
+using UtcOffset = std::function<int(std::int64_t unix_ms)>;
+
+/// As the system has it.
 int utc_offset(std::int64_t unix_ms);
 
-/// What is due now, if anything. `utc_offset_s` is that of the local time.
+/// What is due now, if anything. A time of day is the first moment of a local day at which the
+/// clock shows it, or has passed it: one that comes twice is due once, and one that is left out at
+/// the end of the gap.
 std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
-                       std::optional<double> temperature, int utc_offset_s);
+                       std::optional<double> temperature, const UtcOffset& offset);
 
 /// When the clock alone makes the next one due (ms since 1970); 0 when it never does.
 std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
-                      int utc_offset_s);
+                      const UtcOffset& offset);
 
 }  // namespace selfcal

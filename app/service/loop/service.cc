@@ -155,8 +155,7 @@ std::optional<Due> Service::scheduled() {
   Since since = last;
   since.motion_hours = c_.use.motion_hours - last.motion_hours;
   since.calibrated = analyst_.can_check();
-  return due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(),
-             utc_offset(unix_ms));
+  return due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(), utc_offset);
 }
 
 void Service::put_due(const Due& next) {
