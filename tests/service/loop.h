@@ -15,7 +15,7 @@ namespace selfcal {
 /// Stands at home or swings about it, and does nothing that it is asked, though it may say so.
 struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   Nanoseconds now() override { return time; }
-  std::int64_t unix_ms() override { return 1'790'000'000'000 + time / kMillisecond; }
+  std::int64_t unix_ms() override { return 1'790'000'000'000 + time / kMillisecond + ahead_ms; }
   /// A fifth of a millisecond is twenty: what is planned meanwhile takes its time.
   void wait(Nanoseconds) override {
     usleep(200);
@@ -51,6 +51,7 @@ struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   std::uint64_t strange() const override { return 0; }
 
   Nanoseconds time = 1000 * kSecond;
+  std::int64_t ahead_ms = 0;  // of the true time, as the wall clock is set
   std::vector<EncoderScale> counts{6, EncoderScale{1e-6, 0}};
   double home[6] = {0, -0.6, 0.9, 0, 1.2, 0};
   bool working = false, touching = false, obeys = false;

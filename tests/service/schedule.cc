@@ -147,16 +147,29 @@ TEST(Schedule, WaitsForTheTimeOfDayBeforeTheFirstSession) {
   EXPECT_FALSE(due_at(schedule, {}, kMidnight + 12 * kHour)) << "not whenever it is switched on";
 }
 
-TEST(Schedule, DoesNotWaitForYearsAfterTheWallClockWasSetBack) {
-  const Since since = since_at(kMidnight + 365 * kDay);
-  Schedule every, at;
-  every.every_hours = 24;
-  EXPECT_TRUE(due_at(every, since, kMidnight));
-  EXPECT_EQ(next_due(every, since, kMidnight, kUtc), kMidnight);
-  at.at_minute = 60;
-  EXPECT_FALSE(due_at(at, since, kMidnight));
-  EXPECT_TRUE(due_at(at, since, kMidnight + kHour));
-  EXPECT_EQ(next_due(at, since, kMidnight, kUtc), kMidnight + kHour);
+TEST(Schedule, MakesNothingDueByAClockThatIsNotBelieved) {
+  Schedule schedule;
+  schedule.every_hours = 24;
+  schedule.at_minute = 60;
+  Since since = since_at(kMidnight - 100 * kDay);
+  since.dated = false;
+  EXPECT_FALSE(due_at(schedule, since, kMidnight + kHour));
+  EXPECT_EQ(next_due(schedule, since, kMidnight, kUtc), 0);
+  schedule.after_motion_hours = 10;
+  since.motion_hours = 11;
+  EXPECT_TRUE(due_at(schedule, since, kMidnight + kHour)) << "what does not go by the clock";
+}
+
+TEST(Schedule, WaitsForTheNextTimeOfDayAfterTheClockWasSetPastOne) {
+  Schedule schedule;
+  schedule.at_minute = 2 * 60 + 30;
+  Since since = since_at(kMidnight - 22 * kHour);
+  since.set_to_ms = kMidnight + 8 * kHour;
+  const std::int64_t then = kMidnight + kDay + 2 * kHour + 30 * kMinute;
+  EXPECT_FALSE(due_at(schedule, since, kMidnight + 8 * kHour));
+  EXPECT_FALSE(due_at(schedule, since, then - 1));
+  EXPECT_TRUE(due_at(schedule, since, then));
+  EXPECT_EQ(next_due(schedule, since, kMidnight + 8 * kHour, kUtc), then);
 }
 
 TEST(Schedule, DoesNotBeginAgainWhenTheClockIsSetBackByASecond) {

@@ -11,9 +11,6 @@ namespace {
 constexpr std::int64_t kMinute = 60'000, kHour = 60 * kMinute, kDay = 24 * kHour;
 constexpr std::int64_t kJustNow = 10 * kMinute;
 
-// A wall clock that was set back must not put the next session off for years.
-bool ahead(const Since& since, std::int64_t unix_ms) { return since.unix_ms > unix_ms + kHour; }
-
 /// First moment at which the local clock, which is set at most once about then, shows `local` (ms
 /// since 1970 of a clock that runs as UTC does) or more.
 std::int64_t first_at(std::int64_t local, const UtcOffset& offset) {
@@ -52,25 +49,27 @@ int utc_offset(std::int64_t unix_ms) {
 
 std::int64_t next_due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                       const UtcOffset& offset) {
-  const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
+  const bool unknown = since.unix_ms == 0;
+  if (!since.dated) return 0;
   std::int64_t next = 0;
   const auto earlier = [&](std::int64_t t) { next = next == 0 ? t : std::min(next, t); };
   if (schedule.every_hours)
     earlier(unknown ? unix_ms : since.unix_ms + std::llround(*schedule.every_hours * kHour));
   if (schedule.at_minute)
-    earlier(next_at(*schedule.at_minute, unknown ? unix_ms : since.unix_ms, offset));
+    earlier(next_at(*schedule.at_minute,
+                    std::max(unknown ? unix_ms : since.unix_ms, since.set_to_ms), offset));
   return next;
 }
 
 std::optional<Due> due(const Schedule& schedule, const Since& since, std::int64_t unix_ms,
                        std::optional<double> temperature, const UtcOffset& offset) {
   std::string why;
-  const bool unknown = since.unix_ms == 0 || ahead(since, unix_ms);
-  if (schedule.every_hours &&
+  const bool unknown = since.unix_ms == 0;
+  if (schedule.every_hours && since.dated &&
       (unknown || static_cast<double>(unix_ms - since.unix_ms) >= *schedule.every_hours * kHour))
     why = "every " + hours(*schedule.every_hours) + " h";
-  if (schedule.at_minute &&
-      next_at(*schedule.at_minute, unknown ? unix_ms - kJustNow : since.unix_ms, offset) <= unix_ms)
+  const std::int64_t from = std::max(unknown ? unix_ms - kJustNow : since.unix_ms, since.set_to_ms);
+  if (schedule.at_minute && since.dated && next_at(*schedule.at_minute, from, offset) <= unix_ms)
     why = "at the time of day";
   if (schedule.after_motion_hours && since.motion_hours >= *schedule.after_motion_hours)
     why = "after " + hours(since.motion_hours) + " h of motion";

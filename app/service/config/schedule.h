@@ -20,6 +20,7 @@ struct Schedule {
   double check_p = 0.01;
   int full_after_checks = 30;
   bool any() const { return every_hours || at_minute || after_motion_hours || temperature_change; }
+  bool by_clock() const { return every_hours || at_minute; }
 };
 
 /// What the schedule is measured against; unknown ones are missing.
@@ -29,6 +30,8 @@ struct Since {
   std::optional<double> temperature;  ///< at that time
   int checks = 0;                     ///< since the last full session
   bool calibrated = false;            ///< the active parameters come from a session
+  bool dated = true;                  ///< the clock is believed; else it makes nothing due
+  std::int64_t set_to_ms = 0;         ///< no time of day up to it has come: the clock was set
 };
 
 struct Due {

@@ -88,10 +88,10 @@ void Analyst::keep_result(const ResultRecord& result, bool cause) {
           "session " + std::to_string(result.session) + ": " +
               std::string(to_string(result.answer)) + ", " +
               std::string(to_string(result.decision)) + ": " + result.why);
-  c_.use.since.unix_ms = result.unix_ms;
-  c_.use.since.motion_hours = c_.use.motion_hours;
-  c_.use.since.temperature = collector_.front_end().celsius();
-  c_.use.since.checks = explained ? c_.use.since.checks + 1 : 0;
+  c_.use.calendar.session_ended();
+  c_.use.motion_hours_then = c_.use.motion_hours;
+  c_.use.temperature_then = collector_.front_end().celsius();
+  c_.use.checks = explained ? c_.use.checks + 1 : 0;
   c_.remember_use();
   c_.stored(c_.store.prune(c_.config.store_bytes));
   Event event;

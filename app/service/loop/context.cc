@@ -52,11 +52,23 @@ std::string ServiceContext::config_hash() const {
   return selfcal::config_hash(config, ports.encoders->scales());
 }
 
+Since ServiceContext::since() const {
+  Since since;
+  since.unix_ms = use.calendar.last_session_ms();
+  since.motion_hours = use.motion_hours - use.motion_hours_then;
+  since.temperature = use.temperature_then;
+  since.checks = use.checks;
+  since.dated = use.calendar.believed();
+  since.set_to_ms = use.calendar.set_to_ms();
+  return since;
+}
+
 void ServiceContext::remember_use() {
-  char line[160];
-  std::snprintf(line, sizeof line, "%.6f %lld %.6f %.3f %d", use.motion_hours,
-                static_cast<long long>(use.since.unix_ms), use.since.motion_hours,
-                use.since.temperature.value_or(std::nan("")), use.since.checks);
+  char line[192];
+  std::snprintf(line, sizeof line, "%.6f %lld %.6f %.3f %d %lld", use.motion_hours,
+                static_cast<long long>(use.calendar.last_session_to_keep_ms()),
+                use.motion_hours_then, use.temperature_then.value_or(std::nan("")), use.checks,
+                static_cast<long long>(use.calendar.latest_ms()));
   stored(store.remember("use", line));
 }
 

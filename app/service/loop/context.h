@@ -5,6 +5,7 @@
 #include <deque>
 #include <string>
 
+#include "app/service/config/calendar.h"
 #include "app/service/config/config.h"
 #include "app/service/config/schedule.h"
 #include "app/service/loop/journal.h"
@@ -16,8 +17,12 @@ namespace selfcal {
 
 /// How much the robot has been used, which outlives a restart.
 struct Usage {
-  Since since;
+  Calendar calendar;
   double motion_hours = 0;
+  /// At the last session.
+  double motion_hours_then = 0;
+  std::optional<double> temperature_then;
+  int checks = 0;  ///< since the last full one
 };
 
 /// All references outlive it.
@@ -47,6 +52,8 @@ struct ServiceContext {
   std::int64_t unix_ms() const { return ports.clock->unix_ms(); }
   /// Of what the touches mean; see session.h.
   std::string config_hash() const;
+  /// What the schedule is measured against; whether a check is possible is for others to say.
+  Since since() const;
   /// Keeps how much the robot has been used.
   void remember_use();
 

@@ -46,7 +46,7 @@ StatusMessage Reporter::status() const {
   status.active = c_.models.name();
   status.active_since_ms = c_.models.since_ms();
   status.candidate = c_.extended_state.candidate;
-  status.next_due_ms = next_due(c_.config.schedule, c_.use.since, status.unix_ms, utc_offset);
+  status.next_due_ms = next_due(c_.config.schedule, c_.since(), status.unix_ms, utc_offset);
   status.temperature = collector_.front_end().celsius().value_or(std::nan(""));
   return status;
 }

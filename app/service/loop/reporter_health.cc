@@ -41,15 +41,16 @@ std::vector<HealthMessage> Reporter::health() const {
 
 HealthMessage Reporter::health_of_service() const {
   const std::string strangers = collector_.two_senders();
+  const std::string clock = c_.config.schedule.by_clock() ? c_.use.calendar.doubt() : std::string();
   const bool fault = c_.extended_state.state == ServiceState::fault;
-  const Health level = fault || !strangers.empty()    ? Health::error
-                       : c_.extended_state.unfinished ? Health::warn
-                                                      : Health::ok;
+  const Health level = fault || !strangers.empty()                      ? Health::error
+                       : c_.extended_state.unfinished || !clock.empty() ? Health::warn
+                                                                        : Health::ok;
   return {
       "selfcal: service",
       level,
       with_trouble(std::string(to_string(c_.extended_state.state)) + ": " + c_.extended_state.why,
-                   strangers),
+                   strangers.empty() ? clock : strangers),
       {{"hardware", std::string(hardware_may(c_.extended_state.state, c_.extended_state.phase))},
        {"session", std::to_string(c_.extended_state.session)},
        {"unsent", std::to_string(c_.messenger.unsent())},

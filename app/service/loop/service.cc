@@ -45,6 +45,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
 
 void Service::turn() {
   c_.now = c_.ports.clock->now();
+  look_at_clock();
   collector_.listen();
   if (!collector_.stands()) moved_ = c_.now;
   if (collector_.front_end().moving()) c_.use.motion_hours += seconds(c_.now - last_turn_) / 3600;
@@ -148,14 +149,21 @@ void Service::check_schedule() {
 }
 
 std::optional<Due> Service::scheduled() {
-  const std::int64_t unix_ms = c_.unix_ms();
-  Since& last = c_.use.since;
-  // Before the first session, and after the clock was set back, the interval begins now.
-  if (last.unix_ms == 0 || last.unix_ms > unix_ms + 3'600'000) last.unix_ms = unix_ms;
-  Since since = last;
-  since.motion_hours = c_.use.motion_hours - last.motion_hours;
+  // Before the first session the interval begins now.
+  if (c_.use.calendar.last_session_ms() == 0) c_.use.calendar.session_ended();
+  Since since = c_.since();
   since.calibrated = analyst_.can_check();
-  return due(c_.config.schedule, since, unix_ms, collector_.front_end().celsius(), utc_offset);
+  return due(c_.config.schedule, since, c_.unix_ms(), collector_.front_end().celsius(), utc_offset);
+}
+
+/// A clock that is not believed is told of where the schedule goes by it.
+void Service::look_at_clock() {
+  Calendar& calendar = c_.use.calendar;
+  const bool believed = calendar.believed();
+  calendar.look(c_.now, c_.unix_ms());
+  if (calendar.believed() == believed || !c_.config.schedule.by_clock()) return;
+  calendar.believed() ? c_.tell("info", "the clock is believed once more")
+                      : c_.tell("warning", calendar.doubt());
 }
 
 void Service::put_due(const Due& next) {
@@ -183,14 +191,15 @@ void Service::recall() {
   if (const auto wanted = c_.store.remembered("wanted"); wanted)
     c_.extended_state.wanted = kind_of(*wanted);
   const auto line = c_.store.remembered("use");
-  Since& since = c_.use.since;
-  long long unix_ms = 0;
+  Usage& use = c_.use;
+  long long last = 0, latest = 0;
   double temperature = std::nan("");
-  if (line && std::sscanf(line->c_str(), "%lf %lld %lf %lf %d", &c_.use.motion_hours, &unix_ms,
-                          &since.motion_hours, &temperature, &since.checks) == 5) {
-    since.unix_ms = unix_ms;
-    if (!std::isnan(temperature)) since.temperature = temperature;
+  if (line && std::sscanf(line->c_str(), "%lf %lld %lf %lf %d %lld", &use.motion_hours, &last,
+                          &use.motion_hours_then, &temperature, &use.checks, &latest) >= 5) {
+    if (!std::isnan(temperature)) use.temperature_then = temperature;
+    use.calendar.recall(last, latest);
   }
+  look_at_clock();
   tell_result();
 }
 

@@ -34,6 +34,7 @@ class Service {
   void begin_test();
   void check_self();
   void check_schedule();
+  void look_at_clock();
   std::optional<Due> scheduled();  ///< what the schedule asks for now
   void put_due(const Due& next);
   void remember();
