@@ -75,6 +75,19 @@ TEST_F(Loop, KeepsAResultWaitingThatTheStoreCouldNotAcceptOrReject) {
   EXPECT_EQ(service->models().session(), 1);
 }
 
+TEST_F(Loop, SaysWhyItIsIdleOnceAResultWasRolledBack) {
+  const Config cell = config({{"commands.allow", "[accept, rollback]"}});
+  leave_candidate(*opened(scratch.folder()), *cell.robot);
+  start(cell);
+  ASSERT_TRUE(comes_to(ServiceState::awaiting_acceptance));
+  person.say("accept");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  person.say("rollback");
+  ASSERT_TRUE(turning([&] { return service->models().session() == 0; }));
+  EXPECT_EQ(state().why, person.replies.back().why);
+  EXPECT_THAT(state().why, HasSubstr("session 1 was rolled back"));
+}
+
 TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {
   start(config());
   ASSERT_TRUE(comes_to(ServiceState::idle));

@@ -74,6 +74,7 @@ void Service::roll_back() {
                            " was rolled back and is not used again by itself";
   if (command_) c_.messenger.reply({command_->id, command_->verb, true, said});
   c_.tell("warning", said);
+  c_.put(Event::What::rolled_back, true, said);
 }
 
 void Service::publish() {

@@ -46,6 +46,8 @@ void TransitionStep::handle() {
       return decided();
     case What::applied:
       return applied();
+    case What::rolled_back:
+      return rolled_back();
     case What::published:
       return published();
     case What::broken:

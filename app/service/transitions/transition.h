@@ -92,6 +92,7 @@ struct Event {
     computed,  ///< the stage in progress has ended; `ok`, `why`
     decided,   ///< after judging or diagnosing: `decision`; `cause` when one is to be looked for
     applied,
+    rolled_back,  ///< `why`
     published,
     broken,  ///< a port or the store has failed: `why`
   };

@@ -103,4 +103,9 @@ void TransitionStep::commanded_to_roll_back() {
   act(Do::roll_back);  // answers the command: the store knows whether there is something
 }
 
+/// What led to the parameters that are given up is no reason any more; that of a fault is.
+void TransitionStep::rolled_back() {
+  if (s_.state == ServiceState::idle) s_.why = event_.why;
+}
+
 }  // namespace selfcal

@@ -56,6 +56,7 @@ class TransitionStep {
   void commanded_to_roll_back();
   void grant() { act(Do::grant, std::string(to_string(event_.verb))); }
   void refuse(const std::string& why) { act(Do::refuse, why); }
+  void rolled_back();
   void refuse_without_result();
   void refuse_in_this_state() { refuse("the service is " + std::string(to_string(s_.state))); }
 
