@@ -40,6 +40,24 @@ TEST_F(Loop, LeavesAloneWhatMovesByOthersOnceItsOwnMoveHasEnded) {
   EXPECT_EQ(robot.stops, 0);
 }
 
+TEST_F(Loop, FaultsWhereMoreHappensAtOnceThanItCanHold) {
+  Config cell = config();
+  store = opened(scratch.folder());
+  journal = std::make_unique<Journal>(opened(scratch.folder()));
+  Models models = must(Models::load(cell.robot, *store));
+  ServiceContext context{std::move(cell), Ports{&robot, &robot, &robot, &robot},
+                         person,          *store,
+                         *journal,        std::move(models)};
+  for (int i = 0; i < 1024; ++i) context.put(Event::What::opened);
+  EXPECT_EQ(context.lost_events, 0U);
+  EXPECT_EQ(context.events.back().what, Event::What::opened);
+  for (int i = 0; i < 5000; ++i) context.put(Event::What::closed);
+  EXPECT_EQ(context.lost_events, 5000U);
+  EXPECT_EQ(context.events.size(), 1025U) << "memory stays bounded";
+  EXPECT_EQ(context.events.back().what, Event::What::broken);
+  EXPECT_THAT(context.events.back().why, testing::HasSubstr("lost"));
+}
+
 TEST_F(Loop, StopsNoContactOfOthersAfterAnAbort) {
   start(config());
   ASSERT_TRUE(comes_to(ServiceState::idle));

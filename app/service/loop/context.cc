@@ -17,7 +17,15 @@ constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the 
 
 void ServiceContext::put(Event event) {
   event.now = now;
-  if (events.size() < kMostEvents) events.push_back(std::move(event));
+  if (events.size() < kMostEvents) return events.push_back(std::move(event));
+  ++lost_events;
+  if (events.size() > kMostEvents) return;
+  // What the transition knows is not what has happened any more.
+  Event lost;
+  lost.what = Event::What::broken;
+  lost.now = now;
+  lost.why = "more than " + std::to_string(kMostEvents) + " events at once: the others are lost";
+  events.push_back(std::move(lost));
 }
 
 void ServiceContext::put(Event::What what, bool ok, std::string why) {

@@ -36,10 +36,12 @@ struct ServiceContext {
   ExtendedState extended_state = {};
   Usage use = {};
   std::deque<Event> events = {};
-  Nanoseconds now = 0;  ///< of the turn
+  std::uint64_t lost_events = 0;  ///< since the start
+  Nanoseconds now = 0;            ///< of the turn
   std::string last_told = {};
   Nanoseconds last_told_at = 0;
 
+  /// Of more than 1024 that wait the others are lost, which is a fault.
   void put(Event event);
   void put(Event::What what, bool ok = true, std::string why = {});
   /// False, with a fault on its way, when the store has failed.

@@ -54,7 +54,8 @@ HealthMessage Reporter::health_of_service() const {
       {{"hardware", std::string(hardware_may(c_.extended_state.state, c_.extended_state.phase))},
        {"session", std::to_string(c_.extended_state.session)},
        {"unsent", std::to_string(c_.messenger.unsent())},
-       {"refused_commands", std::to_string(refused_commands_)}}};
+       {"refused_commands", std::to_string(refused_commands_)},
+       {"lost_events", std::to_string(c_.lost_events)}}};
 }
 
 HealthMessage Reporter::health_of_encoders() const {
