@@ -112,10 +112,35 @@ TEST(Fleet, SaysHowFarTheActiveParametersAreOff) {
   result.check_before = 2e-3;
   result.check_after = 1e-4;
   EXPECT_EQ(fleet_line(watched)["off"], 2e-3);
+  result.session = 7;
   result.decision = "applied";
+  watched.status->active = "session 7";
   EXPECT_EQ(fleet_line(watched)["off"], 1e-4);
   result.answer = "failed";
   EXPECT_TRUE(fleet_line(watched)["off"].is_null());
+}
+
+TEST(Fleet, SaysNothingOfParametersThatWereRolledBack) {
+  Watched watched = heard("rx90");
+  ResultMessage& result = watched.result.emplace();
+  result.session = 7;
+  result.unix_ms = 1000;
+  result.kind = "full";
+  result.answer = "improved";
+  result.decision = "rolled-back";
+  result.check_before = 2e-3;
+  result.check_after = 1e-4;
+  EXPECT_TRUE(fleet_line(watched)["off"].is_null());
+
+  result.kind = "check";
+  result.answer = "explained";
+  result.decision = "none";
+  EXPECT_TRUE(fleet_line(watched)["off"].is_null()) << "a check of what was given up";
+  watched.status->active = "session 6";
+  watched.status->active_since_ms = 500;
+  EXPECT_EQ(fleet_line(watched)["off"], 1e-4);
+  watched.status->active_since_ms = 2000;
+  EXPECT_TRUE(fleet_line(watched)["off"].is_null()) << "back since then";
 }
 
 TEST(Fleet, IsATableForATerminal) {

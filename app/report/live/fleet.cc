@@ -22,14 +22,21 @@ const HealthMessage* worst_of(const std::vector<HealthMessage>& health) {
 
 bool is_silent(const Watched& watched) { return !watched.status || watched.silent >= kSilence; }
 
-/// The result that was applied has replaced what missed the touches by so much.
+/// By how much the parameters that are active miss the touches of the last result; nothing where it
+/// speaks of others, which a rollback has given up or an acceptance has replaced.
 nlohmann::ordered_json off_by(const Watched& watched) {
-  if (!watched.result || parse_answer(watched.result->answer) == ResultAnswer::failed)
-    return nullptr;
+  if (!watched.result || !watched.status) return nullptr;
   const ResultMessage& r = *watched.result;
+  const StatusMessage& s = *watched.status;
+  if (parse_answer(r.answer) == ResultAnswer::failed) return nullptr;
+  const auto decision = parse_decision(r.decision);
+  if (decision == ResultDecision::applied)
+    return s.active == "session " + std::to_string(r.session) ? finite(r.check_after) : nullptr;
   const bool check = r.kind == "check";
-  const bool applied = parse_decision(r.decision) == ResultDecision::applied;
-  return finite(check || applied ? r.check_after : r.check_before);
+  const bool others = decision == ResultDecision::rolled_back || s.active_since_ms > r.unix_ms ||
+                      (check && s.active == "factory");  // of which there is no check
+  if (others) return nullptr;
+  return finite(check ? r.check_after : r.check_before);
 }
 
 std::string why_of(const Watched& watched, Concern concern) {
