@@ -175,6 +175,22 @@ TEST(MonitorView, TellsOfAChecksOutcomeInItsOwnWords) {
   EXPECT_EQ(figures(check), "");
 }
 
+TEST(MonitorView, SaysOnceWhatStateAndResultHaveInCommon) {
+  ResultMessage check = improved();
+  check.kind = "check";
+  check.why = "12 touches with 0.03 mm rms against 0.02 expected";
+  Watched all = watched();
+  all.status->state = "idle";
+  all.status->why = check.why;
+  note(all, check);
+  const std::string shown = picture_text(picture(all, kNow, 200, 50));
+  const std::size_t first = shown.find(check.why);
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(shown.find(check.why, first + 1), std::string::npos) << shown;
+  all.status->why = "ready";
+  EXPECT_THAT(picture_text(picture(all, kNow, 200, 50)), HasSubstr(check.why));
+}
+
 TEST(MonitorNews, TellsAStateOnceAndALevelWhenItChanges) {
   News news;
   EXPECT_THAT(news.of(collecting()), HasSubstr("collecting, session 3 (full): asked by ana@cell"));

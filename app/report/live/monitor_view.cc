@@ -119,7 +119,8 @@ class Picture {
     add("Result", text, kMust, tone_of(r));
     if (const std::string numbers = figures(r); !numbers.empty()) add("", numbers, kFacts);
     add("", counts(r), kWords);
-    if (!r.why.empty()) add("", r.why, kWords);
+    // The state that follows a result has its reason.
+    if (!r.why.empty() && r.why != watched_.status->why) add("", r.why, kWords);
   }
 
   void parameters() {

@@ -42,6 +42,7 @@ const SHOWS = [
     touched.show(touches);
   }],
   [["result"], () => replace(holders.result, result_words(link.parts.result))],
+  [["result", "status"], () => hide_told_above(link.parts.status)],
   [["health"], () => replace(holders.health, health_words(link.parts.health))],
   [["history"], () => { replace(holders.history, history_words(link.parts.history)); drifted.show(link.parts.history); }],
   [["history", "news"], () => replace(holders.log, log_words(link.parts.history, link.lists.news))],

@@ -98,12 +98,19 @@ function result_words(result) {
     paragraph("Session " + result.session + " (" + result.kind + "), " + moment(result.unix_ms) + ": " + result.answer + decision),
     residual_tiles(result),
     paragraph(plural(result.touches, "touch", "touches") + (result.rejected ? ", " + result.rejected + " put aside" : "") +
-      (result.identified ? ", " + plural(result.identified, "parameter") + " identified" : "") + ". " + result.why, "soft"),
+      (result.identified ? ", " + plural(result.identified, "parameter") + " identified" : "") + ".", "soft"),
+    element("p", {class: "soft", id: "result-why"}, result.why),
     sets.length ? folded("Surface by surface", table([{title: "surface"}, {title: "rows kept aside", number: true},
       {title: "before, mm", number: true}, {title: "after, mm", number: true}], sets)) : null,
     result.changes ? folded("What moved most, from the maker's figures", ...[change_table(result.changes)].flat()) : null,
     (result.warnings || []).length ? folded(plural(result.warnings.length, "warning"), bullets(result.warnings)) : null,
   ];
+}
+
+// The state that follows a result has its reason, which stands above.
+function hide_told_above(status) {
+  const why = document.getElementById("result-why");
+  if (why) why.hidden = Boolean(status) && why.textContent === status.why;
 }
 
 function health_words(health) {
