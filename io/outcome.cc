@@ -1,6 +1,7 @@
 #include "io/outcome.h"
 
 #include <array>
+#include <cmath>
 
 namespace selfcal {
 namespace {
@@ -20,6 +21,17 @@ std::optional<E> parse_name(const std::array<std::string_view, n>& names, std::s
 }
 
 }  // namespace
+
+ResultFigures known_figures(ResultFigures figures, ResultAnswer answer) {
+  const double none = std::nan("");
+  const bool check = answer == ResultAnswer::explained || answer == ResultAnswer::not_explained;
+  const bool failed = answer == ResultAnswer::failed;
+  if (failed) figures.check_before = figures.check_after = none;
+  if (failed || check) figures.endpoint_sigma = none;
+  // What nothing was compared with has no probability.
+  if (failed || (check && !(figures.check_before > 0))) figures.p_value = none;
+  return figures;
+}
 
 std::string_view to_string(ResultAnswer answer) {
   return kAnswers[static_cast<std::size_t>(answer)];

@@ -42,6 +42,9 @@ struct ResultFigures {
   bool operator==(const ResultFigures&) const = default;
 };
 
+/// NaN where a result of this answer has no such figure.
+ResultFigures known_figures(ResultFigures figures, ResultAnswer answer);
+
 /// As the store and the messages have it: "not-improved".
 std::string_view to_string(ResultAnswer answer);
 std::string_view to_string(ResultDecision decision);

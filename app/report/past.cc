@@ -88,17 +88,15 @@ nlohmann::ordered_json record_of(const Past& past) {
                                  {"result", nullptr}};
   if (!past.result) return json;
   const ResultRecord& r = *past.result;
-  const auto figure = [&](double value) {
-    return r.answer == ResultAnswer::failed ? nlohmann::ordered_json(nullptr) : finite(value);
-  };
+  const ResultFigures figures = known_figures(r, r.answer);
   json["result"] = {{"unix_ms", r.unix_ms},
                     {"answer", to_string(r.answer)},
                     {"decision", to_string(r.decision)},
                     {"why", r.why},
-                    {"p_value", figure(r.p_value)},
-                    {"check_before", figure(r.check_before)},
-                    {"check_after", figure(r.check_after)},
-                    {"endpoint_sigma", figure(r.endpoint_sigma)},
+                    {"p_value", finite(figures.p_value)},
+                    {"check_before", finite(figures.check_before)},
+                    {"check_after", finite(figures.check_after)},
+                    {"endpoint_sigma", finite(figures.endpoint_sigma)},
                     {"touches", r.touches},
                     {"rejected", r.outliers},
                     {"identified", r.identified}};

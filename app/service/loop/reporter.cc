@@ -117,8 +117,9 @@ void Reporter::result(const ResultRecord& result) {
   message.answer = to_string(result.answer);
   message.decision = to_string(result.decision);
   message.why = result.why;
-  static_cast<ResultFigures&>(message) = result;
+  static_cast<ResultFigures&>(message) = known_figures(result, result.answer);
   message.json = result.json;
+  message.cause_probability = message.cause_closes = std::nan("");
   name_cause(result.json, message);
   c_.messenger.publish(message);
 }
