@@ -109,6 +109,22 @@ TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {
   EXPECT_TRUE(robot.asked.empty());
 }
 
+TEST_F(Loop, TouchesNothingForAQuickCheckWhoseParametersWereRolledBack) {
+  const Config cell = config();
+  leave_session(*opened(scratch.folder()), cell, robot.counts, "check", false);
+  start(cell);
+  ASSERT_TRUE(comes_to(ServiceState::fault));
+  EXPECT_THAT(state().why,
+              HasSubstr("a quick check compares with an accepted session, and factory is active"));
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_EQ(must(store->session(1)).state, SessionState::aborted);
+  EXPECT_FALSE(state().unfinished) << "nothing is there that could be resumed";
+
+  person.say("start");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  EXPECT_EQ(state().why, "ready");
+}
+
 TEST_F(Loop, BeginsNothingByItselfWhileTheRobotIsAtOtherWork) {
   start(config({{"schedule.every_hours", "0.001"}}));
   ASSERT_TRUE(comes_to(ServiceState::idle));

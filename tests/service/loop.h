@@ -130,19 +130,26 @@ class Loop : public testing::Test {
   std::optional<Service> service;
 };
 
-/// A session that an earlier life has left before a touch with the payload.
-inline void leave_loaded_session(Store& store, const Config& config,
-                                 const std::vector<EncoderScale>& scales) {
+/// A session that an earlier life has left before its touch.
+inline void leave_session(Store& store, const Config& config,
+                          const std::vector<EncoderScale>& scales, const std::string& kind,
+                          bool loaded) {
   SessionRecord record;
-  record.kind = "cause";
+  record.kind = kind;
   record.model_hash = model_hash(*config.robot);
   record.config = decoding_text(config, scales);
   record.config_hash = config_hash(config, scales);
   StepRecord step;
   step.set = "table";
-  step.loaded = true;
+  step.loaded = loaded;
   step.start = step.touch = step.end = {0.3, -0.6, 0.9, 0, 1.2, 0};
   must(store.begin(record, {step}));
+}
+
+/// The touch is with the payload.
+inline void leave_loaded_session(Store& store, const Config& config,
+                                 const std::vector<EncoderScale>& scales) {
+  leave_session(store, config, scales, "cause", true);
 }
 
 }  // namespace selfcal

@@ -44,9 +44,7 @@ std::vector<TouchTarget> lasting(const std::vector<Set>& sets, std::vector<Touch
 }  // namespace
 
 bool Analyst::can_check() const {
-  if (c_.models.session() == 0 || lasting(c_.config.sets, c_.config.targets).empty()) return false;
-  const auto base = c_.store.session(c_.models.session());
-  return base && base->config_hash == c_.config_hash() && base->model_hash == c_.models.hash();
+  return !lasting(c_.config.sets, c_.config.targets).empty() && c_.can_compare();
 }
 
 SessionRecord Analyst::new_record(const std::string& why) const {

@@ -45,12 +45,21 @@ void Collector::resume() {
   if (!c_.stored(record)) return;
   const auto give_up = [&](const std::string& why) {
     if (*record) c_.stored(c_.store.set_state((*record)->id, SessionState::aborted, c_.unix_ms()));
-    c_.put(Event::What::planned, false, why);
+    Event event;
+    event.what = Event::What::planned;
+    event.ok = false;
+    event.ended = true;
+    event.why = why;
+    c_.put(std::move(event));
   };
   if (!*record) return give_up("there is no unfinished session");
   if ((*record)->model_hash != c_.models.hash() || (*record)->config_hash != c_.config_hash())
     return give_up("session " + std::to_string((*record)->id) +
                    " was begun with another robot or configuration and is ended");
+  if ((*record)->kind == to_string(SessionKind::check) && !c_.can_compare())
+    return give_up("session " + std::to_string((*record)->id) +
+                   " is ended: a quick check compares with an accepted session, and " +
+                   c_.models.name() + " is active");
   auto plan = c_.store.plan((*record)->id);
   auto touches = c_.store.touches((*record)->id);
   if (!plan || !touches)

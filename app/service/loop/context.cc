@@ -56,6 +56,12 @@ void ServiceContext::tell(const std::string& level, const std::string& text) {
   journal.add(EventRecord{0, unix_ms(), level, text});
 }
 
+bool ServiceContext::can_compare() const {
+  if (models.session() == 0) return false;
+  const auto base = store.session(models.session());
+  return base && base->config_hash == config_hash() && base->model_hash == models.hash();
+}
+
 std::string ServiceContext::config_hash() const {
   return selfcal::config_hash(config, ports.encoders->scales());
 }

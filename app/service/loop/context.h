@@ -52,6 +52,8 @@ struct ServiceContext {
   /// To the log and, the same sentence once an hour at most, to the store.
   void tell(const std::string& level, const std::string& text);
   std::int64_t unix_ms() const { return ports.clock->unix_ms(); }
+  /// The session behind the active parameters is there for a quick check to compare with.
+  bool can_compare() const;
   /// Of what the touches mean; see session.h.
   std::string config_hash() const;
   /// What the schedule is measured against; whether a check is possible is for others to say.

@@ -113,6 +113,7 @@ struct Event {
   bool load_unknown =
       false;             ///< of `planned`: an earlier life may have left the payload on the tool
   bool later = false;    ///< of `planned` that is not ok: it may be, once the robot stands
+  bool ended = false;    ///< of `planned` that is not ok: nothing is left that could be resumed
   bool release = false;  ///< of `planned`: whatever lock may be engaged, first
   Decision decision = Decision::none;
   bool cause = false;  ///< of `decided`: more than noise is left

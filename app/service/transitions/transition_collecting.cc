@@ -11,6 +11,7 @@ void TransitionStep::planned() {
     s_.stored = true;
     s_.session = event_.session;
   }
+  if (event_.ended) s_.unfinished = s_.stored = false;
   if (!event_.ok) return event_.later && s_.by_itself ? postpone() : fault(event_.why);
   s_.stored = true;
   s_.wanted.reset();
