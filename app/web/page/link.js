@@ -47,18 +47,16 @@ function take_changes(state) {
 async function ask_state() {
   const asked = link.robot;
   const query = new URLSearchParams({robot: asked, epoch: link.epoch, version: link.version});
-  let answer;
   try {
-    answer = await fetch("/state?" + query, {headers: own_headers(), cache: "no-store", signal: AbortSignal.timeout(ASK_LIMIT)});
-  } catch (error) {
+    const answer = await fetch("/state?" + query, {headers: own_headers(), cache: "no-store", signal: AbortSignal.timeout(ASK_LIMIT)});
+    const state = answer.ok ? await answer.json() : null, words = answer.ok ? "" : (await answer.text()).trim();
+    link.asks_token = answer.status === 401;
+    link.problem = link.asks_token ? "the token is missing or wrong" : words || (answer.ok ? "" : "the page's server says " + answer.status);
+    return state && asked === link.robot ? take_changes(state) : new Set();
+  } catch (error) {  // it may break off anywhere
     link.problem = "the page's server does not answer";
     return new Set();
   }
-  link.asks_token = answer.status === 401;
-  link.problem = answer.ok ? "" : link.asks_token ? "the token is missing or wrong" : (await answer.text()).trim();
-  if (!answer.ok) return new Set();
-  const state = await answer.json();
-  return asked === link.robot ? take_changes(state) : new Set();
 }
 
 async function send_command(verb) {
