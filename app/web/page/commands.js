@@ -3,15 +3,15 @@
 const VERBS = {
   start: {title: "Start a session", able: status => idle(status)},
   check: {title: "Quick check", able: status => idle(status)},
-  diagnose: {title: "Look for the cause", able: status => idle(status) && status.state !== "awaiting-acceptance"},
+  diagnose: {title: "Look for the cause", able: status => idle(status)},
   done: {title: "Done", main: true, able: status => status.state === "awaiting-person"},
-  abort: {title: "Abort", stop: true, able: status => !idle(status) && status.state !== "awaiting-acceptance"},
+  abort: {title: "Abort", stop: true, able: status => status.state !== "awaiting-acceptance"},  // one that is unfinished, too
   accept: {title: "Accept", main: true, able: status => status.candidate},
   reject: {title: "Reject", able: status => status.candidate},
   rollback: {title: "Roll back", able: status => status.active !== "factory"},
 };
 
-function idle(status) { return ["idle", "awaiting-acceptance", "fault"].includes(status.state); }
+function idle(status) { return ["idle", "fault"].includes(status.state); }
 
 function session_name(session) { return session > 0 ? "session " + session : "the factory's parameters"; }
 
@@ -75,7 +75,9 @@ function words_for(verb) {
     case "check": return motion_words("about a dozen times, and says whether the active parameters still explain them");
     case "diagnose": return motion_words("where that tells apart what may cause the gap that calibration leaves, and says what it is");
     case "done": return [paragraph("What the robot waits for is done: " + status.why + ". It moves on by itself, and nobody may stand in its way.")];
-    case "abort": return [paragraph("Motion stops, and session " + status.session + " ends without a result." + (progress && progress.session === status.session
+    case "abort": if (idle(status)) return [paragraph("A session that is unfinished ends without a result, and what it has collected stays in the store. " +
+      "Nothing begins by itself then before a start.")];
+      return [paragraph("Motion stops, and session " + status.session + " ends without a result." + (progress && progress.session === status.session
       ? " Its " + plural(progress.done, "touch", "touches") + " of " + progress.planned + " stay in the store." : "")),
       paragraph((status.active === "factory" ? "The factory's parameters" : "The parameters of " + status.active) + " stay active.", "soft")];
     case "accept": return accept_words();
