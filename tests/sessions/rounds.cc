@@ -1,6 +1,7 @@
 // A session by rounds: planned anew from what is known, and ended once that is enough.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -85,6 +86,11 @@ TEST(Rounds, PlanTheRestAnewAndGoOnWhereTheServiceIsKilledMeanwhile) {
               before, further_plans(cell), 1e3 * result.endpoint_sigma,
               1e3 * error_of(cell, result));
   EXPECT_GE(further_plans(cell), 3);
+  const auto touched = std::ranges::find_if(
+      cell.progress, [](const ProgressMessage& each) { return !each.set.empty(); });
+  EXPECT_TRUE(std::all_of(touched, cell.progress.end(), [&](const ProgressMessage& each) {
+    return each.session == result.session && each.planned > 0;
+  })) << "planning goes on within the session";
   EXPECT_LT(error_of(cell, result), 0.1e-3);
 }
 

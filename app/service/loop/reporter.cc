@@ -74,7 +74,9 @@ void Reporter::progress(const TouchRecord* touch, const std::string& note) {
   ProgressMessage progress;
   progress.unix_ms = c_.unix_ms();
   progress.robot = c_.config.id;
-  if (c_.extended_state.state == ServiceState::planning) {  // what is planned has no number yet
+  const bool begins =
+      c_.extended_state.state == ServiceState::planning && !c_.extended_state.stored;
+  if (begins) {  // what is planned has no number yet
     progress.kind = to_string(c_.extended_state.kind);
     progress.seconds_left = progress.residual = std::nan("");
     progress.note = note;
