@@ -71,7 +71,8 @@ nlohmann::ordered_json Archive::slots() {
 }
 
 std::optional<Eigen::VectorXd> Archive::planned(std::int64_t session, std::uint32_t step) {
-  if (session != planned_session_) {
+  // A further round of a session adds to its plan.
+  if (session != planned_session_ || step >= plan_.size()) {
     const auto from = store();
     if (!from) return std::nullopt;
     auto plan = (*from)->plan(session);

@@ -5,8 +5,11 @@
 
 #include "app/report/format.h"
 #include "app/report/live/fleet.h"
+#include "app/web/archive.h"
 #include "app/web/changes.h"
 #include "io/files/robot_file.h"
+#include "tests/io/scratch.h"
+#include "tests/io/store_records.h"
 #include "tests/support/domain.h"
 
 namespace selfcal {
@@ -168,6 +171,18 @@ std::shared_ptr<const Robot> two_links(const std::string& first, const std::stri
                            first + "}\n  - {name: j2, joint: revolute, d: 0.4, " + second +
                            "}\n  - {name: tool, joint: fixed, d: 0.1}\n",
                        "two.robot.yaml"));
+}
+
+TEST(Archive, KnowsTheStepsThatAFurtherRoundHasPlanned) {
+  const Scratch scratch;
+  const auto store = opened(scratch.folder());
+  const std::int64_t session = must(store->begin(some_session(), some_plan(2, 6)));
+  Archive archive(scratch.folder(), two_links("d: 0.3", "alpha: 0.2"));
+  EXPECT_TRUE(archive.planned(session, 1));
+  EXPECT_FALSE(archive.planned(session, 2));
+  must(store->extend(session, some_plan(3, 6)));
+  EXPECT_TRUE(archive.planned(session, 4));
+  EXPECT_FALSE(archive.planned(session, 5));
 }
 
 TEST(Changes, AreTheDifferencesOfValuesLargestFirst) {
