@@ -36,10 +36,10 @@ struct HistoryArguments {
 };
 
 void print_sessions(const std::vector<Past>& past) {
-  std::printf("%7s  %-16s  %-5s  %-14s  %-9s  %8s %8s %8s  %7s %5s %4s\n", "session", "when",
+  std::printf("%7s  %-16s  %-5s  %-14s  %-11s  %8s %8s %8s  %7s %5s %4s\n", "session", "when",
               "kind", "answer", "decision", "before", "after", "end pos", "touches", "aside",
               "par");
-  std::printf("%61s%8s %8s %8s\n", "", "mm", "mm", "mm");
+  std::printf("%63s%8s %8s %8s\n", "", "mm", "mm", "mm");
   for (const Past& each : past) {
     const auto& r = each.result;
     std::printf("%7lld  %-16s  %-5s  ", static_cast<long long>(each.session.id),
@@ -52,7 +52,7 @@ void print_sessions(const std::vector<Past>& past) {
     const bool full = each.session.kind != "check", failed = r->answer == ResultAnswer::failed;
     const auto figure = [&](bool known, double value) { return known ? mm(value) : "-"; };
     std::printf(
-        "%-14s  %-9s  %8s %8s %8s  %7d %5d %4s\n", std::string(to_string(r->answer)).c_str(),
+        "%-14s  %-11s  %8s %8s %8s  %7d %5d %4s\n", std::string(to_string(r->answer)).c_str(),
         std::string(to_string(r->decision)).c_str(), figure(!failed, r->check_before).c_str(),
         figure(!failed, r->check_after).c_str(),
         figure(full && !failed && std::isfinite(r->endpoint_sigma), r->endpoint_sigma).c_str(),

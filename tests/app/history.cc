@@ -171,11 +171,26 @@ TEST_F(History, TellsOfResultsNewestFirstWithDriftAndSlots) {
   EXPECT_LT(third, second);
   EXPECT_LT(second, first);
   EXPECT_THAT(ran.out, HasSubstr("aborted         by command"));
-  EXPECT_THAT(ran.out, HasSubstr("improved        applied        1.92   0.0228"));
+  EXPECT_THAT(ran.out, HasSubstr("improved        applied          1.92   0.0228"));
   EXPECT_THAT(ran.out, HasSubstr("+2.500  (+0.500)"));
   EXPECT_THAT(ran.out, HasSubstr("active     session 2"));
   EXPECT_THAT(ran.out, HasSubstr("previous   session 1"));
   EXPECT_THAT(ran.out, HasSubstr("candidate  none"));
+}
+
+TEST_F(History, KeepsItsColumnsBesideAResultThatWasRolledBack) {
+  accepted(2e-3);
+  accepted(2.5e-3);
+  ASSERT_TRUE(store_->roll_back(kFirst));
+
+  const std::string out = history("").out;
+
+  const auto column = [&](const std::string& line) {
+    const std::size_t at = out.find(line);
+    return at == std::string::npos ? at : out.find("0.0228", at) - at;
+  };
+  EXPECT_THAT(out, HasSubstr("rolled-back"));
+  EXPECT_EQ(column("      2  2026"), column("      1  2026")) << out;
 }
 
 TEST_F(History, PrintsRecordsAndEventsInJson) {
