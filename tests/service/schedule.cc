@@ -115,6 +115,13 @@ std::vector<std::int64_t> sessions_between(const Schedule& schedule, std::int64_
   return began;
 }
 
+TEST(Schedule, FollowsATimeZoneThatIsChangedWhileTheServiceRuns) {
+  const Berlin berlin;
+  ASSERT_EQ(utc_offset(kMidnight), 2 * 3600);
+  setenv("TZ", "EST5", 1);
+  EXPECT_EQ(utc_offset(kMidnight), -5 * 3600);
+}
+
 TEST(Schedule, IsDueOnceAtATimeOfDayThatComesTwiceInAutumn) {
   const Berlin berlin;
   Schedule schedule;

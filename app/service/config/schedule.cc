@@ -43,6 +43,7 @@ std::string hours(double value) {
 int utc_offset(std::int64_t unix_ms) {
   const std::time_t t = unix_ms / 1000;
   std::tm local{};
+  tzset();  // the zone may have been changed since
   localtime_r(&t, &local);
   return static_cast<int>(local.tm_gmtoff);
 }
