@@ -86,9 +86,9 @@ TrialCause scale_error(const TrialWorld& world, Random& random) {
   const AirRecord air = world.air.lagged(uniform(random, 0, 600));
   return {.where = {"tracker"},
           .physics = "the air bends and slows the beam as it grows warm",
-          .act = [=, &world](const Instant& at, Deviation& out) {
-            out.tip += 1e-6 * (air.at(at.time) - air.celsius.front()) *
-                       (at.poses.back().translation() - world.device);
+          .act = [=](const Instant& at, Deviation& out) {
+            out.tip +=
+                1e-6 * (air.at(at.time) - air.celsius.front()) * at.poses.back().translation();
           }};
 }
 

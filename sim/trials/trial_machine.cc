@@ -208,7 +208,7 @@ class TrialMaker {
     Eigen::Vector3d p = deviating_tip(d, at, nullptr) + noise_.row(at.row).transpose();
     if (astray > 0)
       p += astray * Eigen::Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
-    session_.data.rows.position.row(at.row) = (p - session_.world.device).transpose();
+    session_.data.rows.position.row(at.row) = p.transpose();
   }
 
   /// What is visible after all at the final rows, and how far a told fit closes the gap.

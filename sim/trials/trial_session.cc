@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
-#include "constraints/methods/shared/seen_point.h"
 #include "constraints/sampling/configurations.h"
 #include "constraints/sampling/random_poses.h"
 #include "kinematics/expects.h"
@@ -34,7 +32,7 @@ class SessionMaker {
     if (plan_.touches)
       place_surfaces();
     else
-      place_tracker();
+      add_set("tracker", "position");
     sample();
     if (!out_.unreached.empty()) return std::move(out_);
     time_rows();
@@ -58,17 +56,9 @@ class SessionMaker {
     Node entry = Node::map();
     entry.set("method", Node::of(method));
     if (!plan_.touches) entry.set("noise", Node::of(2e-5));
-    if (!plan_.touches) entry.set("frame", Node::of(std::string("unknown")));
     Problems problems;
     out_.data.sets.push_back(make_set(name, entry, problems));
     expects(!problems.any(), "a trial's set is well formed");
-  }
-
-  /// A few metres off, its axes along the world's.
-  void place_tracker() {
-    add_set("tracker", "position");
-    const double away = uniform(random_, 2, 4), to = uniform(random_, 0, 2 * std::numbers::pi);
-    out_.world.device = {away * std::cos(to), away * std::sin(to), uniform(random_, -0.5, 1)};
   }
 
   void place_surfaces() {
@@ -106,9 +96,6 @@ class SessionMaker {
         const TrialSurface& surface = out_.world.surfaces[static_cast<size_t>(s)];
         request.nuisance =
             out_.data.sets[s].method->nuisance_of({surface.normal, surface.distance});
-      } else {
-        request.nuisance = SeenPoint(true, false).start({});
-        request.nuisance->head<3>() = out_.world.device;
       }
       requests.push_back(request);
     }

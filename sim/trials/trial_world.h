@@ -63,11 +63,10 @@ AirRecord draw_air(double duration, Random& random);
 bool runs_on_legs(const Robot& robot);
 
 struct TrialWorld {
-  const Robot* robot = nullptr;                      ///< nominal
-  std::vector<double> mass;                          ///< kg, by link, true
-  std::vector<Eigen::Vector3d> com;                  ///< m, by link, in its frame, true
-  std::vector<TrialSurface> surfaces;                ///< by set; none where positions are tracked
-  Eigen::Vector3d device = Eigen::Vector3d::Zero();  ///< where the tracker stands (m, world)
+  const Robot* robot = nullptr;        ///< nominal
+  std::vector<double> mass;            ///< kg, by link, true
+  std::vector<Eigen::Vector3d> com;    ///< m, by link, in its frame, true
+  std::vector<TrialSurface> surfaces;  ///< by set; none where positions are tracked
   std::vector<Instant> rows;
   AirRecord air;
   double duration = 0;  ///< s

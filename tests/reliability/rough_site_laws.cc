@@ -67,8 +67,8 @@ TrialCause wrong_scale(const TrialWorld& world, Random& random) {
   const double other = uniform(random, 0.5, 1.5), period = uniform(random, 0.02, 0.1);
   return {.where = {"tracker"},
           .physics = "a wrong refractive index with a ripple, another after a restart",
-          .act = [=, &world](const Instant& at, Deviation& out) {
-            const Eigen::Vector3d p = at.poses.back().translation() - world.device;
+          .act = [=](const Instant& at, Deviation& out) {
+            const Eigen::Vector3d p = at.poses.back().translation();
             const double size = at.time < again ? 1 : other;
             out.tip +=
                 kTenth * (size * p + 0.15 * std::sin(6.2832 * p.norm() / period) * p.normalized());
