@@ -15,7 +15,9 @@ FittedCorrection fit_correction(const std::shared_ptr<const Robot>& geometry, co
   for (const FoundEffect& each : correction)
     free.effect_sigma.insert(free.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
   fit.model = correct(geometry, entries_of(correction), context, problems);
-  expects(fit.model != nullptr, "what was found is effects that the robot can have");
+  expects(fit.model != nullptr,
+          "what was found is effects that the robot can have" +
+              (problems.any() ? ": " + problems.list.front() : std::string()));
   fit.equations = std::make_unique<Equations>(*fit.model, data, Use::fit);
   for (const Parameter& p : fit.model->parameters())
     if (p.part == Part::effect) free.free.push_back(p.name);

@@ -154,7 +154,7 @@ TEST_F(Program, LetsASurfacesFormOfTheRobotsFileActOnItsRows) {
   const auto flat = before();
   const std::string file = data + "/rx90.robot.yaml", robot = text_of(file);
   const std::string form =
-      "effects:\n  - {effect: plane_form_error, a: 1.0, b: 0, c: 0, "
+      "effects:\n  - {effect: plane_form_error, a: 0.1, b: 0, c: 0, "
       "center: [1, 0, 0.5], normal: [0, 0, 1], at: ";
   std::ofstream(file) << robot << form << flat.begin()->first << "}\n";
   const auto bent = before();
@@ -267,6 +267,19 @@ TEST_F(Program, RefusesOptionsThatWouldChangeNothing) {
     EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(Program, PlansWithWhatAResultKnowsAlready) {
+  const std::string data = simulated(), out = (folder_ / "result").string();
+  ASSERT_EQ(run_selfcal("identify " + data + " --out " + out).status, 0);
+  const std::string plan = "plan " + data + "/rx90.robot.yaml --method position --count 6 --json";
+  const Ran alone = run_selfcal(plan, true);
+  const Ran with = run_selfcal(plan + " --prior " + out + "/result.json", true);
+  ASSERT_EQ(with.status, 0) << with.out;
+  const auto sigma = [](const Ran& ran) {
+    return nlohmann::json::parse(ran.out)["planned"]["sigma"].get<double>();
+  };
+  EXPECT_LT(sigma(with), sigma(alone));
 }
 
 TEST_F(Program, PlansACellAsTheServiceChecksIt) {
