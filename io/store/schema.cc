@@ -134,7 +134,8 @@ Result<int> version(sqlite3* database) {
 
 namespace {
 
-/// The columns of all tables, a line a table; the order and the types of both count.
+/// The columns of all tables, and which other tables they refer to, a line a table; the order and
+/// the types count.
 Result<std::string> columns(sqlite3* database) {
   std::string all;
   for (const Verified& table : kVerified) {
@@ -144,7 +145,13 @@ Result<std::string> columns(sqlite3* database) {
                      " FROM pragma_table_xinfo(?1)",
                      {table.table});
     if (!list) return list;
-    all += table.table + (": " + *list) + "\n";
+    const Result<std::string> references =
+        sqlite::text(database,
+                     "SELECT coalesce(group_concat(\"from\" || ' ' || \"table\"), '')"
+                     " FROM pragma_foreign_key_list(?1)",
+                     {table.table});
+    if (!references) return references;
+    all += table.table + (": " + *list) + "; " + *references + "\n";
   }
   return all;
 }
