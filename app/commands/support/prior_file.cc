@@ -9,6 +9,7 @@ namespace selfcal {
 namespace {
 
 constexpr std::size_t kMostResultBytes = 64 << 20;
+constexpr double kRoundedInFiles = 1e-9;  // of both sigmas: what either half of a matrix is off by
 
 /// The parameters that the covariance is of; a sentence where there is something else.
 Result<std::vector<int>> parameters_of(const nlohmann::json& covariance, const Robot& robot,
@@ -46,17 +47,21 @@ Result<Eigen::MatrixXd> read_prior(const std::filesystem::path& path, const Robo
   const auto broken = [&] {
     return bad_input(path.string() + ": its covariance is no symmetric matrix of its parameters");
   };
+  const auto count = static_cast<Eigen::Index>(list->size());
+  Eigen::MatrixXd told(count, count);
   if (matrix.size() != list->size()) return broken();
   for (std::size_t a = 0; a < list->size(); ++a) {
     if (!matrix[a].is_array() || matrix[a].size() != list->size()) return broken();
     for (std::size_t b = 0; b < list->size(); ++b) {
-      if (!matrix[a][b].is_number() || !matrix[b].is_array() || matrix[b].size() <= a ||
-          matrix[b][a] != matrix[a][b])
-        return broken();
-      C((*list)[a], (*list)[b]) = matrix[a][b].get<double>();
+      if (!matrix[a][b].is_number()) return broken();
+      told(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = matrix[a][b].get<double>();
     }
-    if (!(matrix[a][a].get<double>() > 0)) return broken();
   }
+  if (!(told.diagonal().array() > 0).all()) return broken();
+  const Eigen::VectorXd sigma = told.diagonal().cwiseSqrt();
+  const Eigen::ArrayXXd apart = (told - told.transpose()).array().abs();
+  if (!(apart <= kRoundedInFiles * (sigma * sigma.transpose()).array()).all()) return broken();
+  C(*list, *list) = (told + told.transpose()) / 2;
   return C;
 }
 
