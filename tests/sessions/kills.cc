@@ -79,7 +79,7 @@ void expect_same(const SessionAnswer& found, const SessionAnswer& wanted) {
 /// Kills the service again and again until `kills` are done, over as many sessions as that takes.
 void kill_at_random(bool live, const std::string& preload, int kills, std::uint64_t seed) {
   CellOptions options;
-  options.touches = 8;
+  options.touches = 14;  // few enough to be quick, enough that the answer is clear
   options.live = live;
   options.id = "undisturbed";
   SessionAnswer wanted;
