@@ -139,19 +139,15 @@ namespace {
 Result<std::string> columns(sqlite3* database) {
   std::string all;
   for (const Verified& table : kVerified) {
-    const Result<std::string> list =
-        sqlite::text(database,
-                     "SELECT group_concat(name || ' ' || type || ' ' || \"notnull\" || ' ' || pk)"
-                     " FROM pragma_table_xinfo(?1)",
-                     {table.table});
+    const Result<std::string> list = sqlite::text(
+        database,
+        "SELECT (SELECT group_concat(name || ' ' || type || ' ' || \"notnull\" || ' ' || pk)"
+        " FROM pragma_table_xinfo(?1)) || coalesce('; ' ||"
+        " (SELECT group_concat(\"from\" || ' ' || \"table\") FROM pragma_foreign_key_list(?1)), "
+        "'')",
+        {table.table});
     if (!list) return list;
-    const Result<std::string> references =
-        sqlite::text(database,
-                     "SELECT coalesce(group_concat(\"from\" || ' ' || \"table\"), '')"
-                     " FROM pragma_foreign_key_list(?1)",
-                     {table.table});
-    if (!references) return references;
-    all += table.table + (": " + *list) + "; " + *references + "\n";
+    all += table.table + (": " + *list) + "\n";
   }
   return all;
 }

@@ -19,8 +19,8 @@ std::span<const Migration> migrations();
 /// The version of the file: PRAGMA user_version, 0 for an empty one.
 Result<int> version(sqlite3* database);
 
-/// Whether the file has the columns and references that its version has: the text of the schema is a row like any
-/// other, and may be damaged.
+/// Whether the file has the columns and references that its version has: the text of the schema is
+/// a row like any other, and may be damaged.
 Result<bool> has_its_columns(sqlite3* database);
 
 /// Brings the file from its version to the end of `list` in one transaction, so that a failure
