@@ -22,7 +22,6 @@ struct DiagnosisConstants {
     /// Probability that noise stays below; 1 - 1e-3 to 1 - 1e-7 [habit]
     double far = 1 - 1e-5;
     double median_to_sigma = 1.4826;  ///< of a normal variable [exact]
-    double at_once = 60;              ///< s, between immediate repeats at most; 10 to 600 [physics]
     double fewest_visits = 6;         ///< freedoms that tell a visit's noise; 4 to 20 [habit]
     double most_of_visits = 10;       ///< over the noise of immediate repeats; 3 to 100 [physics]
     /// Of the equations, that unknowns take at most where noise is told from the middle of what is

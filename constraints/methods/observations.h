@@ -12,6 +12,9 @@
 
 namespace selfcal {
 
+/// s, between immediate repeats at most; 10 to 600 [physics]
+inline constexpr double kAtOnce = 60;
+
 /// Of Observations::check: the row says what another one says in every digit.
 inline constexpr char kCopy = 2;
 
@@ -66,7 +69,7 @@ std::vector<int> configurations(const Observations& rows);
 
 /// Whether `row` was measured where the row before it was: both of one set, group and part, the
 /// readings and the load the same in every digit, each joint come from the same side, no more than
-/// a minute later where both have their times.
+/// kAtOnce later where both have their times.
 bool repeats_row_before(const Observations& rows, int row);
 
 /// What else held when `rows` were taken, a lane each.

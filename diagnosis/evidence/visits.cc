@@ -35,7 +35,7 @@ std::vector<int> visits(const Observations& rows) {
   int last = -1, count = -1;
   for (const int row : in_time(rows)) {
     const bool again = last >= 0 && configuration[row] == configuration[last] &&
-                       !(timed && rows.time[row] - rows.time[last] > kDiagnosis.rows.at_once);
+                       !(timed && rows.time[row] - rows.time[last] > kAtOnce);
     count += !again;
     visit[row] = count;
     last = row;

@@ -11,7 +11,7 @@
 namespace selfcal {
 
 /// By row, its visit: rows of one set and `repeat` are of one visit where, in time, none of another
-/// configuration comes between them and no more than kDiagnosis.rows.at_once passes. Without times
+/// configuration comes between them and no more than kAtOnce passes. Without times
 /// the order of the rows is the time.
 std::vector<int> visits(const Observations& rows);
 
