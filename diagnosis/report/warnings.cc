@@ -15,10 +15,11 @@ std::string of_fits(const HoldoutValidation& validation) {
   return "a fit did not converge: " + validation.stop_reason;
 }
 
-std::string of_gears(const LinearisedModel& linearised) {
+/// With everything found in the model, which may be what a gear alone would have stood for.
+std::string of_gears(const HoldoutValidation& validation) {
   std::string gears;
-  const std::vector<Parameter>& parameters = linearised.geometry().parameters();
-  const Fit& fitted = linearised.adjusted().fitted;
+  const std::vector<Parameter>& parameters = validation.model->parameters();
+  const Fit& fitted = validation.all.fitted;
   for (size_t i = 0; i < parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double off = fitted.state.xi[at] - parameters[i].nominal;
@@ -110,7 +111,7 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
                                      const HoldoutValidation& validation) {
   std::vector<std::string> list;
   for (const std::string& each :
-       {of_fits(validation), of_gears(linearised), of_noise(linearised, data), of_order(data),
+       {of_fits(validation), of_gears(validation), of_noise(linearised, data), of_order(data),
         of_masses(linearised)})
     if (!each.empty()) list.push_back(each);
   return list;
