@@ -17,6 +17,7 @@
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
 #include "diagnosis/search/causes.h"
+#include "diagnosis/search/naming.h"
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
 #include "diagnosis/validation/folds.h"
@@ -203,8 +204,7 @@ void cross_validate(const std::shared_ptr<const Robot>& robot, const DataSet& da
   }
   if (diagnosis.named.empty())  // a third may name what the whole does not
     for (ValidationRow& row : diagnosis.validation_rows) row.after = row.before;
-  diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom);
-  diagnosis.gap.validated_on = "folds";
+  diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom, "folds");
 }
 
 }  // namespace

@@ -14,13 +14,6 @@ namespace {
 
 std::string figure(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
-/// The same figures with what is named in place of everything found.
-Gap without_the_rest(const Diagnosis& diagnosis, const DiagnosisOptions& options) {
-  Gap gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom);
-  gap.validated_on = diagnosis.gap.validated_on;
-  return gap;
-}
-
 }  // namespace
 
 std::string leave_out_what_does_not_carry_over(const DataSet& data, const DiagnosisOptions& options,
@@ -38,7 +31,8 @@ std::string leave_out_what_does_not_carry_over(const DataSet& data, const Diagno
   diagnosis.values = kept.adjusted.fitted.state.xi;
   diagnosis.converged = diagnosis.converged && kept.adjusted.fitted.converged;
   for (ValidationRow& row : diagnosis.validation_rows) row.all = row.after;
-  diagnosis.gap = without_the_rest(diagnosis, options);
+  diagnosis.gap =
+      gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom, before.validated_on);
   return "everything found leaves " + figure(before.rms_all) + " of the rows kept aside, and " +
          figure(before.rms_after) +
          (rest > 1 ? " without the " + std::to_string(rest) + " effects that are"

@@ -9,7 +9,7 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
-#include "diagnosis/search/causes.h"
+#include "diagnosis/search/naming.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/effect.h"
 #include "kinematics/expects.h"
@@ -200,9 +200,8 @@ void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnos
   for (FoundEffect& each : diagnosis.found) each.named = false;
   if (named) diagnosis.model = without_names(diagnosis.model);
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
-  std::string validated_on = std::move(diagnosis.gap.validated_on);
-  diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom);
-  diagnosis.gap.validated_on = std::move(validated_on);
+  diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom,
+                         diagnosis.gap.validated_on);
   const auto unknown = std::ranges::find(diagnosis.candidates, kUnknown, &CauseResult::effect);
   if (unknown != diagnosis.candidates.end() && unknown->probability < kDiagnosis.report.withdrawn) {
     const double others =

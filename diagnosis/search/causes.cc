@@ -162,44 +162,6 @@ class Teller {
   const Posterior& posterior_;
 };
 
-/// Probability of the cause or of known ones that look the same on these rows.
-double with_look_alikes(const LinearisedModel& linearised, const Posterior& posterior,
-                        const CauseResult& cause) {
-  const auto answers = [&](int c) {
-    const Candidate& candidate = linearised.candidates().list[c];
-    return candidate.effect == cause.effect ||
-           std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
-  };
-  double sum = 0;
-  for (const Hypothesis& h : posterior.hypotheses)
-    if (std::ranges::any_of(h.candidates, answers)) sum += std::exp(h.log_weight);
-  return std::min(sum, 1.0);
-}
-
-/// What the most probable causes and all that makes them more probable explain of the squares, and
-/// what is left beyond the noise; both as the geometry alone sees them.
-struct Shares {
-  double explained = 0, left = 0;
-};
-Shares shares(const EvidenceEvaluator& evaluator, const Posterior& posterior) {
-  const Hypothesis* best = &posterior.hypotheses.front();
-  for (const Hypothesis& h : posterior.hypotheses)
-    if (evaluator.structure(h.structure).kind > 0) {
-      best = &h;
-      break;
-    }
-  const MarginalLikelihood& plain = evaluator.marginal_likelihood(0);
-  Hypothesis whole = *best;
-  whole.structure = 0;
-  whole = evaluator.grow(std::move(whole), kDiagnosis.naming.most_explaining);
-  const double after = plain.given(evaluator.terms(whole)).total() * evaluator.noise_variance(0);
-  const double before = plain.total() * evaluator.noise_variance(0);
-  const double noise =
-      evaluator.marginal_likelihood(best->structure).estimate(evaluator.terms(*best)).variance *
-      evaluator.noise_variance(best->structure) * plain.freedom();
-  return {before - after, after - noise};
-}
-
 }  // namespace
 
 std::string label(const std::string& effect, const std::string& at) {
@@ -224,85 +186,6 @@ std::optional<KernelDomain> domain_of_unknown(const EvidenceEvaluator& evaluator
   for (const auto& [kind, weight] : by_domain)
     if (weight > all / 2) return static_cast<KernelDomain>(kind);
   return std::nullopt;
-}
-
-CauseResult without_cause(const Posterior& posterior) {
-  if (posterior.unknown > kDiagnosis.naming.probable)
-    return {.effect = kUnknown, .probability = posterior.unknown};
-  return {.effect = kNone, .probability = posterior.none};
-}
-
-CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
-                        const Posterior& posterior, const std::vector<CauseResult>& causes,
-                        const DiagnosisOptions& options) {
-  const CauseResult unknown{.effect = kUnknown, .probability = posterior.unknown};
-  if (posterior.none >= options.name_below_none) return without_cause(posterior);
-  const auto rank = [](const CauseResult& each) {
-    return each.of_its_kind() > kDiagnosis.naming.probable ? 1 + each.visible : each.of_its_kind();
-  };
-  const CauseResult* best = nullptr;
-  for (const CauseResult& each : causes)
-    if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
-  if (!best) return unknown;
-  CauseResult known = *best;
-  known.together = with_look_alikes(linearised, posterior, known);
-  if (posterior.unknown < kDiagnosis.naming.probable)
-    return posterior.unknown > known.together ? unknown : known;
-  // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
-  if (known.together < std::min(kDiagnosis.naming.sure, posterior.unknown)) return unknown;
-  const Shares part = shares(evaluator, posterior);
-  return part.left > kDiagnosis.naming.most_left * (part.left + part.explained) ? unknown : known;
-}
-
-CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
-                    const DiagnosisOptions& options) {
-  const bool structure = p.unknown <= options.name_below_p;
-  if (named.effect == kUnknown && structure) return named;
-  if (names_effect(named.effect) && p.known <= options.name_below_p) return named;
-  if (named.effect != kUnknown && structure && posterior.unknown > kDiagnosis.naming.surely_unknown)
-    return {.effect = kUnknown, .probability = posterior.unknown};
-  const double noise = named.effect == kUnknown ? p.unknown : p.known;
-  return {.effect = kNone,
-          .probability = std::max(posterior.none, least_probability_of_none(noise))};
-}
-
-CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
-                        const DiagnosisOptions& options) {
-  const auto none = std::ranges::find(causes, kNone, &CauseResult::effect);
-  if (!names_effect(verdict.effect) || none == causes.end() ||
-      none->probability < options.name_below_none)
-    return verdict;
-  return {.effect = kNone, .probability = none->probability};
-}
-
-std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
-                                     const CauseResult& verdict, const ByNoise& p,
-                                     const DiagnosisOptions& options) {
-  std::vector<CauseResult> list;
-  if (verdict.effect == kNone) return list;
-  if (p.known <= options.name_below_p)
-    std::ranges::copy_if(causes, std::back_inserter(list), [&](const CauseResult& each) {
-      return names_effect(each.effect) && each.effect != verdict.effect &&
-             each.of_its_kind() >= kDiagnosis.naming.sure;
-    });
-  std::ranges::stable_sort(list, std::ranges::greater{}, &CauseResult::visible);
-  if (names_effect(verdict.effect)) list.insert(list.begin(), verdict);
-  return list;
-}
-
-void agree(std::vector<CauseResult>& causes, CauseResult& verdict) {
-  const auto of = [&](const std::string& effect) {
-    return std::ranges::find(causes, effect, &CauseResult::effect);
-  };
-  const auto none = of(kNone);
-  if (verdict.effect == kNone && none != causes.end() && verdict.probability > none->probability) {
-    const double others = (1 - verdict.probability) / std::max(1 - none->probability, 1e-12);
-    for (CauseResult& each : causes) each.probability *= std::min(others, 1.0);
-    none->probability = verdict.probability;
-  }
-  std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
-  if (const auto own = of(verdict.effect); own != causes.end())
-    verdict.probability = own->probability;
 }
 
 }  // namespace selfcal

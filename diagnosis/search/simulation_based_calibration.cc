@@ -8,7 +8,7 @@
 #include <random>
 
 #include "diagnosis/constants.h"
-#include "diagnosis/search/causes.h"
+#include "diagnosis/search/naming.h"
 
 namespace selfcal {
 namespace {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <random>
+#include <utility>
 
 #include "diagnosis/constants.h"
 
@@ -94,8 +95,10 @@ double largest(const std::vector<ValidationRow>& rows, Square square) {
 
 }  // namespace
 
-Gap gap_of(const std::vector<ValidationRow>& all, unsigned long long seed, double floor_freedom) {
+Gap gap_of(const std::vector<ValidationRow>& all, unsigned long long seed, double floor_freedom,
+           std::string validated_on) {
   Gap gap;
+  gap.validated_on = std::move(validated_on);
   gap.with_false_rows = {rms(all, &ValidationRow::before), rms(all, &ValidationRow::after),
                          rms(all, &ValidationRow::all)};
   std::vector<ValidationRow> rows;

@@ -50,6 +50,7 @@ struct Gap {
 /// The figures of these rows. The intervals are of 1000 resamples of whole blocks, each with a
 /// noise floor drawn from what `floor_freedom` freedoms leave open of it (infinite: it is known).
 Gap gap_of(const std::vector<ValidationRow>& rows, unsigned long long seed,
-           double floor_freedom = std::numeric_limits<double>::infinity());
+           double floor_freedom = std::numeric_limits<double>::infinity(),
+           std::string validated_on = "check");
 
 }  // namespace selfcal

@@ -1,4 +1,4 @@
-#include "diagnosis/search/causes.h"
+#include "diagnosis/search/naming.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,46 @@
+// Which of the causes are named, from their probabilities and from how often noise does as well.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/evidence/evidence_evaluator.h"
+#include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/findings.h"
+
+namespace selfcal {
+
+/// What is said where no cause is named: `none`, or `unknown` where that is more probable than not.
+CauseResult without_cause(const Posterior& posterior);
+
+/// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
+/// than not the largest; `unknown` where much is left after all of these.
+CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
+                        const Posterior& posterior, const std::vector<CauseResult>& causes,
+                        const DiagnosisOptions& options);
+
+/// How often noise does as well: as a known cause, and as structure of no known one.
+struct ByNoise {
+  double known = 1, unknown = 1;
+};
+
+/// `named` where the rows bear it: where noise does as well too often, there is `none` or, without
+/// a known cause, structure.
+CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise& p,
+                    const DiagnosisOptions& options);
+
+/// `verdict`, or none where a cause is named and `none` among the calibrated `causes` is as
+/// probable as no named cause may have it.
+CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
+                        const DiagnosisOptions& options);
+
+/// What is named beside a verdict, which comes first: each known cause that is sure; the largest
+/// first. None where the verdict is `none`.
+std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
+                                     const CauseResult& verdict, const ByNoise& p,
+                                     const DiagnosisOptions& options);
+
+/// One probability for one thing: that of `none` among `causes` becomes the verdict's where that is
+/// none, the others' give way in proportion; then the verdict has that of its entry.
+void agree(std::vector<CauseResult>& causes, CauseResult& verdict);
+
+}  // namespace selfcal
