@@ -165,8 +165,8 @@ std::string headline(const Solution& solution) {
               printed(" to %s %s instead of %s %s on ", plain_figure(1e3 * check.rms_after).c_str(),
                       unit, plain_figure(1e3 * check.rms_before).c_str(), unit) +
               counted(check.rows, "row") + " kept aside";
-  // False rows among those kept aside count; say what is left without them.
-  if (check.rows > 0 && check.rms_without_outliers < 0.9 * check.rms_after)
+  // False rows among those kept aside count; say what is left without them, where any row is.
+  if (check.rms_without_outliers > 0 && check.rms_without_outliers < 0.9 * check.rms_after)
     figures +=
         with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_outliers);
   const bool files_first = std::ranges::any_of(
