@@ -22,8 +22,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kDrifting = 8;  // parameters shown
 constexpr int kAll = 1'000'000;       // more than any store has
 

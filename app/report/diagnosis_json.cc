@@ -8,8 +8,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json of_gap(const Gap& gap) {
   const auto known = [&](double number) { return gap.rows > 0 ? finite(number) : Json(nullptr); };
   Json json = Json::object({{"rms_nominal", known(gap.rms_nominal)},

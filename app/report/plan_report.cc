@@ -9,8 +9,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string joined_names(const std::vector<Set>& sets) {
   std::string names;
   for (const Set& each : sets) names += (names.empty() ? "" : ", ") + each.name;

@@ -31,7 +31,7 @@ void Board::drop(const std::string& robot) {
   topics_.erase(robot);
 }
 
-std::optional<Board::Json> Board::part(const std::string& robot, const std::string& part) const {
+std::optional<Json> Board::part(const std::string& robot, const std::string& part) const {
   const std::lock_guard lock(mutex_);
   const auto topic = topics_.find(robot);
   if (topic == topics_.end()) return std::nullopt;

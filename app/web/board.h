@@ -7,16 +7,15 @@
 #include <deque>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+
+#include "io/files/json_parts.h"
 
 namespace selfcal {
 
 class Board {
  public:
-  using Json = nlohmann::ordered_json;
-
   /// `epoch` tells this board from one of before: a page that asks with another gets everything.
   explicit Board(std::string epoch) : epoch_(std::move(epoch)) {}
 

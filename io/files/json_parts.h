@@ -7,23 +7,23 @@
 
 namespace selfcal {
 
+/// Entries stay in the order in which they are put there.
+using Json = nlohmann::ordered_json;
+
 /// The number, or null: JSON knows neither NaN nor infinity.
-inline nlohmann::ordered_json finite(double number) {
-  return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json(nullptr);
-}
+inline Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 /// `convert` of each element, in order.
 template <class List, class Convert>
-nlohmann::ordered_json array_of(const List& list, Convert convert) {
-  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+Json array_of(const List& list, Convert convert) {
+  Json array = Json::array();
   for (const auto& each : list) array.push_back(convert(each));
   return array;
 }
 
 /// What `text` says that somebody else wrote; discarded where it is no JSON, or deeper than ours
 /// ever is: it is written out again by a function that calls itself for each level.
-inline nlohmann::ordered_json foreign_json(const std::string& text) {
-  using Json = nlohmann::ordered_json;
+inline Json foreign_json(const std::string& text) {
   constexpr int kDeepest = 64;
   bool too_deep = false;
   const auto keep = [&](int depth, Json::parse_event_t, Json&) {

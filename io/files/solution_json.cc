@@ -6,8 +6,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Standard deviations are negative where there is none.
 Json sigma(double number) { return number < 0 ? Json(nullptr) : finite(number); }
 

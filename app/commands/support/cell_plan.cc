@@ -86,7 +86,6 @@ std::string cell_plan_report(const Config& config, const CellPlan& cell) {
 }
 
 nlohmann::ordered_json cell_plan_json(const Config& config, const CellPlan& cell) {
-  using Json = nlohmann::ordered_json;
   const auto q_of = [](const Eigen::VectorXd& q) { return array_of(q, finite); };
   const std::string what = lacking(cell);
   Json json{{"robot", config.robot->name()}, {"problem", what}, {"target", config.target}};

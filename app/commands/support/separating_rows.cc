@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/report/format.h"
 #include "constraints/planning/tour.h"
 #include "diagnosis/evidence/hypothesis.h"
 #include "io/files/file.h"
+#include "io/files/json_parts.h"
 
 namespace selfcal {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::size_t kMostBytes = 64 << 20;  // of a diagnosis
 

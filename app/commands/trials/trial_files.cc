@@ -1,15 +1,13 @@
 // Truths and answers as JSON.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/trials/trial.h"
 #include "io/files/file.h"
+#include "io/files/json_parts.h"
 
 namespace selfcal {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string text_or_empty(const Json& node, const char* key) {
   const auto found = node.find(key);

@@ -2,18 +2,17 @@
 // table.
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/commands/subcommand.h"
 #include "app/commands/trials/trial.h"
 #include "io/files/file.h"
+#include "io/files/json_parts.h"
 
 namespace selfcal {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// The truth as it was sealed, `hash` being what was published of it.
 Result<std::string> unsealed(const fs::path& folder, const std::string& hash) {

@@ -2,7 +2,6 @@
 // published.
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/commands/subcommand.h"
@@ -12,6 +11,7 @@
 #include "io/files/data_set_file.h"
 #include "io/files/data_set_writer.h"
 #include "io/files/file.h"
+#include "io/files/json_parts.h"
 #include "io/files/robot_file.h"
 #include "sim/trials/trial_machine.h"
 
@@ -19,7 +19,6 @@ namespace selfcal {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 Json ledger_json(const TrialLedger& truth) {
   Json where = Json::object();

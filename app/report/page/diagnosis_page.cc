@@ -11,8 +11,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kMostValidationRows = 5000;  // of a page below 2 MB
 constexpr int kMostDiagnosisPoses = 12;
 

@@ -13,8 +13,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kTolerances = 3, kDay = 86400e3;  // kDay in ms
 constexpr std::size_t kEveryParameter = 100000;
 constexpr double kUpper = 0.975, kLower = 0.025;

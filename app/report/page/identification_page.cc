@@ -16,8 +16,6 @@
 namespace selfcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kMostRows = 2000;  // of a page below 2 MB
 constexpr int kMostPoses = 24;
 
