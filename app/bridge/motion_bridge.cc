@@ -112,7 +112,9 @@ Result<void> MotionBridge::send(Nanoseconds now) {
 
 Result<void> MotionBridge::hear(const GoalNews& news, Nanoseconds now) {
   using What = GoalNews::What;
-  if (!move_ || news.goal != move_->goal) return {};
+  // A goal that was given up before its server answered moves the robot where it is accepted yet.
+  if (!move_ || news.goal != move_->goal)
+    return news.what == What::accepted ? action_.cancel(news.goal) : Result<void>{};
   switch (news.what) {
     case What::accepted:
       move_->accepted = true;

@@ -3,12 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include "app/bridge/touch_relay.h"
 #include "io/dds/encoders.h"
 #include "io/dds/motion.h"
 #include "io/dds/names.h"
 #include "io/dds/senders.h"
-#include "io/dds/trigger.h"
 #include "tests/bridge/controller.h"
 
 namespace selfcal {
@@ -168,6 +166,20 @@ TEST_F(Bridged, RefusesByNameWhatNobodyAnswers) {
   EXPECT_THAT(replies.back().why, HasSubstr("rejected the goal"));
 }
 
+TEST_F(Bridged, CancelsAGoalThatIsAcceptedAfterItWasGivenUp) {
+  start_controller();
+  ask();
+  ASSERT_TRUE(told(Outcome::refused));
+  EXPECT_THAT(replies.back().why, HasSubstr("does not answer"));
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  controller->cancels.clear();  // they came before there was anything to cancel
+
+  controller->accept(controller->goals[0]);
+
+  ASSERT_TRUE(turning([&] { return !controller->cancels.empty(); }));
+  EXPECT_EQ(controller->cancels[0].goal, controller->goals[0].goal);
+}
+
 TEST_F(Bridged, RefusesByNameWhatTheRobotCannot) {
   start_controller();
   const auto why_of = [&](MoveKind kind, std::vector<double> q) {
@@ -242,86 +254,6 @@ TEST_F(Bridged, BelievesNoReplyToAnother) {
   controller->accept(other, false);
   controller->accept(controller->goals[0]);
   ASSERT_TRUE(told(Outcome::accepted));
-}
-
-class Touched : public DdsTest {};
-
-TEST_F(Touched, BecomesTheTriggerWithTheMomentAtWhichItWasWritten) {
-  auto relay = must(TouchRelay::open(
-      participant, "/touch", must(DdsTriggerSender::open(participant, "trigger", wakeup)), wakeup));
-  auto levels =
-      must(DdsReader<dds::StampedBool>::open(participant, ros_topic("trigger"), kExchange));
-  std::optional<DdsWriter<dds::Bool>> touch =
-      must(DdsWriter<dds::Bool>::open(participant, ros_topic("touch"), {}, &wakeup));
-  ASSERT_TRUE(eventually(
-      [&] { return levels.matched() == 1 && relay->publishers() == 1 && touch->matched() == 1; }));
-  std::vector<std::pair<Nanoseconds, bool>> heard;
-  const auto hear = [&] {
-    must(relay->turn(monotonic_now()));
-    must(levels.take([&](const dds::StampedBool& level) {
-      heard.emplace_back(nanoseconds(level.header_.stamp_), level.data_);
-    }));
-  };
-  const dds::Bool open{false}, closed{true};
-  ASSERT_EQ(dds_write_ts(touch->handle(), &open, 5 * kSecond), 0);
-  ASSERT_EQ(dds_write_ts(touch->handle(), &closed, 6 * kSecond + 7), 0);
-  ASSERT_EQ(dds_write_ts(touch->handle(), &closed, 8 * kSecond), 0);
-  ASSERT_TRUE(eventually([&] {
-    hear();
-    return heard.size() >= 4;
-  })) << "repeated";
-  EXPECT_EQ(heard[0], std::pair(5 * kSecond, false));
-  EXPECT_EQ(heard[1], std::pair(6 * kSecond + 7, true));
-  EXPECT_EQ(heard[2], heard[1]) << "a repetition has the stamp of its change";
-
-  touch.reset();
-  ASSERT_TRUE(eventually([&] {
-    hear();
-    return relay->publishers() == 0;
-  }));
-  heard.clear();
-  const Nanoseconds since = monotonic_now();
-  ASSERT_TRUE(eventually([&] {
-    hear();
-    return monotonic_now() - since > 3 * kSecond / 10;
-  }));
-  EXPECT_LE(heard.size(), 1) << "nobody knows the level any more";
-}
-
-TEST_F(Touched, IsNotRepeatedForADriverThatRepeatedItsLevelAndIsSilentNow) {
-  auto relay = must(TouchRelay::open(
-      participant, "/touch", must(DdsTriggerSender::open(participant, "trigger", wakeup)), wakeup));
-  auto levels =
-      must(DdsReader<dds::StampedBool>::open(participant, ros_topic("trigger"), kExchange));
-  auto touch = must(DdsWriter<dds::Bool>::open(participant, ros_topic("touch"), {}, &wakeup));
-  ASSERT_TRUE(eventually(
-      [&] { return levels.matched() == 1 && relay->publishers() == 1 && touch.matched() == 1; }));
-  Nanoseconds now = 100 * kSecond;
-  int heard = 0;
-  const auto turn = [&] {
-    now += kSecond / 10;
-    must(relay->turn(now));
-    must(levels.take([&](const dds::StampedBool&) { ++heard; }));
-  };
-  const dds::Bool open{false};
-  for (int i = 0; i < 10; ++i) {
-    must(touch.write(open));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    turn();
-  }
-  EXPECT_TRUE(eventually([&] {
-    turn();
-    return heard >= 5;
-  }));
-  now += kSecond;
-  for (int i = 0; i < 3; ++i) turn();
-  heard = 0;
-  for (int i = 0; i < 10; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    turn();
-  }
-  EXPECT_EQ(relay->publishers(), 1);
-  EXPECT_EQ(heard, 0);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ Result<void> FastServices::cancel(const GoalId& goal) {
 void FastServices::hear(int status, std::vector<GoalNews>& out) {
   using What = GoalNews::What;
   if (stage_ == Stage::none || status < 1 || status > 6) return;
-  if (stage_ == Stage::sent) out.push_back({goal_, What::accepted, {}});
+  if (stage_ != Stage::accepted) out.push_back({goal_, What::accepted, {}});
   stage_ = status < 4 ? Stage::accepted : Stage::none;
   if (status == 4) out.push_back({goal_, What::done, {}});
   if (status == 5) out.push_back({goal_, What::cancelled, {}});
@@ -73,8 +73,8 @@ Result<void> FastServices::take(std::vector<GoalNews>& out) {
     rejected = rejected || (!reply.accepted_ && stage_ == Stage::sent);
   });
   if (!taken || !rejected) return taken;
-  // Another client's goal may be meant: ours must not move then either.
-  stage_ = Stage::none;
+  // Another client's goal may be meant: ours must not move then either. It may be accepted yet.
+  stage_ = Stage::rejected;
   out.push_back({goal_, GoalNews::What::rejected, {}});
   return cancel(goal_);
 }

@@ -32,7 +32,7 @@ class FastServices final : public GoalServices {
     DdsReader<dds::GoalStatusArray> status;
   };
   /// How far the last goal is known to be.
-  enum class Stage : std::uint8_t { none, sent, accepted };
+  enum class Stage : std::uint8_t { none, sent, rejected, accepted };
   FastServices(std::vector<std::string> joints, Endpoints endpoints)
       : joints_(std::move(joints)), dds_(std::move(endpoints)) {}
   void hear(int status, std::vector<GoalNews>& out);
