@@ -36,7 +36,7 @@ class Iteration {
         prior_(prior),
         rule_(rule),
         stage_(rule.near ? NoiseStage::pooled : NoiseStage::robust),
-        noise_(estimate_noise(equations, equations.norms(start), noise_rule(stage_, 0))),
+        noise_(estimate_noise(equations, equations.norms(start), noise_rule(stage_))),
         system_(equations, prior, start, weighting()) {}
 
   Fit run(const OnIteration& on_iteration) {
@@ -53,7 +53,7 @@ class Iteration {
     fit_.state = system_.state();
     fit_.at = system_.take_factor();
     count_rows();
-    NoiseRule told = noise_rule(stage_, freedom(fit_.covariance));
+    NoiseRule told = noise_rule(stage_, fit_.covariance);
     told.pool = false;  // each set's own
     noise_.estimated = estimate_noise(equations_, fit_.at.norms, told).estimated;
     fit_.noise = std::move(noise_);
@@ -74,13 +74,52 @@ class Iteration {
     }
   }
 
-  NoiseRule noise_rule(NoiseStage stage, double freedom) const {
+  NoiseRule noise_rule(NoiseStage stage) const {
     NoiseRule rule;
-    rule.global_freedom = freedom;
     rule.most_outliers = rule_.most_outliers;
     rule.reject = stage != NoiseStage::robust;
     rule.pool = stage != NoiseStage::nuisance;
     return rule;
+  }
+  NoiseRule noise_rule(NoiseStage stage, const Eigen::MatrixXd& covariance) const {
+    NoiseRule rule = noise_rule(stage);
+    rule.global_freedom = freedom(covariance);
+    if (stage == NoiseStage::nuisance)
+      for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
+        rule.of_lengths.push_back(part_of_lengths(s, covariance));
+    return rule;
+  }
+
+  /// Of the freedoms that the rows of a set fit, those of its lengths, by what lengths and angles
+  /// add to what is said of the parameters; where groups are fitted, too, by their scalars.
+  double part_of_lengths(int set, const Eigen::MatrixXd& covariance) const {
+    const std::vector<Quantity> equations = equations_.data().sets[set].method->equations();
+    const auto angles = static_cast<double>(std::ranges::count(equations, Quantity::angle));
+    const double by_scalars = 1 - angles / static_cast<double>(equations.size());
+    if (angles == 0 || by_scalars == 0 || equations_.plan(set).items.empty() ||
+        equations_.group_freedoms(set) > 0)
+      return by_scalars;
+    constexpr double kNothing = HUGE_VAL;  // the sigma of what says nothing
+    const Scale& scale = noise_.used[set];
+    const double both = fitted(set, scale, covariance);
+    const double lengths = both - fitted(set, {kNothing, scale.angle}, covariance);
+    const double angular = both - fitted(set, {scale.length, kNothing}, covariance);
+    return lengths + angular > 0 ? lengths / (lengths + angular) : by_scalars;
+  }
+
+  /// Freedoms that the rows of a set fit, weighed with `scale`: the trace of what they say of the
+  /// parameters times the covariance of these; and what the equations between own unknowns add.
+  double fitted(int set, const Scale& scale, const Eigen::MatrixXd& covariance) const {
+    Weighting only = weighting();
+    only.passed_over = true;
+    only.scale[set] = scale;
+    only.outlier.assign(only.outlier.size(), 1);
+    for (const SetPlan::Item& item : equations_.plan(set).items)
+      only.outlier[item.row] = noise_.outlier[item.row];
+    const std::vector<int>& columns = system_.columns();
+    const NormalEquations said = equations_.normal_equations(system_.state(), only, columns);
+    const auto n = static_cast<Eigen::Index>(columns.size());
+    return covariance(columns, columns).cwiseProduct(said.H.topLeftCorner(n, n)).sum();
   }
 
   Weighting weighting() const { return {noise_.used, noise_.outlier}; }
@@ -149,14 +188,14 @@ class Iteration {
   /// that happens to fit best would take the weight of all others. Ends when nothing changes and
   /// the iteration has arrived, for that reason.
   void settle(const std::optional<std::string>& arrived) {
-    const double freedoms = freedom(system_.covariance());
+    const Eigen::MatrixXd covariance = system_.covariance();
     const NoiseStage before = stage_;
     if (before == NoiseStage::robust)
       stage_ = NoiseStage::pooled;
-    else if (agrees(freedoms))
+    else if (agrees(freedom(covariance)))
       stage_ = NoiseStage::nuisance;
     const Noise noise =
-        estimate_noise(equations_, system_.passed().norms, noise_rule(stage_, freedoms));
+        estimate_noise(equations_, system_.passed().norms, noise_rule(stage_, covariance));
     const bool keep = before == NoiseStage::nuisance;
     const bool same_rows =
         noise.outlier == noise_.outlier || (keep && regroupings_ == kRegroupings);

@@ -30,6 +30,7 @@ struct SetNoise {
   int lengths = 0, angles = 0;  ///< scalars of a row
   double equations = 0;
   double own = 0, fitted = 0;  ///< freedoms of its own unknowns, and with its part of the robot's
+  double of_lengths = 0;       ///< part of these that the lengths carry
 
   /// So many equations are left to tell of the robot and of the noise.
   double beyond_own() const { return std::max(equations - own, 0.0); }
@@ -45,21 +46,21 @@ struct SetNoise {
 struct Squares {
   double length = 0, angle = 0;  ///< m^2, rad^2
   double lengths = 0, angles = 0;
-  double fitted = 0;
+  double fitted_lengths = 0, fitted_angles = 0;
 
   void operator+=(const Squares& other) {
     length += other.length;
     angle += other.angle;
     lengths += other.lengths;
     angles += other.angles;
-    fitted += other.fitted;
+    fitted_lengths += other.fitted_lengths;
+    fitted_angles += other.fitted_angles;
   }
 
   /// 1 sigma of one scalar; 1 of a quantity that there is none of.
   Scale sigma() const {
-    const double factor = freedom_factor(lengths + angles, fitted);
-    return {lengths > 0 ? std::sqrt(length / lengths) * factor : 1,
-            angles > 0 ? std::sqrt(angle / angles) * factor : 1};
+    return {lengths > 0 ? std::sqrt(length / lengths) * freedom_factor(lengths, fitted_lengths) : 1,
+            angles > 0 ? std::sqrt(angle / angles) * freedom_factor(angles, fitted_angles) : 1};
   }
 };
 
@@ -72,17 +73,23 @@ Squares robust_squares(const SetNoise& set) {
     for (size_t i = 0; i < norms.size(); ++i) norms[i] = set.part(i, angle);
     return rows * scalars * std::pow(median(std::move(norms)) / chi_quantile(scalars, 0.5), 2);
   };
-  return {square(set.lengths, false), square(set.angles, true), rows * set.lengths,
-          rows * set.angles, set.fitted};
+  return {square(set.lengths, false),  square(set.angles, true),
+          rows * set.lengths,          rows * set.angles,
+          set.of_lengths * set.fitted, (1 - set.of_lengths) * set.fitted};
 }
 
 Squares squares(const SetNoise& set, const std::vector<char>& outlier) {
   Squares sum;
-  sum.fitted = set.fitted;
+  sum.fitted_lengths = set.of_lengths * set.fitted;
+  sum.fitted_angles = (1 - set.of_lengths) * set.fitted;
   for (size_t i = 0; i < set.count(); ++i)
     if (!outlier[set.row(i)])
-      sum += {std::pow(set.part(i, false), 2), std::pow(set.part(i, true), 2),
-              static_cast<double>(set.lengths), static_cast<double>(set.angles), 0};
+      sum += {std::pow(set.part(i, false), 2),
+              std::pow(set.part(i, true), 2),
+              static_cast<double>(set.lengths),
+              static_cast<double>(set.angles),
+              0,
+              0};
   return sum;
 }
 
@@ -136,6 +143,9 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
     for (const Quantity quantity : sets[s].method->equations())
       ++(quantity == Quantity::angle ? set.angles : set.lengths);
     set.equations = static_cast<double>(set.count()) * (set.lengths + set.angles);
+    set.of_lengths = set.angles == 0           ? 1
+                     : rule.of_lengths.empty() ? set.lengths / (set.lengths + set.angles + 0.0)
+                                               : rule.of_lengths[s];
     next += set.count();
     set.own = equations.tangent_dimension(static_cast<int>(s)) +
               equations.group_freedoms(static_cast<int>(s));

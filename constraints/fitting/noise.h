@@ -11,7 +11,10 @@ namespace selfcal {
 struct NoiseRule {
   double global_freedom = 0;  ///< parameters that the rows determine, spread over all equations
   double most_outliers = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
-  bool reject = false;        ///< false until the geometry has settled
+  /// By set, the part of its fitted freedoms that its lengths carry, where it has angles, too;
+  /// empty: that of their scalars.
+  std::vector<double> of_lengths = {};
+  bool reject = false;  ///< false until the geometry has settled
   /// One noise for all sets of one method and data sheet: until the geometry has settled, a set
   /// that happens to fit well must not take the weight of the others.
   bool pool = false;

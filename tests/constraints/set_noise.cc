@@ -12,8 +12,9 @@ namespace selfcal {
 namespace {
 
 /// Sets of `robots` simulated ones, every row of which identifies; root mean square of the noise
-/// that is found of the first set, over the one that it has.
-double noise_found(const std::string& sets, double noise, int robots) {
+/// that is found of the first set (of one of its quantities), over the one that it has.
+double noise_found(const std::string& sets, double noise, int robots,
+                   double SetResult::*found = &SetResult::noise_sigma) {
   double squares = 0;
   for (int seed = 1; seed <= robots; ++seed) {
     const Simulated simulated =
@@ -21,7 +22,7 @@ double noise_found(const std::string& sets, double noise, int robots) {
              "\nerrors: {length: 1.0e-3, angle: 1.0e-3}\ncheck: 0\nsets:\n" + sets);
     const Solution solution = identify(rx90(), simulated.data);
     EXPECT_TRUE(solution.converged) << seed;
-    squares += std::pow(solution.sets.front().noise_sigma / noise, 2) / robots;
+    squares += std::pow(solution.sets.front().*found / noise, 2) / robots;
   }
   return std::sqrt(squares);
 }
@@ -46,6 +47,16 @@ TEST(NoiseOfSets, WithSharedPointsIsEachOnesOwn) {
       "  tracker: {method: position, noise: 1.0e-3, rows: 10}\n",
       2e-5, 5);
   EXPECT_LT(found, 2);  // twenty, were it one noise for both
+}
+
+// Twenty locations of a robot with 40 unknowns: the lengths carry other ones than the angles do.
+TEST(NoiseOfSets, OfLocationsIsThatOfLengthsAndThatOfAngles) {
+  const std::string set =
+      "  arm: {method: location, noise_true: 2.0e-5, noise_angle_true: 1.0e-4, rows: 20}\n";
+  // Some 40 of the 60 scalars of each are left: 3 sigma of a root mean square of 30 robots.
+  const double sigmas = 3 / std::sqrt(2 * 40 * 30.0);
+  EXPECT_NEAR(noise_found(set, 2e-5, 30), 1, sigmas);
+  EXPECT_NEAR(noise_found(set, 1e-4, 30, &SetResult::noise_angle_sigma), 1, sigmas);
 }
 
 }  // namespace
