@@ -92,6 +92,9 @@ struct DiagnosisConstants {
     /// Of the cause's own: others as probable share its evidence; 0.01 to 0.3 [habit]
     double confounded = 0.05;
     double sure = 0.9;  ///< it stands beside structure of no known one; 0.7 to 0.99 [habit]
+    /// What the presence of structure that no listed cause explains takes of the probability of
+    /// those that are: of what 0.9 and more was said beside it, half was there; 0.2 to 0.7 [trials]
+    double beside_unknown = 0.4;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of
     /// them; 0.05 to 0.5 [trials]
@@ -196,8 +199,12 @@ struct DiagnosisConstants {
     /// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
     /// exchanged may be moved as far as one likes; 10 to 100 [physics]
     double impossible = 20;
+    double other_sign = 3;  ///< sigmas beyond zero that no spring has; 2 to 5 [habit]
     /// Of the usual largest drift: a step may be taken for one; 2 to 10 [physics]
     double too_far = 3;
+    /// Of the squares that a moved instrument leaves: named effects that leave less tell it better;
+    /// 0.5 to 1 [habit]
+    double better_than_moved = 0.8;
     double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
     /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
     double confirmed = 0.3;

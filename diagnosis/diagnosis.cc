@@ -113,6 +113,7 @@ class Diagnostician {
     result_.verdict = unless_none(std::move(result_.verdict), result_.candidates, options_);
     agree(result_.candidates, result_.verdict);
     result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
+    allow_for_the_unknown(result_.candidates, result_.verdict, result_.named);
   }
 
   /// The most probable causes beside structure of no known one.

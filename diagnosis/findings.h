@@ -29,6 +29,7 @@ struct PossibleRows {
 struct NamedValue {
   std::string name, unit;
   double value = 0, sigma = 0, usual_least = 0, usual_most = 0;
+  bool positive = false;  ///< physics allows no other sign
 };
 
 struct CauseResult {

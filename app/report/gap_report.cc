@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "app/report/format.h"
 #include "kinematics/readable.h"
@@ -52,12 +55,16 @@ std::string named_in_words(const Diagnosis& diagnosis) {
 std::string found_in_words(const Diagnosis& diagnosis) {
   const Correction& found = diagnosis.found;
   if (found.empty() || only_named(diagnosis)) return "";
-  const auto unnamed = static_cast<size_t>(std::ranges::count(found, false, &FoundEffect::named));
-  const std::string which = unnamed == 0              ? "all named"
-                            : unnamed == found.size() ? "none named"
-                                                      : printed("%zu of them not named", unnamed);
-  return "everything found (" + counted(static_cast<std::int64_t>(found.size()), "effect") + ", " +
-         which + ")";
+  // One at a place may be there in several shapes.
+  std::map<std::pair<std::string, std::string>, bool> effects;
+  for (const FoundEffect& each : found) effects[{each.what.effect, each.what.at}] |= each.named;
+  const auto unnamed = static_cast<size_t>(
+      std::ranges::count(effects, false, [](const auto& each) { return each.second; }));
+  const std::string which = unnamed == 0                ? "all named"
+                            : unnamed == effects.size() ? "none named"
+                                                        : printed("%zu of them not named", unnamed);
+  return "everything found (" + counted(static_cast<std::int64_t>(effects.size()), "effect") +
+         ", " + which + ")";
 }
 
 std::string false_rows_in_words(const Diagnosis& diagnosis) {

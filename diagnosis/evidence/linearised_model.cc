@@ -40,7 +40,8 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
                                  const DiagnosisOptions& options, const Progress& progress)
     : data_(data),
       most_outliers_(options.most_outliers),
-      geometry_(with_mass_of_its_size(geometry_of(std::move(robot)))),
+      given_(geometry_of(std::move(robot))),
+      geometry_(with_mass_of_its_size(given_)),
       context_(context_of(*geometry_, data)),
       candidates_(selfcal::candidates(*geometry_, data, context_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),

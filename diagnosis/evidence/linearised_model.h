@@ -29,6 +29,8 @@ class LinearisedModel {
 
   const Robot& geometry() const { return *geometry_; }
   const std::shared_ptr<const Robot>& shared_geometry() const { return geometry_; }
+  /// The robot's file is silent of masses: geometry() has that of robots of its size.
+  bool mass_of_its_size() const { return geometry_ != given_; }
   const MeasurementContext& context() const { return context_; }
   const Candidates& candidates() const { return candidates_; }
   const std::vector<EffectParameter>& parameters() const { return parameters_; }
@@ -99,7 +101,7 @@ class LinearisedModel {
 
   const DataSet& data_;
   double most_outliers_;
-  std::shared_ptr<const Robot> geometry_, everything_;
+  std::shared_ptr<const Robot> given_, geometry_, everything_;
   MeasurementContext context_;
   Candidates candidates_;
   std::vector<EffectParameter> parameters_;

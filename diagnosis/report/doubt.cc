@@ -38,6 +38,18 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
   return {};
 }
 
+bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
+
+/// A spring that pushes back more than it is pushed.
+std::string impossible_sign(const std::vector<CauseResult>& named) {
+  for (const CauseResult& each : named)
+    for (const NamedValue& v : each.parameters)
+      if (gives_way(each) && v.positive && v.value + kDiagnosis.report.other_sign * v.sigma < 0)
+        return "no machine has " + v.name + " below zero, and the rows would need " +
+               in_readable_unit(v.value, v.unit) + ": something else pulls where its weight would";
+  return {};
+}
+
 std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
   if (diagnosis.noise <= gross_misfit(linearised.geometry(), true)) return {};
   return "calibration and all effects leave " + millimetres(diagnosis.noise) +
@@ -124,10 +136,7 @@ double left_of(const LinearisedModel& linearised, const DataSet& data, const Cor
 /// rows, by gravity alone: they are not what acted.
 std::string forces_that_never_were(const LinearisedModel& linearised, const DataSet& data,
                                    const Diagnosis& diagnosis) {
-  const bool gives_way = std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
-    return each.effect.ends_with("_compliance");
-  });
-  if (!gives_way || data.rows.wrench.rows() == 0) return {};
+  if (std::ranges::none_of(diagnosis.named, gives_way) || data.rows.wrench.rows() == 0) return {};
   DataSet unforced = data;
   unforced.rows.wrench.resize(0, 6);
   const double with = left_of(linearised, data, diagnosis.found);
@@ -157,10 +166,24 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised
   return frame_steps(*robot, calibrated.values, data, calibrated.residual.rows);
 }
 
+/// A drift looks like a step where the rows of either end lie together, and leaves less than it.
+bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
+                        const Diagnosis& diagnosis, const Solution& calibrated) {
+  if (std::ranges::none_of(diagnosis.named,
+                           [](const CauseResult& each) { return moves(each.effect); }))
+    return false;
+  const double with_step =
+      (1 - calibrated.frame_steps.front().share) * std::pow(calibrated.residual.fit.rms_after, 2);
+  return std::pow(left_of(linearised, data, named_of(diagnosis.found)), 2) <
+         kDiagnosis.report.better_than_moved * with_step;
+}
+
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
 std::string moved_between_rows(const LinearisedModel& linearised, const DataSet& data,
                                const Diagnosis& diagnosis) {
-  std::vector<FrameStep> steps = identify(linearised.geometry(), data).frame_steps;
+  const Solution calibrated = identify(linearised.geometry(), data);
+  std::vector<FrameStep> steps = calibrated.frame_steps;
+  if (!steps.empty() && named_tells_better(linearised, data, diagnosis, calibrated)) return {};
   if (steps.empty() && drifts_too_far(diagnosis.named))
     steps = steps_beside_what_stays(linearised, data, diagnosis.found);
   return steps.empty() ? "" : step_words(steps.front());
@@ -185,6 +208,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis) {
   if (std::string why = moved_between_rows(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
+  if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
   if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;
@@ -197,6 +221,8 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const bool named = !diagnosis.named.empty();
   diagnosis.named.clear();
+  if (named && diagnosis.next.empty())
+    diagnosis.next_why = "nothing is named: look at the rows and files first";
   for (FoundEffect& each : diagnosis.found) each.named = false;
   if (named) diagnosis.model = without_names(diagnosis.model);
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;

@@ -58,9 +58,12 @@ std::string of_masses(const LinearisedModel& linearised) {
   if (!statics || !statics->mechanics().masses_assumed) return {};
   double mass = 0;
   for (const Link& link : statics->mechanics().links) mass += link.mass.value_or(0);
-  return "the file gives no masses of the links: usual ones are taken, " +
-         format_number(std::round(mass)) +
-         " kg moving; `mass:` and `payload:` of the data sheet, or those of the links, are better";
+  const std::string moving = format_number(std::round(mass)) + " kg moving";
+  if (!linearised.mass_of_its_size())
+    return "the masses of the links are usual ones, spread of the file's `mass:` and `payload:` (" +
+           moving + "); those of each link are better";
+  return "the file gives no masses of the links: usual ones are taken, " + moving +
+         "; `mass:` and `payload:` of the data sheet, or those of the links, are better";
 }
 
 std::string of_order(const DataSet& data) {

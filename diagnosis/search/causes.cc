@@ -121,7 +121,7 @@ class Teller {
       cause.parameters.push_back(
           {label(candidate(c).at.empty() ? "robot" : candidate(c).at, "") + "." + p.name, p.unit,
            estimate.mean[i], std::sqrt(estimate.variance * estimate.covariance(i, i)),
-           p.usual_least, p.usual_most});
+           p.usual_least, p.usual_most, p.positive});
       effect.values.emplace_back(p.name, estimate.mean[i]);
     }
     cause.correction.push_back(std::move(effect));

@@ -116,6 +116,30 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
   return list;
 }
 
+void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
+                           std::vector<CauseResult>& named) {
+  const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
+  if (unknown == causes.end()) return;
+  // What may be a drift or go along with the rows' order is half unknown for that alone.
+  const auto may_be_order = [](const CauseResult& each) {
+    return std::ranges::count(each.confounded_with, kUnknown) > 0;
+  };
+  double by_order = 0;
+  for (const CauseResult& each : causes)
+    if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
+  const double kept =
+      1 - kDiagnosis.naming.beside_unknown * std::max(unknown->probability - by_order, 0.0);
+  const auto lower = [&](CauseResult& each) {
+    if (!names_effect(each.effect) || may_be_order(each)) return;
+    each.probability *= kept;
+    each.together *= kept;
+  };
+  std::ranges::for_each(causes, lower);
+  std::ranges::for_each(named, lower);
+  lower(verdict);
+  std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
+}
+
 void agree(std::vector<CauseResult>& causes, CauseResult& verdict) {
   const auto of = [&](const std::string& effect) {
     return std::ranges::find(causes, effect, &CauseResult::effect);

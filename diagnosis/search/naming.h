@@ -39,6 +39,11 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
                                      const CauseResult& verdict, const ByNoise& p,
                                      const DiagnosisOptions& options);
 
+/// Where structure of no known cause is probable, the list of causes lacks one, and those on it are
+/// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it.
+void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
+                           std::vector<CauseResult>& named);
+
 /// One probability for one thing: that of `none` among `causes` becomes the verdict's where that is
 /// none, the others' give way in proportion; then the verdict has that of its entry.
 void agree(std::vector<CauseResult>& causes, CauseResult& verdict);

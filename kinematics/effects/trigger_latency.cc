@@ -37,7 +37,10 @@ void suppose_trigger_latency(const Supposed& rows, const EffectPlace& place, Sup
   if (rows.context.speeds && rows.normals)
     to.add("probe");
   else
-    to.cannot("probe", "the rows carry no approach velocities");
+    to.cannot("probe", rows.context.velocities && !rows.context.speeds
+                           ? "the rows carry signs of the approach velocities (`dq: sign`), and a "
+                             "latency needs how fast it was"
+                           : "the rows carry no approach velocities");
 }
 
 }  // namespace selfcal

@@ -18,7 +18,9 @@ Diagnosis named(const std::vector<bool>& found) {
   diagnosis.verdict = {.effect = "joint_compliance", .where = {"j2", "j3"}, .probability = 0.9};
   diagnosis.named = {diagnosis.verdict};
   for (const bool each : found)
-    diagnosis.found.push_back({.what = {"joint_compliance", "j2"}, .named = each});
+    diagnosis.found.push_back(
+        {.what = {"joint_compliance", "j" + std::to_string(diagnosis.found.size() + 2)},
+         .named = each});
   diagnosis.gap = {.rms_nominal = 2e-3,
                    .rms_before = 1e-3,
                    .rms_after = 6.4e-4,
@@ -36,6 +38,12 @@ nlohmann::ordered_json page_words(const Diagnosis& diagnosis) {
   const auto robot = load_robot(SELFCAL_SOURCE_DIR "/app/examples/delta.robot.yaml");
   const DataSet data;
   return diagnosis_data({**robot, data, "arm", 0}, {"arm", diagnosis, {}, {}})["words"];
+}
+
+TEST(DiagnosisSummary, CountsAnEffectInSeveralShapesOnce) {
+  Diagnosis diagnosis = named({true, false});
+  diagnosis.found.push_back(diagnosis.found.front());
+  EXPECT_EQ(page_words(diagnosis)["found"], "everything found (2 effects, 1 of them not named)");
 }
 
 TEST(DiagnosisSummary, TellsWhatIsNamedFromEverythingFound) {

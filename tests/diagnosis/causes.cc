@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/search/sign_flip_test.h"
 
@@ -180,6 +181,26 @@ TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
             "backlash at j1 (probability 0.97, alone it closes 40 %, beside the others 25 %) and "
             "joint_compliance at j2 and j3 (probability 0.95, alone it closes 60 %, beside the "
             "others 45 %) cause the gap together (p 0.005)");
+}
+
+TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
+  std::vector<CauseResult> causes = {
+      {.effect = "backlash", .probability = 0.9, .together = 0.9},
+      {.effect = kUnknown, .probability = 0.8},
+      {.effect = "base_drift", .probability = 0.5, .together = 0.95, .confounded_with = {kUnknown}},
+      {.effect = kNone, .probability = 0.01}};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {causes[0], causes[2]};
+  allow_for_the_unknown(causes, verdict, named);
+  // 0.45 of the 0.8 are the drift's other half.
+  const double kept = 1 - kDiagnosis.naming.beside_unknown * (0.8 - 0.45);
+  EXPECT_EQ(causes[0].effect, kUnknown) << "the most probable first";
+  EXPECT_EQ(causes[0].probability, 0.8);
+  EXPECT_NEAR(verdict.probability, 0.9 * kept, 1e-12);
+  EXPECT_NEAR(causes[1].probability, 0.9 * kept, 1e-12);
+  EXPECT_NEAR(named[0].together, 0.9 * kept, 1e-12);
+  EXPECT_EQ(named[1].probability, 0.5);
+  EXPECT_EQ(causes[3].probability, 0.01);
 }
 
 TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {

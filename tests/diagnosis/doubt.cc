@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "kinematics/corrected_robot.h"
@@ -102,6 +104,41 @@ TEST(Doubt, NamesNothingWhereTheInstrumentWasMoved) {
   EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
   EXPECT_TRUE(diagnosis.named.empty());
   EXPECT_THAT(diagnosis.why, HasSubstr("between rows 35 and 36 the instrument of set tracker"));
+}
+
+/// A drift of the base that settles, most of it while nothing is measured: rows 0 to 29 and 30 on.
+TEST(Doubt, TellsADriftThatSettlesBetweenTwoPassesFromAMove) {
+  Rows rows;
+  Observations& o = rows.data.rows;
+  o.time.resize(o.rows());
+  for (int row = 0; row < o.rows(); ++row) {
+    o.time[row] = 20.0 * row + (row < 30 ? 0 : 2000);
+    const double settled = 1 - std::exp(-o.time[row] / 900);
+    o.position.row(row) += settled * Eigen::RowVector3d(4e-4, -3e-4, 1e-4);
+  }
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_EQ(diagnosis.verdict.effect, "base_drift") << diagnosis.why;
+}
+
+TEST(Doubt, NamesNoSpringThatPushesBack) {
+  const Rows rows;
+  const DiagnosisOptions options = quick();
+  const LinearisedModel linearised(rows.robot, rows.data, options, {});
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = "joint_compliance";
+  diagnosis.named = {{.effect = "joint_compliance",
+                      .where = {"j2"},
+                      .parameters = {{.name = "j2.c",
+                                      .unit = "rad/(N m)",
+                                      .value = -4e-6,
+                                      .sigma = 1e-6,
+                                      .usual_most = 1e-4,
+                                      .positive = true}}}};
+  diagnosis.gap.rms_before = 1e-4;
+  diagnosis.gap.rms_after = 0.5e-4;
+  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis), HasSubstr("no machine has j2.c below"));
+  diagnosis.named.front().parameters.front().sigma = 2e-6;
+  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "") << "noise may make it of nothing";
 }
 
 TEST(Withdraw, LeavesNothingNamedAndNothingClosedByIt) {
