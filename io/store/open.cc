@@ -227,9 +227,9 @@ Result<Store::Opened> Store::open(const fs::path& folder) {
 
 Result<std::unique_ptr<Store>> Store::open_to_read(const fs::path& folder) {
   if (std::error_code error; !fs::exists(store_in(folder), error) && !error)
-    return device_failed(folder.string() + ": holds no " + store_in(folder).filename().string() +
-                         ": the service has not run with this state yet, or keeps it in another "
-                         "folder (`state` of its CONFIG.yaml)");
+    return bad_input(folder.string() + ": holds no " + store_in(folder).filename().string() +
+                     ": the service has not run with this state yet, or keeps it in another "
+                     "folder (`state` of its CONFIG.yaml)");
   Result<Connection> database = connect(store_in(folder), SQLITE_OPEN_READONLY);
   if (!database) return tl::unexpected(database.error());
   if (auto known = refuse_newer(database->get()); !known) return tl::unexpected(known.error());

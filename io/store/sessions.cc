@@ -160,7 +160,7 @@ Result<SessionRecord> Store::session(std::int64_t id) {
   const Result<bool> there = row->step();
   if (!there) return tl::unexpected(there.error());
   const std::string name = "session " + std::to_string(id);
-  if (!*there) return sqlite::failure(database_, "there is no " + name);
+  if (!*there) return no_session(database_, id);
   if (!sound(*row, kDamagedSession)) return sqlite::failure(database_, name + " is damaged");
   if (!sound(*row, kDamagedConfig)) {
     return sqlite::failure(database_, "the configuration of " + name + " is damaged");

@@ -32,11 +32,19 @@ struct Binder {
   }
 };
 
+std::string of_its_file(sqlite3* database, const std::string& what) {
+  const char* path = sqlite3_db_filename(database, "main");
+  return std::string(path == nullptr ? "store" : path) + ": " + what;
+}
+
 }  // namespace
 
 tl::unexpected<Failure> failure(sqlite3* database, const std::string& what) {
-  const char* path = sqlite3_db_filename(database, "main");
-  return device_failed(std::string(path == nullptr ? "store" : path) + ": " + what);
+  return device_failed(of_its_file(database, what));
+}
+
+tl::unexpected<Failure> not_there(sqlite3* database, const std::string& what) {
+  return bad_input(of_its_file(database, what));
 }
 
 tl::unexpected<Failure> failure(sqlite3* database) {

@@ -93,5 +93,7 @@ class Transaction {
 tl::unexpected<Failure> failure(sqlite3* database);
 /// The store's file and `what`.
 tl::unexpected<Failure> failure(sqlite3* database, const std::string& what);
+/// The same of what was asked for and is not in a sound store: bad input.
+tl::unexpected<Failure> not_there(sqlite3* database, const std::string& what);
 
 }  // namespace selfcal::sqlite

@@ -27,20 +27,32 @@ Result<std::int64_t> keep_text(sqlite3* database, std::string_view body) {
   return id;
 }
 
+tl::unexpected<Failure> no_session(sqlite3* database, std::int64_t session) {
+  const auto there = sqlite::text(
+      database,
+      "SELECT CASE count(*) WHEN 0 THEN 'it has none yet' WHEN 1 THEN 'it has session ' || max(id)"
+      " WHEN max(id) - min(id) + 1 THEN 'it has sessions ' || min(id) || ' to ' || max(id)"
+      " ELSE 'it has ' || count(*) || ' of sessions ' || min(id) || ' to ' || max(id) END"
+      " FROM session");
+  if (!there) return tl::unexpected(there.error());
+  return sqlite::not_there(database,
+                           "there is no session " + std::to_string(session) + ": " + *there);
+}
+
 Result<void> require_session(sqlite3* database, std::int64_t session) {
   const auto found =
       sqlite::integer(database, "SELECT count(*) FROM session WHERE id = ?1", {session});
   if (!found) return tl::unexpected(found.error());
   if (*found == 1) return {};
-  return sqlite::failure(database, "there is no session " + std::to_string(session));
+  return no_session(database, session);
 }
 
 Result<void> require_sound_session(sqlite3* database, std::int64_t session) {
-  const auto wrong = sqlite::text(
-      database,
-      "SELECT coalesce((SELECT ifnull(" SELFCAL_DAMAGED_SESSION
-      " || ' is damaged', '') FROM session WHERE id = ?1), 'there is no session ' || ?1)",
-      {session});
+  if (auto there = require_session(database, session); !there) return there;
+  const auto wrong = sqlite::text(database,
+                                  "SELECT ifnull(" SELFCAL_DAMAGED_SESSION
+                                  " || ' is damaged', '') FROM session WHERE id = ?1",
+                                  {session});
   if (!wrong) return tl::unexpected(wrong.error());
   if (wrong->empty()) return {};
   return sqlite::failure(database, *wrong);

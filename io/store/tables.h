@@ -12,6 +12,8 @@ namespace selfcal {
 /// and damaged is whole again then.
 Result<std::int64_t> keep_text(sqlite3* database, std::string_view body);
 
+/// That there is no such session, and which there are: bad input.
+tl::unexpected<Failure> no_session(sqlite3* database, std::int64_t session);
 /// Fails when there is no such session; it may be damaged.
 Result<void> require_session(sqlite3* database, std::int64_t session);
 /// Fails when there is none, or it is damaged.

@@ -247,6 +247,20 @@ TEST_F(History, HasNoPageOfACheckWhoseTouchesAreTooFewToCalibrateBy) {
   EXPECT_FALSE(std::filesystem::exists(page));
 }
 
+TEST_F(History, SaysWhichSessionsThereAreWhereOneIsNot) {
+  const auto report = [&] {
+    return run_selfcal("report 9 " + folder_.string() + " --out " + (folder_ / "9.html").string());
+  };
+  const Ran none = report();
+  EXPECT_EQ(none.status, 3);
+  EXPECT_THAT(none.out, HasSubstr("there is no session 9: it has none yet\n"));
+
+  for (int session = 0; session < 3; ++session) begin("full");
+  const Ran some = report();
+  EXPECT_EQ(some.status, 3);
+  EXPECT_THAT(some.out, HasSubstr("there is no session 9: it has sessions 1 to 3\n"));
+}
+
 TEST_F(History, SaysThatThereIsNoSession) {
   const Ran ran = history("");
   EXPECT_EQ(ran.status, 0);
@@ -261,7 +275,8 @@ TEST_F(History, RefusesWhatCannotBeExported) {
   EXPECT_EQ(history("--export x " + out).status, 2);
   EXPECT_EQ(history("--export 1").status, 2);
   const Ran unknown = history("--export 7 " + out);
-  EXPECT_NE(unknown.status, 0);
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.out, HasSubstr("there is no session 7: it has session 1\n"));
   const Ran empty = history("--export 1 " + out);
   EXPECT_EQ(empty.status, 3);
   EXPECT_THAT(empty.out, HasSubstr("has no rows"));
@@ -270,7 +285,7 @@ TEST_F(History, RefusesWhatCannotBeExported) {
 
 TEST_F(History, NamesTheStoreThatIsNotThere) {
   const Ran ran = run_selfcal("history " + (folder_ / "nowhere").string());
-  EXPECT_NE(ran.status, 0);
+  EXPECT_EQ(ran.status, 3);
   EXPECT_THAT(ran.out, HasSubstr("nowhere"));
 }
 

@@ -13,9 +13,10 @@ namespace {
 using testing::HasSubstr;
 
 template <class T>
-void expect_failure(const Result<T>& result, const std::string& what) {
+void expect_failure(const Result<T>& result, const std::string& what,
+                    int exit_status = kDeviceFailed) {
   ASSERT_FALSE(result.has_value());
-  EXPECT_EQ(result.error().exit_status, kDeviceFailed);
+  EXPECT_EQ(result.error().exit_status, exit_status);
   EXPECT_THAT(result.error().what, HasSubstr("selfcal.db: "));
   EXPECT_THAT(result.error().what, HasSubstr(what));
 }
@@ -189,16 +190,21 @@ TEST(Store, ResumesTheSessionThatHasNotEnded) {
   EXPECT_FALSE(store->unfinished().value().has_value());
 }
 
-TEST(Store, RefusesASessionThatIsNotThere) {
+TEST(Store, RefusesASessionThatIsNotThereAndSaysWhichAre) {
   const Scratch scratch;
   const auto store = opened(scratch.folder());
-  expect_failure(store->session(7), "there is no session 7");
-  expect_failure(store->plan(7), "there is no session 7");
-  expect_failure(store->touches(7), "there is no session 7");
-  expect_failure(store->result(7), "there is no session 7");
-  expect_failure(store->set_state(7, SessionState::aborted, 1), "there is no session 7");
-  expect_failure(store->add(7, some_touch(0, 6)), "there is no session 7");
-  expect_failure(store->finish(some_result(7), nullptr), "there is no session 7");
+  const auto expect_refused = [](const auto& result, const std::string& there) {
+    expect_failure(result, "there is no session 7: " + there, kBadInput);
+  };
+  expect_refused(store->session(7), "it has none yet");
+  ASSERT_TRUE(store->begin(some_session(), some_plan(3, 6)));
+  expect_refused(store->session(7), "it has session 1");
+  expect_refused(store->plan(7), "it has session 1");
+  expect_refused(store->touches(7), "it has session 1");
+  expect_refused(store->result(7), "it has session 1");
+  expect_refused(store->set_state(7, SessionState::aborted, 1), "it has session 1");
+  expect_refused(store->add(7, some_touch(0, 6)), "it has session 1");
+  expect_refused(store->finish(some_result(7), nullptr), "it has session 1");
 }
 
 TEST(Store, RefusesATouchOfNoStepOrOfASessionThatEnded) {
