@@ -272,6 +272,11 @@ void Fields::fail(std::string_view key, const std::string& expected) {
   }
 }
 
+void Fields::refuse(std::string_view key, const std::string& instead) {
+  if (const Node* value = node_.find(key))
+    problems_.add(value->place, what_ + ": unknown key '" + std::string(key) + "': " + instead);
+}
+
 void Fields::refuse_unknown() {
   std::string known;
   for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;

@@ -95,6 +95,8 @@ class Fields {
   std::vector<std::string> texts(std::string_view key);
 
   void fail(std::string_view key, const std::string& expected);
+  /// Refuses a key that others have and this mapping says in another way: `instead`.
+  void refuse(std::string_view key, const std::string& instead);
   /// Notes every key of the mapping that no getter has asked for.
   void refuse_unknown();
 

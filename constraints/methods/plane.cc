@@ -15,6 +15,9 @@ namespace selfcal {
 namespace {
 
 constexpr double kLargestProbe = 0.2;  // m
+constexpr const char* kKnownPlane =
+    "[a, b, c] of a x + b y + c z + 1 = 0, which is -n / d of the unit normal n and the distance d "
+    "along it; n times 1e9 where the plane goes through the world's origin";
 
 /// What own values [nx ny nz d] mean.
 struct NormalForm {
@@ -243,6 +246,8 @@ MethodPtr make_plane(SetEntry& entry) {
   if (!(radius >= 0 && radius < kLargestProbe))
     entry.fields.fail("probe_radius", "metres from 0 to 0.2 (millimetres?)");
   const auto known = entry.fields.numbers("plane", 3);
+  entry.fields.refuse("normal", std::string("a known plane has `plane`: ") + kKnownPlane +
+                                    "; where only its normal is known, `method: plane-normal`");
   const Node* parallel = entry.fields.node("parallel_to");
   if (known && parallel) entry.fields.fail("parallel_to", "either `plane` or `parallel_to`");
   if (parallel) {
@@ -254,7 +259,7 @@ MethodPtr make_plane(SetEntry& entry) {
   }
   if (!known) return std::make_unique<OnePlane>(radius, std::nullopt);
   const Eigen::Vector3d abc = *known;
-  if (abc.norm() < 1e-9) entry.fields.fail("plane", "[a, b, c] of a x + b y + c z + 1 = 0");
+  if (abc.norm() < 1e-9) entry.fields.fail("plane", kKnownPlane);
   return std::make_unique<OnePlane>(radius, NormalForm{-abc.normalized(), 1 / abc.norm()});
 }
 

@@ -94,6 +94,25 @@ TEST_F(DataSetFile, RefusesMissingKeys) {
   EXPECT_THAT(error(kRow), HasSubstr("data set: key 'sets' is missing"));
 }
 
+TEST_F(DataSetFile, SaysHowAKnownPlaneIsWritten) {
+  sets = only("table: {method: plane, normal: [0, 0, 1]}");
+  EXPECT_THAT(error(kRow), HasSubstr("dataset.yaml:4: set table: unknown key 'normal': a known "
+                                     "plane has `plane`: [a, b, c] of a x + b y + c z + 1 = 0"));
+  sets = only("table: {method: plane, plane: [0, 0, 0]}");
+  EXPECT_THAT(error(kRow),
+              HasSubstr("n times 1e9 where the plane goes through the world's origin"));
+}
+
+TEST_F(DataSetFile, TakesAKnownPlaneThroughTheWorldsOrigin) {
+  sets = only("table: {method: plane, plane: [0, 0, 1.0e+9]}");
+  const auto loaded = load("set,q1,q2\ntable,0.1,0.2\n");
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  const Method& method = *loaded->data.sets[0].method;
+  const Eigen::VectorXd own = method.start({}, {}, loaded->data.rows, nullptr, {});
+  EXPECT_EQ(method.plane(own, nullptr)->n, Eigen::Vector3d(0, 0, -1));
+  EXPECT_NEAR(*method.plane(own, nullptr)->d, 0, 1e-9);  // 1 over the length of [a, b, c]
+}
+
 TEST_F(DataSetFile, GuessesMillimetresInItsSets) {
   sets = only("ball: {method: sphere, radius: 127}");
   EXPECT_THAT(error(kRow), HasSubstr("set ball: key 'radius': expected metres"));
