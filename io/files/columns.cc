@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "io/files/near_names.h"
+
 namespace selfcal {
 namespace {
 
@@ -179,6 +181,12 @@ class Naming {
   std::array<std::size_t, 3> turn_{};
 };
 
+/// How a file is read that has column `name` under another one.
+std::string renamed(const std::string& name, const std::string& unit = "") {
+  return "; where it has it under another name, dataset.yaml says which: columns: {" + name +
+         ": NAME" + unit + "}";
+}
+
 std::optional<RowFault> check_joint_columns(const Layout& layout, int joints) {
   const std::string robot_has = "the robot has " + std::to_string(joints) + " joints";
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
@@ -190,10 +198,8 @@ std::optional<RowFault> check_joint_columns(const Layout& layout, int joints) {
   for (int joint = 1; joint <= joints; ++joint) {
     const std::string name = "q" + std::to_string(joint);
     if (!layout.find(name))
-      return RowFault{"column '" + name + "' is missing: " + robot_has +
-                      "; where the file has it under another name, dataset.yaml says which: "
-                      "columns: {" +
-                      name + ": NAME [deg]}"};
+      return RowFault{"column '" + name + "' is missing: " + robot_has + "; " +
+                      layout.instead_of(name) + renamed(name, " [deg]")};
   }
   return std::nullopt;
 }
@@ -213,7 +219,8 @@ tl::expected<Columns<N>, RowFault> find_all(const Layout& layout,
   if (present == 0) return Columns<N>();
   if (present == N) return Columns<N>(places);
   return tl::unexpected(RowFault{"column '" + std::string(missing) + "' is missing: '" +
-                                 layout.columns[places[0]].name + "' needs it"});
+                                 layout.columns[places[0]].name + "' needs it; " +
+                                 layout.instead_of(missing)});
 }
 
 }  // namespace
@@ -230,6 +237,12 @@ std::vector<std::string> Layout::ignored() const {
     if (column.kind == CellKind::ignored) names.push_back(column.name);
   }
   return names;
+}
+
+std::string Layout::instead_of(std::string_view name) const {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return columns_instead(name, names, ignored());
 }
 
 std::optional<std::size_t> Layout::filled_by(std::string_view name) const {
@@ -250,7 +263,11 @@ tl::expected<Layout, RowFault> read_header(Cells names, const std::vector<Joint>
     layout.turn_axes = map.turn->axes;
   }
   const std::optional<std::size_t> set = layout.find("set");
-  if (!set && !map.sole_set) return tl::unexpected(RowFault{"column 'set' is missing"});
+  if (!set && !map.sole_set)
+    return tl::unexpected(
+        RowFault{"column 'set' is missing, which says of each row what dataset.yaml's `sets` has "
+                 "of it; " +
+                 layout.instead_of("set") + renamed("set")});
   if (auto fault = check_joint_columns(layout, joints)) return tl::unexpected(std::move(*fault));
   layout.set = set;
   for (int joint = 1; joint <= joints; ++joint) {

@@ -55,6 +55,8 @@ struct Layout {
   std::optional<std::size_t> filled_by(std::string_view name) const;
   /// Names of the columns that no format knows, in the order of the file.
   std::vector<std::string> ignored() const;
+  /// What there is in place of a column that is missing, in words.
+  std::string instead_of(std::string_view name) const;
 };
 
 /// Reads the header of a file for a robot's `joints`, which are found by their names, too.

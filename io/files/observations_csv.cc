@@ -152,7 +152,8 @@ class RowReader {
       if (need.from_previous && labels.first_of_group) continue;
       const std::string method(set.method->name());
       return RowFault{"set '" + set.name + "' (" + method + ") needs column '" + need.column +
-                          "', which is " + (need.place ? "empty" : "missing from the file"),
+                          "', which is " +
+                          (need.place ? "empty" : "missing: " + layout_.instead_of(need.column)),
                       need.place};
     }
     // A NaN is an empty cell.

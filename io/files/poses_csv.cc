@@ -1,6 +1,7 @@
 #include "io/files/poses_csv.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -8,13 +9,23 @@
 #include "constraints/methods/maker.h"
 #include "io/files/cell_numbers.h"
 #include "io/files/csv.h"
+#include "io/files/near_names.h"
 #include "io/files/plausible.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kPose = 7;
+constexpr std::array<std::string_view, kPose> kPoseNames = {"x", "y", "z", "qw", "qx", "qy", "qz"};
 constexpr double kUnit = 1e-3;  // off 1 that a quaternion's length may be
+
+std::string instead_of(std::string_view missing, Cells names) {
+  const std::vector<std::string> there(names.begin(), names.end());
+  std::vector<std::string> unknown;
+  for (const std::string& name : there)
+    if (std::ranges::find(kPoseNames, name) == kPoseNames.end()) unknown.push_back(name);
+  return columns_instead(missing, there, unknown);
+}
 
 /// Places of the columns, those of the pose first, then the joints' if there are any.
 class PoseReader {
@@ -24,10 +35,11 @@ class PoseReader {
 
   std::optional<RowFault> take_header(Cells names, char separator) {
     cells_.begin(separator);
-    static constexpr const char* kNames[kPose] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
-    for (const char* name : kNames) {
+    for (const std::string_view name : kPoseNames) {
       const auto place = find(names, name);
-      if (!place) return RowFault{std::string("column ") + name + " is missing"};
+      if (!place)
+        return RowFault{"column '" + std::string(name) +
+                        "' is missing: " + instead_of(name, names)};
       places_.push_back(*place);
     }
     for (int j = 1; j <= joints_; ++j) {

@@ -105,10 +105,15 @@ TEST_F(ObservationsCsv, ReadsHowMuchNoisierARowIsThanItsSet) {
 }
 
 TEST_F(ObservationsCsv, RefusesAHeaderThatDoesNotFitTheRobot) {
-  EXPECT_EQ(error("q1,q2\n0,0\n"), "observations.csv: header: column 'set' is missing");
+  EXPECT_EQ(
+      error("Set,q1,q2\ntable,0,0\n"),
+      "observations.csv: header: column 'set' is missing, which says of each row what "
+      "dataset.yaml's `sets` has of it; the file has Set, q1, q2 (did you mean 'Set'?); where "
+      "it has it under another name, dataset.yaml says which: columns: {set: NAME}");
   EXPECT_EQ(error("set,q1\ntable,0\n"),
-            "observations.csv: header: column 'q2' is missing: the robot has 2 joints; where the "
-            "file has it under another name, dataset.yaml says which: columns: {q2: NAME [deg]}");
+            "observations.csv: header: column 'q2' is missing: the robot has 2 joints; the file "
+            "has set, q1; where it has it under another name, dataset.yaml says which: columns: "
+            "{q2: NAME [deg]}");
   EXPECT_EQ(error("set,q1,q2,q3\ntable,0,0,0\n"),
             "observations.csv: header: column q3: the robot has 2 joints");
   EXPECT_EQ(error("set,q0,q1,q2\ntable,0,0,0\n"),
@@ -116,9 +121,11 @@ TEST_F(ObservationsCsv, RefusesAHeaderThatDoesNotFitTheRobot) {
   EXPECT_EQ(error("set,q1,q2,dq3\ntable,0,0,0\n"),
             "observations.csv: header: column dq3: the robot has 2 joints");
   EXPECT_EQ(error("set,q1,q2,x,z\ntable,0,0,0,0\n"),
-            "observations.csv: header: column 'y' is missing: 'x' needs it");
+            "observations.csv: header: column 'y' is missing: 'x' needs it; the file has set, q1, "
+            "q2, x, z");
   EXPECT_EQ(error("set,q1,q2,qx,qy,qz\ntable,0,0,0,0,0\n"),
-            "observations.csv: header: column 'qw' is missing: 'qx' needs it");
+            "observations.csv: header: column 'qw' is missing: 'qx' needs it; the file has set, "
+            "q1, q2, qx, qy, qz");
 }
 
 TEST_F(ObservationsCsv, RefusesAFileWithoutRows) {
@@ -160,8 +167,8 @@ TEST_F(ObservationsCsv, AsksForTheColumnsThatAMethodNeeds) {
       "empty");
   EXPECT_EQ(
       error("set,q1,q2,x,y,z\narm,0,0,1,1,1\n"),
-      "observations.csv: row 1: set 'arm' (location) needs column 'qw', which is missing from "
-      "the file");
+      "observations.csv: row 1: set 'arm' (location) needs column 'qw', which is missing: the file "
+      "has set, q1, q2, x, y, z");
   EXPECT_THAT(error("set,q1,q2,group\ntip,0,0,\n"), HasSubstr("row 1: column group: set 'tip'"));
   EXPECT_THAT(error("set,q1,q2\ntip,0,0\n"), HasSubstr("needs column 'group', which is missing"));
 }

@@ -2,26 +2,10 @@
 
 #include <algorithm>
 
+#include "io/files/near_names.h"
+
 namespace selfcal {
 namespace {
-
-/// Slips between two words: the optimal string alignment distance.
-std::size_t slips(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> least(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        least[i][j] = i + j;
-        continue;
-      }
-      const bool same = a[i - 1] == b[j - 1];
-      least[i][j] = std::min(
-          {least[i - 1][j] + 1, least[i][j - 1] + 1, least[i - 1][j - 1] + (same ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        least[i][j] = std::min(least[i][j], least[i - 2][j - 2] + 1);
-    }
-  return least[a.size()][b.size()];
-}
 
 std::vector<const CLI::App*> subcommands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
@@ -33,17 +17,6 @@ std::string meant(const std::string& typed, const std::vector<std::string>& know
 }
 
 }  // namespace
-
-std::string nearest_word(std::string_view typed, const std::vector<std::string>& known) {
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(1, typed.size() / 3) + 1;
-  for (const std::string& each : known)
-    if (const std::size_t count = slips(typed, each); count < least) {
-      least = count;
-      nearest = each;
-    }
-  return nearest;
-}
 
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& arguments) {
   const CLI::App* at = &app;

@@ -8,10 +8,6 @@
 
 namespace selfcal {
 
-/// The one of `known` that is fewest slips of a typist away (a letter too many, too few, wrong, or
-/// two exchanged), empty where every one is more than a third of the word away.
-std::string nearest_word(std::string_view typed, const std::vector<std::string>& known);
-
 /// A sentence on the first word of a command line that names no subcommand or option of `app`, with
 /// the nearest that does; empty where all are known. `arguments`: without the program's name.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& arguments);
