@@ -1,42 +1,36 @@
-# bash completion for selfcal
+# bash completion for selfcal: what its own --help says of commands, options and their values
 _selfcal() {
-  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]-} words
-  if [[ $prev == --method || $prev == --effects ]]; then
-    command=identify
-    if [[ $prev == --method ]]; then command=identifiable; fi
-    words=$("${COMP_WORDS[0]}" "$command" --help 2>/dev/null | sed -n "s/^ *$prev .*{\(.*\)}.*/\1/p")
-    words=${words//,/ }
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
-    return
+  local program=${COMP_WORDS[0]} cur=${COMP_WORDS[COMP_CWORD]} help option values words=""
+  local -a command=() before=("${COMP_WORDS[@]:0:COMP_CWORD}")
+  help=$("$program" --help 2>/dev/null)
+  for option in "${before[@]:1}"; do
+    [[ $help == *$'\nSubcommands:\n'* ]] || break
+    command+=("$option")
+    help=$("$program" "${command[@]}" --help 2>/dev/null)
+  done
+
+  # --to V and --to=V, which bash parts at the equals sign; of --effects A B any word up to the next option.
+  if [[ $cur == = ]]; then
+    cur=""
+  elif [[ ${before[-1]} == = ]]; then
+    unset 'before[-1]'
   fi
-  if [[ $prev == --log ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "debug info warning error" -- "$cur")
-    return
+  option=${before[-1]}
+  if [[ $option != --* ]]; then
+    option=$(printf '%s\n' "${before[@]}" | grep -e '^--' | tail -n 1)
+    grep -qE -e "^ *$option [A-Z]+:[^ ]* \.\.\." <<<"$help" || option=""
   fi
-  case $COMP_CWORD:$command in
-    1:*) words="identify identifiable plan compensate diagnose trial simulate robot data serve bridge monitor command history report --help --version" ;;
-    *:identify) words="--fix --free --effects --out --json --help" ;;
-    *:diagnose) words="--sim --tool --since --next --cell --out --json --help" ;;
-    2:trial) words="seal run score --help" ;;
-    *:trial) words="--make --seed --measure --rows --robot --truth --baseline --jobs --out --json --help" ;;
-    *:identifiable) words="--method --unknown --lock --count --seed --json --help" ;;
-    *:compensate) words="--nominal --payload --payload-centre --temperature --all --controller --out --help" ;;
-    *:plan) words="--method --separate --step --unknown --lock --count --candidates --criterion --workspace --start --prior --further --spacing --longest --groups --noise --noise-angle --speed --target --seed --out --json --help" ;;
-    *:simulate) words="--out --live --touches --truth --help" ;;
-    2:robot) words="check convert --help" ;;
-    *:robot) words="--convention --base --tip --fixed --to --like --out --help" ;;
-    2:data) words="check --help" ;;
-    *:data) words="--help" ;;
-    *:serve) words="--check --simulate --sessions --truth --log --help" ;;
-    *:bridge) words="--action --touch --touch-gpio --acceleration --patience --help" ;;
-    *:monitor) words="--robot --domain --once --wait --json --web --allow-commands --token --help" ;;
-    2:command) words="start check diagnose done abort accept reject rollback --help" ;;
-    *:command) words="--robot --domain --wait --json --help" ;;
-    *:history) words="--newest --events --export --report --json --help" ;;
-    *:report) words="--out --help" ;;
-    *) words="--help" ;;
-  esac
-  if [[ $cur == -* || $COMP_CWORD -eq 1 || $COMP_CWORD:$command == 2:@(robot|data|command|trial) ]]; then
+  values=$(sed -nE "s/^ *${option:-[A-Z]+} [A-Z]+:\{([^}]*)\}.*/\1/p" <<<"$help")
+
+  if [[ $help == *$'\nSubcommands:\n'* ]]; then
+    words=$(sed -n '1,/^Subcommands:/d; s/^  \([a-z][a-z]*\).*/\1/p' <<<"$help")
+  elif [[ -n $values && ($option == --* || ($cur != -* && $COMP_CWORD -eq $((${#command[@]} + 1)))) ]]; then
+    words=${values//,/ }
+  fi
+  if [[ $cur == -* || ${#command[@]} -eq 0 ]]; then
+    words+=" "$(sed -nE 's/^ *(-[a-z],)?(--[a-z-]+).*/\2/p' <<<"$help")
+  fi
+  if [[ -n $words ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$cur")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "constraints/planning/criterion.h"
 #include "io/encoders.h"
 #include "io/triggers.h"
 #include "kinematics/effect.h"
@@ -58,10 +59,14 @@ std::string block(const std::string& page, const std::string& head) {
   return {};
 }
 
-/// The words that the completion offers after `command`, the first word of a subcommand.
-std::string offered(const std::string& completion, const std::string& command) {
-  const size_t at = completion.find("*:" + command + ") words=");
-  return at == std::string::npos ? "" : completion.substr(at, completion.find('\n', at) - at);
+/// What the completion offers for the last of these words behind the program's name.
+std::string completed(const std::string& words) {
+  return run_in_bash("source " SELFCAL_SOURCE_DIR "/app/selfcal.bash; COMP_WORDS=(" SELFCAL_BINARY
+                     " " +
+                     words +
+                     "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _selfcal;"
+                     " echo \"${COMPREPLY[@]}\"")
+      .out;
 }
 
 std::string help(const std::string& command) { return run_selfcal(command + " --help").out; }
@@ -107,13 +112,12 @@ TEST(Words, AreFoundWholeAndInTheirOwnBlock) {
 
 TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
   const std::string manual = page("app/selfcal.1");
-  const std::string completion = source_text("app/selfcal.bash");
   const std::vector<std::string> all = subcommands();
   EXPECT_EQ(all.size(), 18u);
   for (const std::string& command : all) {
     const std::string explained = block(manual, ".SS selfcal " + command);
     EXPECT_FALSE(explained.empty()) << command;
-    const std::string words = offered(completion, command.substr(0, command.find(' ')));
+    const std::string words = completed(command + " --");
     for (const std::string& option : options(command)) {
       EXPECT_TRUE(has_word(explained, option)) << command << " " << option;
       EXPECT_TRUE(has_word(words, option)) << command << " " << option;
@@ -123,25 +127,28 @@ TEST(Words, ManualAndCompletionNameEverySubcommandAndOption) {
     EXPECT_TRUE(has_word(block(manual, ".SS selfcal identify"), effect)) << effect;
 }
 
-/// What the completion offers behind `option` of `command`.
-std::string completed(const std::string& command, const std::string& option) {
-  return run_in_bash("source " SELFCAL_SOURCE_DIR "/app/selfcal.bash; COMP_WORDS=(" SELFCAL_BINARY
-                     " " +
-                     command + " " + option +
-                     " \"\"); COMP_CWORD=3; _selfcal;"
-                     " echo \"${COMPREPLY[@]}\"")
-      .out;
-}
-
 std::string in_one_line(const std::vector<std::string_view>& names) {
   std::string all;
   for (const std::string_view name : names) all += (all.empty() ? "" : " ") + std::string(name);
   return all + "\n";
 }
 
-TEST(Words, CompletionOffersEveryMethodAndEffectOfTheProgram) {
-  EXPECT_EQ(completed("identifiable", "--method"), in_one_line(method_names()));
-  EXPECT_EQ(completed("identify", "--effects"), in_one_line(effect_names()));
+TEST(Words, CompletionOffersEveryValueThatAnOptionTakes) {
+  EXPECT_EQ(completed("identifiable --method \"\""), in_one_line(method_names()));
+  EXPECT_EQ(completed("identify --effects \"\""), in_one_line(effect_names()));
+  EXPECT_EQ(completed("identify data --effects backlash \"\""), in_one_line(effect_names()));
+  EXPECT_EQ(completed("plan robot.yaml --further \"\""), in_one_line(method_names()));
+  EXPECT_EQ(completed("plan robot.yaml --criterion \"\""), in_one_line(criterion_names()));
+  EXPECT_EQ(completed("robot convert robot.yaml --to \"\""),
+            "yaml urdf mjcf offsets dh ur delta\n");
+  EXPECT_EQ(completed("robot convert --convention = m"), "modified\n");
+  EXPECT_EQ(completed("command re"), "reject\n");
+}
+
+TEST(Words, CompletionOffersCommandsAndOptionsAsFarAsTheyAreTyped) {
+  EXPECT_EQ(completed("id"), "identify identifiable\n");
+  EXPECT_EQ(completed("robot \"\""), "check convert\n");
+  EXPECT_EQ(completed("trial run --ba"), "--baseline\n");
 }
 
 /// The paragraph of `key` in `text`.
