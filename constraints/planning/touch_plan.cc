@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <string>
 
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/planning/touch_choice.h"
@@ -133,11 +135,25 @@ Eigen::MatrixXd times_between(const Surroundings& cell, const std::vector<Planne
   return time;
 }
 
+/// What is said of those that each set lacks, of `touches`.
+std::string in_words(const std::map<int, int>& left_out, const std::vector<Set>& sets,
+                     const std::vector<PlannedTouch>& touches) {
+  std::string words;
+  for (const auto& [set, count] : left_out)
+    words += (words.empty() ? "" : "; ") + std::string("set ") +
+             sets[static_cast<std::size_t>(set)].name + ": " + std::to_string(count) + " of " +
+             std::to_string(std::ranges::count(touches, set, &PlannedTouch::set)) +
+             " touches are left out, for no straight way to them is free with the lock engaged";
+  return words;
+}
+
 }  // namespace
 
-std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
-                                         const std::vector<PlannedTouch>& touches) {
-  std::vector<PlannedTouch> path;
+TouchPlan in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
+                         const std::vector<PlannedTouch>& touches) {
+  TouchPlan plan;
+  std::vector<PlannedTouch>& path = plan.touches;
+  std::map<int, int> left_out;  // by set
   for (const int place : short_tour_from_first(times_between(cell, touches))) {
     if (place == 0) continue;
     PlannedTouch next = touches[static_cast<std::size_t>(place) - 1];
@@ -154,10 +170,13 @@ std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::ve
     // A lock stays engaged from its first configuration to its last.
     const bool held = !path.empty() && path.back().set == next.set &&
                       sets[static_cast<std::size_t>(next.set)].method->planned() == Planned::lock;
-    if (held && (next.via_home || !next.way.empty())) continue;
-    path.push_back(std::move(next));
+    if (held && (next.via_home || !next.way.empty()))
+      ++left_out[next.set];
+    else
+      path.push_back(std::move(next));
   }
-  return path;
+  plan.left_out = in_words(left_out, sets, touches);
+  return plan;
 }
 
 std::vector<std::vector<PlannedTouch>> usable_touches(const TouchCandidates& candidates,
@@ -198,17 +217,19 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
   const Surroundings cell{robot,         xi,           obstacles, options.apart, options.home,
                           options.speed, options.fence};
   double share = 1, too_many = 1;  // of the touches
-  std::optional<std::vector<PlannedTouch>> best;
+  std::optional<TouchPlan> best;
   for (int attempt = 0; attempt < kLongestTries; ++attempt) {
     tell("choosing touches", 0);
     const std::vector<PlannedTouch> chosen = choose(choosing, share, random, progress);
     tell("ordering touches", 0);
-    plan.touches = in_short_order(cell, sets, chosen);
+    TouchPlan ordered = in_short_order(cell, sets, chosen);
+    plan.touches = std::move(ordered.touches);
+    plan.left_out = std::move(ordered.left_out);
     const MotionTime time = motion_time(robot, xi, plan, options);
     const double takes = time.travel + time.touching;
     if (options.longest <= 0) return plan;
     if (takes <= options.longest) {
-      if (!best || best->size() < plan.touches.size()) best = plan.touches;
+      if (!best || best->touches.size() < plan.touches.size()) best = plan;
       if (share == 1 || takes > kWellSpent * options.longest) break;
       share = (share + too_many) / 2;
     } else {
@@ -217,7 +238,7 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
     }
   }
   if (best)
-    plan.touches = *std::move(best);
+    plan = *std::move(best);
   else if (plan.unreached.empty())
     plan.unreached = "the motion takes longer than it may (motion: longest)";
   return plan;

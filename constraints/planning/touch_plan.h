@@ -21,7 +21,10 @@ namespace selfcal {
 
 struct TouchPlan {
   std::vector<PlannedTouch> touches;  ///< in the order in which they are visited
-  std::string unreached;  ///< which set has no or too few reachable places; empty when all has
+  std::string unreached = {};  ///< which set has no or too few reachable places; empty when all has
+  /// Of which set some are missing, for no straight way leads to them with its lock engaged; empty
+  /// when none is.
+  std::string left_out = {};
 };
 
 /// `xi` are the parameters that are believed; `sets` have their methods (touched ones); the end
@@ -40,9 +43,9 @@ std::vector<std::vector<PlannedTouch>> usable_touches(const TouchCandidates& can
                                                       const Progress& progress = {});
 
 /// Usable touches in an order of short ways, begun at home, one set after the other, with the ways
-/// between them.
-std::vector<PlannedTouch> in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
-                                         const std::vector<PlannedTouch>& touches);
+/// between them; without those that an engaged lock does not get to.
+TouchPlan in_short_order(const Surroundings& cell, const std::vector<Set>& sets,
+                         const std::vector<PlannedTouch>& touches);
 
 /// Into and out of a slow contact the robot moves so much slower.
 inline constexpr double kSlower = 3;

@@ -100,6 +100,38 @@ TEST(FreeWay, LeavesTheStraightPathOnlyWhereSomethingStandsInIt) {
   }
 }
 
+TEST(InShortOrder, SaysWhichTouchesAnEngagedLockDoesNotGetTo) {
+  Problems none;
+  Node entry = Node::map(), lock = Node::map();
+  lock.set("leg", Node::of(1.0));
+  lock.set("joint", Node::of(std::string("universal")));
+  entry.set("method", Node::of(std::string("locked-joint")));
+  entry.set("lock", std::move(lock));
+  const std::vector<Set> sets = {make_set("lock", entry, none)};
+  ASSERT_FALSE(none.any());
+  const auto touch_at = [](double turn) {
+    PlannedTouch touch;
+    touch.outside = home();
+    touch.outside[0] = turn;
+    touch.start = touch.touch = touch.end = touch.outside;
+    return touch;
+  };
+  const Eigen::Vector3d middle = located(home()).p;
+  const std::vector<Obstacle> post = {
+      {middle + Eigen::Vector3d(0, 0, 0.1), Eigen::Vector3d::UnitZ(), {middle, 0.15}}};
+  const std::vector<PlannedTouch> touches = {touch_at(-1), touch_at(-0.9), touch_at(1)};
+  const Eigen::VectorXd xi = values(rx90()), begin = touch_at(-1.1).outside;
+
+  const TouchPlan open = in_short_order({rx90(), xi, {}, 0.01, begin, 0.5}, sets, touches);
+  EXPECT_EQ(open.touches.size(), 3u);
+  EXPECT_EQ(open.left_out, "");
+  const TouchPlan round = in_short_order({rx90(), xi, post, 0.01, begin, 0.5}, sets, touches);
+  EXPECT_EQ(round.touches.size(), 2u);
+  EXPECT_EQ(round.left_out,
+            "set lock: 1 of 3 touches are left out, for no straight way to them is free with the "
+            "lock engaged");
+}
+
 TEST(TouchPlan, FinishesASetBeforeItBeginsTheNext) {
   int changes = 0, last = -1;
   for (const PlannedTouch& each : table_and_wall().plan().touches) {

@@ -67,6 +67,7 @@ std::string cell_plan_report(const Config& config, const CellPlan& cell) {
             printed(" %4d touches, %d to check, %d reached through home\n", count.touches,
                     count.check, count.home);
   }
+  if (!cell.plan.left_out.empty()) text += "  " + cell.plan.left_out + "\n";
   if (const std::string what = lacking(cell); !what.empty())
     return text + "  no plan: " + what + "\n";
   text += printed(

@@ -92,8 +92,13 @@ void Analyst::keep_plan(SessionRecord record, const TouchPlan& plan) {
   record.id = *id;
   c_.tell("info", "session " + std::to_string(*id) + " (" + record.kind + ", " + record.reason +
                       "): " + std::to_string(steps.size()) + " touches planned");
+  tell_left_out(plan);
   base_.reset();
   collector_.open({record, steps, {}});
+}
+
+void Analyst::tell_left_out(const TouchPlan& plan) const {
+  if (!plan.left_out.empty()) c_.tell("warning", plan.left_out);
 }
 
 void Analyst::analyse() {

@@ -46,6 +46,8 @@ class Analyst {
  private:
   // analyst.cc
   void keep_plan(SessionRecord record, const TouchPlan& plan);
+  /// Touches that a plan has not for want of a free way.
+  void tell_left_out(const TouchPlan& plan) const;
   void join_base();
   std::optional<Session> stored_session(const SessionRecord& record) const;
   void keep_solution(Engagements found);

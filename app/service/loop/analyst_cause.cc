@@ -114,9 +114,12 @@ void Analyst::touch_more(const std::string& why, const CauseFindings& found) {
   const Eigen::VectorXd xi = values(*c_.models.active());
   const Surroundings cell{*c_.models.active(), xi,         c_.config.obstacles, plan.apart,
                           plan.home,           plan.speed, plan.fence};
-  TouchPlan ordered{in_short_order(cell, c_.config.sets, touches), {}};
+  TouchPlan ordered = in_short_order(cell, c_.config.sets, touches);
+  TouchPlan with_payload = in_short_order(cell, c_.config.sets, loaded);
+  tell_left_out(ordered);
+  tell_left_out(with_payload);
   // Those with the payload after the others: a person comes twice at most.
-  for (PlannedTouch& each : in_short_order(cell, c_.config.sets, loaded)) {
+  for (PlannedTouch& each : with_payload.touches) {
     each.via_home = each.via_home || ordered.touches.empty() || !ordered.touches.back().loaded;
     ordered.touches.push_back(std::move(each));
   }

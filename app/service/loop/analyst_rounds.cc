@@ -105,6 +105,7 @@ void Analyst::keep_round(const TouchPlan& plan) {
   }
   c_.tell("info", "session " + std::to_string(session.record.id) + ": " +
                       std::to_string(steps.size()) + " further touches planned");
+  tell_left_out(plan);
   collector_.open(std::move(session));
 }
 
