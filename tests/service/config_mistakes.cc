@@ -56,6 +56,29 @@ TEST(Config, RefusesWaysThatDoNotFitTogether) {
   EXPECT_EQ(refusal({{"motion.clearance", "0.021"}}), "");
 }
 
+TEST(Config, RefusesAHomeBeyondAPassiveJointsSwing) {
+  const auto said = [](const std::string& home) {
+    std::string robot = text_of(example("stewart.robot.yaml"));
+    const std::string limits = ", limits: [0.55, 1.15]";
+    for (std::size_t at = robot.find(limits); at != std::string::npos;
+         at = robot.find(limits, at + 2 * limits.size()))
+      robot.insert(at, ", swing: [0.2, 0.25]");
+    std::string text = text_of(example("stewart_lock_cell.config.yaml"));
+    const Scratch scratch;
+    scratch.write("stewart.robot.yaml", robot);
+    const std::string simulation = "simulation: stewart_lock_cell.scenario.yaml\n",
+                      middle = "[0.8, 0.8, 0.8, 0.8, 0.8, 0.8]";
+    text.erase(text.find(simulation), simulation.size());
+    text.replace(text.find(middle), middle.size(), home);
+    const auto config = load_config(scratch.write("config.yaml", text));
+    return config ? "" : config.error().what;
+  };
+  EXPECT_EQ(said("[0.85, 0.85, 0.85, 0.85, 0.85, 0.85]"), "");
+  EXPECT_THAT(said("[1.1, 1.1, 0.6, 0.6, 0.6, 0.6]"),
+              AllOf(HasSubstr("config.yaml:10: motion: key 'home'"),
+                    HasSubstr("every passive joint is within its limit (`swing`")));
+}
+
 TEST(Config, RefusesRoundsInACellWithLocks) {
   std::string text = text_of(example("stewart_lock_cell.config.yaml"));
   replace(text, "robot: stewart.robot.yaml", "robot: " + example("stewart.robot.yaml").string());

@@ -245,12 +245,8 @@ class Reader {
       if (f.has(key)) return f.fail(key, "none of a lock: it is engaged as the leg stands at home");
     if (const std::string lacking = lacking_body(*c_.robot, c_.sets); !lacking.empty())
       return f.fail("lock", "a joint of the robot: " + lacking);
-    if (c_.plan.home.size() == 0) return;  // said before
-    const ConfigurationBlock home = block_of(c_.plan.home);
-    Locations X;
-    if (!c_.robot->locate(home, values(*c_.robot), method.body(), X, nullptr).closes(0))
-      return f.fail("method", "`motion: home` of a platform whose legs meet there");
-    target.outward = X.R(0).col(2);
+    if (problems_.any()) return;  // home may have none
+    target.outward = locate(*c_.robot, values(*c_.robot), c_.plan.home, method.body()).R.col(2);
   }
 
   std::filesystem::path folder_;

@@ -36,7 +36,11 @@ void read_motion(Fields& f, Config& c, Problems& problems) {
   if (problems.any() || !home) return;
   Locations X;
   if (!c.robot->locate(block_of(*home), values(*c.robot), Body::endpoint, X, nullptr).closes(0))
-    return;
+    return f.fail("home", "readings with which the robot's chains meet");
+  if (!c.robot->within_passive_limits(*home))
+    return f.fail("home",
+                  "readings at which every passive joint is within its limit (`swing` of the "
+                  "robot's file, which `selfcal robot check` shows)");
   if (const std::string what = in_the_way(*c.robot, c.plan.fence, {}, *home, X.p(0), 0, -1);
       !what.empty())
     f.fail("home", "free of keep_out and capsules: there " + what);
