@@ -1,11 +1,12 @@
-// Standard rows of our frames: theta and r of a frame, d and alpha of the one behind it
-// (kinematics/robots/serial_standard.cc the other way), so that alpha and d of the first joint's
-// belong to the base, and of the last joint's row both are 0.
+// What controllers take of a robot: offsets of joints, or a table, beside its base and tool.
 #include "io/models/controller_text.h"
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
+#include "io/models/dh_rows.h"
 #include "kinematics/rotation.h"
 
 namespace selfcal {
@@ -72,47 +73,39 @@ std::string offset_lines(const serial::Model& robot, bool undone, const std::str
   return text;
 }
 
-/// One line of a table.
-std::string dh_row(const Frame& frame, double alpha, double a) {
-  const bool slides = frame.motion == serial::Motion::prismatic;
-  const bool moves = frame.motion != serial::Motion::fixed;
-  return frame.name + "," + short_number(alpha * kInDegrees) + "," +
-         short_number(a * kInMillimetres) + "," +
-         short_number(frame.value[serial::kR] * kInMillimetres) + "," +
-         short_number(frame.value[serial::kTheta] * kInDegrees) + "," +
-         (slides  ? "prismatic"
-          : moves ? "revolute"
-                  : "fixed") +
-         "\n";
+std::string_view type_of(serial::Motion motion) {
+  if (motion == serial::Motion::fixed) return "fixed";
+  return motion == serial::Motion::prismatic ? "prismatic" : "revolute";
 }
 
-/// A table, and the robot's pose in the world that goes before it.
-struct DhRows {
+/// A table, and where the first joint's row begins in the world.
+struct DhTable {
   std::string text;
   Isometry3d base;
 };
 
-DhRows dh_rows(const serial::Model& robot, bool standard) {
-  const std::vector<int> moving = serial::moving_frames(robot);
-  DhRows rows{"joint,alpha [deg],a [mm],d [mm],theta [deg],type\n", base_of_chain(robot)};
-  const Frame& first = robot.frames[moving.front()];
+DhTable dh_table(const serial::Model& robot, bool standard) {
+  DhTable table{"joint,alpha [deg],a [mm],d [mm],theta [deg],type\n", base_of_chain(robot)};
+  const Frame& first = robot.frames[serial::moving_frames(robot).front()];
   if (standard)
-    rows.base = rows.base *
-                Eigen::AngleAxisd(first.value[serial::kAlpha], Eigen::Vector3d::UnitX()) *
-                Eigen::Translation3d(first.value[serial::kD], 0, 0);
-  for (int i = moving.front(); i <= moving.back(); ++i) {
-    const bool last = i == moving.back();
-    const Frame& of = robot.frames[standard && !last ? i + 1 : i];
-    const bool none = standard && last;
-    rows.text += dh_row(robot.frames[i], none ? 0 : of.value[serial::kAlpha],
-                        none ? 0 : of.value[serial::kD]);
+    table.base = table.base *
+                 Eigen::AngleAxisd(first.value[serial::kAlpha], Eigen::Vector3d::UnitX()) *
+                 Eigen::Translation3d(first.value[serial::kD], 0, 0);
+  const std::vector<DhRow> rows = modified_rows(robot);
+  for (const DhRow& row : standard ? standard_rows(rows) : rows) {
+    table.text += row.name + "," + short_number(row.alpha * kInDegrees) + "," +
+                  short_number(row.a * kInMillimetres) + "," +
+                  short_number(row.d * kInMillimetres) + "," +
+                  short_number(row.theta * kInDegrees) + ",";
+    table.text += type_of(row.motion);
+    table.text += "\n";
   }
-  return rows;
+  return table;
 }
 
 std::string frames_in_words(const Isometry3d& base, const Isometry3d& tool) {
-  return "the first row stands in the world at " + pose_in_words(base) +
-         "\nthe tool stands in the last row's frame at " + pose_in_words(tool) + "\n";
+  return "the first joint's row stands in the world at " + pose_in_words(base) +
+         "\nthe tool stands in the last joint's frame at " + pose_in_words(tool) + "\n";
 }
 
 }  // namespace
@@ -167,8 +160,9 @@ Result<std::string> dh_table_text(const serial::Model& robot, const serial::Mode
       return bad_input(file + ": frame " + robot.frames[i].name +
                        " between the joints is a whole pose, which no row of a table is");
   const bool standard = convention == "standard";
-  const DhRows now = dh_rows(robot, standard), undone = dh_rows(before, standard);
-  return commented(head + "Rows are of the " + convention + " convention.\n" +
+  const DhTable now = dh_table(robot, standard), undone = dh_table(before, standard);
+  return commented(head + "Rows are of the " + convention +
+                   " convention; those of type fixed are base and tool.\n" +
                    frames_in_words(now.base, tool_of_chain(robot)) + "To undo it, the maker's:\n" +
                    undone.text + frames_in_words(undone.base, tool_of_chain(before))) +
          now.text;

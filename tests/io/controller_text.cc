@@ -50,6 +50,21 @@ class ControllerText : public testing::TestWithParam<const char*> {
     return robot ? *std::move(robot) : nullptr;
   }
 
+  /// `back` is the robot of `text`.
+  static void expect_same(const std::string& text, const Robot* back) {
+    ASSERT_NE(back, nullptr);
+    const auto robot = robot_of(text, "arm.yaml");
+    ASSERT_TRUE(robot) << robot.error().what;
+    for (const Eigen::Vector4d& q :
+         {Eigen::Vector4d(0, 0, 0, 0), Eigen::Vector4d(0.3, -1.2, 0.1, 2),
+          Eigen::Vector4d(-2, 1, -0.3, 1)}) {
+      const Location is = locate(*back, values(*back), q),
+                     wanted = locate(**robot, values(**robot), q);
+      EXPECT_LT((is.p - wanted.p).norm(), kTableSame);
+      EXPECT_LT((is.R - wanted.R).norm(), kTableSame);
+    }
+  }
+
   Scratch scratch_;
 };
 
@@ -57,16 +72,21 @@ TEST_P(ControllerText, OfATableIsReadBackAsTheRobot) {
   const auto table = dh_table_text(model_of(kTableArm), makers_model_of(kTableArm), GetParam(),
                                    "Of arm.\n", "arm.yaml");
   ASSERT_TRUE(table) << table.error().what;
-  const auto robot = robot_of(kTableArm, "arm.yaml");
-  const auto back = read_back(*table);
-  ASSERT_TRUE(back);
-  for (const Eigen::Vector4d& q : {Eigen::Vector4d(0, 0, 0, 0), Eigen::Vector4d(0.3, -1.2, 0.1, 2),
-                                   Eigen::Vector4d(-2, 1, -0.3, 1)}) {
-    const Location is = locate(*back, values(*back), q),
-                   wanted = locate(**robot, values(**robot), q);
-    EXPECT_LT((is.p - wanted.p).norm(), kTableSame);
-    EXPECT_LT((is.R - wanted.R).norm(), kTableSame);
-  }
+  expect_same(kTableArm, read_back(*table).get());
+}
+
+TEST_P(ControllerText, OfATableHasBaseAndToolInRows) {
+  std::string text = kTableArm;
+  text +=
+      "  - {name: tool, joint: fixed, xyz: [0.01, -0.02, 0.1], rpy: [0.1, -0.7, 2]}\n"
+      "  - {name: tip, joint: fixed, alpha: 0.3, d: 0.01, beta: 1.0e-3}\n";
+  text.insert(text.find("  - {name: j1"),
+              "  - {name: base, joint: fixed, alpha: 0.2, d: 0.3, theta: -1, r: 0.5}\n"
+              "  - {name: plate, joint: fixed, xyz: [1, 0, 3], rpy: [0, 0, pi/2]}\n");
+  const auto table =
+      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  ASSERT_TRUE(table) << table.error().what;
+  expect_same(text, read_back(*table).get());
 }
 
 TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
@@ -76,7 +96,7 @@ TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
   ASSERT_NE(at, std::string::npos);
   std::string undo;
   std::istringstream lines(table->substr(table->find('\n', at) + 1));
-  for (std::string line; std::getline(lines, line) && !line.starts_with("# the first row");)
+  for (std::string line; std::getline(lines, line) && !line.starts_with("# the first joint");)
     undo += line.substr(2) + "\n";
   const auto back = read_back(undo);
   ASSERT_TRUE(back);
@@ -98,9 +118,10 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
   const auto table =
       dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
   ASSERT_TRUE(table);
-  EXPECT_THAT(*table, HasSubstr("# the first row stands in the world at x y z 1000 2000 3000 mm, "
-                                "roll pitch yaw 0 0 0 degrees"));
-  EXPECT_THAT(*table, HasSubstr("# the tool stands in the last row's frame at x y z 10 0 100 mm, "
+  EXPECT_THAT(*table,
+              HasSubstr("# the first joint's row stands in the world at x y z 1000 2000 3000 "
+                        "mm, roll pitch yaw 0 0 0 degrees"));
+  EXPECT_THAT(*table, HasSubstr("# the tool stands in the last joint's frame at x y z 10 0 100 mm, "
                                 "roll pitch yaw 0 0 90 degrees"));
   text.insert(text.find("  - {name: slide"),
               "  - {name: bracket, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}\n");

@@ -80,9 +80,12 @@ Result<std::string> from_table(const ForeignRobot& foreign) {
         "most data sheets have it) or --convention modified (after Craig, or Khalil)"});
   const auto table = read_dh_table(foreign.file, foreign.convention);
   if (!table) return tl::unexpected(table.error());
-  note(
-      "base and tool are as the rows have them, whatever stands behind #: where they lack, put a "
-      "fixed frame with xyz and rpy first and last; `selfcal robot check` shows the frames");
+  const auto fixed = [](const Node& frame) { return frame.find("joint")->text == "fixed"; };
+  const std::vector<Node>& frames = table->find("frames")->items;
+  if (!frames.empty() && !(fixed(frames.front()) && fixed(frames.back())))
+    note(
+        "base and tool are as the rows have them, whatever stands behind #: where they lack, put a "
+        "fixed frame with xyz and rpy first and last; `selfcal robot check` shows the frames");
   return robot_file(write_yaml(*table),
                     "the table " + std::filesystem::path(foreign.file).filename().string(),
                     foreign);
