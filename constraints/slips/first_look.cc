@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/angles.h"
@@ -160,7 +161,21 @@ std::optional<TriedSlip> two_planes_as_one(const Robot& robot, const DataSet& da
   return std::nullopt;
 }
 
-/// What each slip leaves, best first.
+/// How far half the measured positions are from their middle (m); infinite where none is measured.
+double spread_of(const Observations& rows) {
+  std::vector<double> away;
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  std::vector<Eigen::Index> measured;
+  for (Eigen::Index row = 0; row < rows.position.rows(); ++row)
+    if (rows.position.row(row).allFinite()) measured.push_back(row);
+  for (const Eigen::Index row : measured) sum += rows.position.row(row);
+  for (const Eigen::Index row : measured)
+    away.push_back((rows.position.row(row) - sum / static_cast<double>(measured.size())).norm());
+  return away.empty() ? HUGE_VAL : median(std::move(away));
+}
+
+/// What each slip leaves, best first. One that makes all positions nearly one leaves little of any
+/// rows, and is none.
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
                              const std::vector<Slip>& others) {
   std::vector<Slip> slips = others;
@@ -170,10 +185,13 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
     DataSet changed = data;
     if (slip.rows) changed.rows = *slip.rows;
     const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, {});
-    if (left.any) list.push_back({slip.what, left.left});
+    if (left.any && left.left < kSlipCollapse * spread_of(changed.rows))
+      list.push_back({slip.what, left.left});
   }
   std::ranges::move(moved_zeros(robot, data), std::back_inserter(list));
   std::ranges::stable_sort(list, {}, &TriedSlip::left);
+  std::set<std::string> said;
+  std::erase_if(list, [&](const TriedSlip& each) { return !said.insert(each.what).second; });
   return list;
 }
 

@@ -128,18 +128,17 @@ class SlipsOfRows {
   }
 
   void of_axes() {
-    if (rows().orientation.rows() == 0) {
-      // Any two columns: what tells the exchanges apart is a turn of the base, which may move.
-      add("two of the columns x, y and z are exchanged, or one has the other sign",
-          [](Observations& o) { o.position.col(0).swap(o.position.col(1)); });
-      return;
-    }
+    // Without orientations a turn of the base tells these apart, which may move: all are tried, for
+    // a fit hardly finds a base that is turned round.
+    const bool alike = rows().orientation.rows() == 0;
+    const std::string either =
+        "two of the columns x, y and z are exchanged, or one has the other sign";
     const std::array<std::string, 3> axes = {"x", "y", "z"};
     for (Eigen::Index a = 0; a < 3; ++a) {
-      add("the column " + axes[a] + " has the other sign",
+      add(alike ? either : "the column " + axes[a] + " has the other sign",
           [a](Observations& o) { o.position.col(a) *= -1; });
       for (Eigen::Index b = 0; b < a; ++b)
-        add("the columns " + axes[b] + " and " + axes[a] + " are exchanged",
+        add(alike ? either : "the columns " + axes[b] + " and " + axes[a] + " are exchanged",
             [a, b](Observations& o) { o.position.col(a).swap(o.position.col(b)); });
     }
   }

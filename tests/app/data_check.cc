@@ -207,6 +207,17 @@ TEST_F(DataCheck, IsNoAdviceWhereNothingIsWrong) {
   EXPECT_THAT(ran.out, Not(HasSubstr("Look at the files")));
 }
 
+// So small a part of the range was measured that any rows on one point fit nearly as well.
+TEST_F(DataCheck, SaysOfPositionsAloneThatAColumnHasTheOtherSign) {
+  SELFCAL_NEED_SHARED();
+  for (const Cells& column : {Cells{"x"}, Cells{"y"}, Cells{"z"}}) {
+    std::filesystem::remove_all(folder_ / "data");
+    std::filesystem::copy(shared_dir() / "data/ur10-mocap", folder_ / "data");
+    change_rows(column, [](auto& p) { p[0] *= -1; });
+    expect_likely_wrong("two of the columns x, y and z are exchanged, or one has the other sign");
+  }
+}
+
 TEST(DataCheckOfRealRobots, AccusesNoSoundSet) {
   SELFCAL_NEED_SHARED();
   for (const char* name :
