@@ -1,4 +1,4 @@
-// First the verdict in a sentence, then the gap, the causes, where it lies, what to do next.
+// First the verdict in a sentence, then the gap, what to do next, the causes, where it lies.
 #include "app/report/diagnosis_summary.h"
 
 #include <algorithm>
@@ -69,18 +69,23 @@ std::string share_line(const char* title, const Shares& shares) {
   return text.empty() ? "" : std::string("  ") + title + text + "\n";
 }
 
-}  // namespace
-
-std::string summary(const Diagnosis& diagnosis) {
-  std::string text = diagnosis.why + "\n" + gap_lines(diagnosis);
-  text += cause_lines(diagnosis.candidates);
-  const std::string where = share_line("by joint:", diagnosis.where.by_joint) +
-                            share_line("by set:  ", diagnosis.where.by_set);
-  if (!where.empty()) text += "\nWhere what calibration leaves lies:\n" + where;
+std::string next_lines(const Diagnosis& diagnosis) {
+  std::string text;
   if (!diagnosis.next.empty()) text += "\nNext:\n";
   for (const NextStep& step : diagnosis.next) text += "  " + step.what + next_in_words(step) + "\n";
   if (!diagnosis.next_why.empty())
     text += (diagnosis.next.empty() ? "\nNext: nothing: " : "  ") + diagnosis.next_why + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string summary(const Diagnosis& diagnosis) {
+  std::string text = diagnosis.why + "\n" + gap_lines(diagnosis) + next_lines(diagnosis);
+  text += cause_lines(diagnosis.candidates);
+  const std::string where = share_line("by joint:", diagnosis.where.by_joint) +
+                            share_line("by set:  ", diagnosis.where.by_set);
+  if (!where.empty()) text += "\nWhere what calibration leaves lies:\n" + where;
   if (!diagnosis.outliers.empty())
     text += "\n" + counted(static_cast<std::int64_t>(diagnosis.outliers.size()), "row") +
             " put aside as false (diagnosis.json names them)\n";

@@ -9,6 +9,7 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/report/verdict.h"
 #include "diagnosis/search/naming.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/effect.h"
@@ -219,12 +220,12 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
 }
 
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
-  const bool named = !diagnosis.named.empty();
+  const std::string names = names_in_words(diagnosis.named);
   diagnosis.named.clear();
   if (named && diagnosis.next.empty())
     diagnosis.next_why = "nothing is named: look at the rows and files first";
   for (FoundEffect& each : diagnosis.found) each.named = false;
-  if (named) diagnosis.model = without_names(diagnosis.model);
+  if (!names.empty()) diagnosis.model = without_names(diagnosis.model);
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
   diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom,
                          diagnosis.gap.validated_on);
@@ -242,7 +243,7 @@ void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnos
   agree(diagnosis.candidates, diagnosis.verdict);
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
                   "; look at the rows and files first" +
-                  (named ? " (what would be named else: " + diagnosis.why + ")" : "");
+                  (names.empty() ? "" : ". Without this doubt it would be " + names);
 }
 
 }  // namespace selfcal

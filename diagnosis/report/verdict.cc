@@ -29,26 +29,24 @@ std::string with_places(const CauseResult& cause) {
   return words;
 }
 
-/// ", or what these rows cannot tell from it (…)"; empty without look-alikes.
+/// "58 % sure"; what rounds to all of it is not.
+std::string sure(double probability) {
+  return probability < 0.995 ? phrase("%.0f %% sure", 100 * probability) : "over 99 % sure";
+}
+
+/// "link_compliance@j1 or backlash@j2"; empty without look-alikes.
 std::string look_alikes(const CauseResult& cause) {
   std::string words;
   for (size_t i = 0; i < cause.confounded_with.size() && i < kDiagnosis.report.most_look_alikes;
        ++i)
-    words +=
-        (i == 0 ? ", or what these rows cannot tell from it (" : ", ") + cause.confounded_with[i];
-  return words.empty() ? words : words + ")";
+    words += (i == 0 ? "" : " or ") + (cause.confounded_with[i] == kUnknown
+                                           ? "what no known effect explains"
+                                           : cause.confounded_with[i]);
+  return words;
 }
 
 std::string with_shape(const CauseResult& cause) {
   return with_places(cause) + (cause.shape.empty() ? "" : " (" + cause.shape + ")");
-}
-
-std::string one_cause(const CauseResult& verdict, double p) {
-  const std::string alike = look_alikes(verdict);
-  std::string words = with_shape(verdict) + alike + (alike.empty() ? "" : ",") +
-                      phrase(" causes the gap (probability %.2f", verdict.probability);
-  if (!verdict.confounded_with.empty()) words += phrase(", with these %.2f", verdict.together);
-  return words + phrase(", p %.2g)", p);
 }
 
 /// What leaves more than before closes nothing.
@@ -56,30 +54,49 @@ std::string percent(double share) {
   return share < 0.005 ? "nothing" : phrase("%.0f %%", 100 * share);
 }
 
-std::string several_causes(const std::vector<CauseResult>& named, double p) {
-  std::string words;
-  for (size_t i = 0; i < named.size(); ++i) {
-    const CauseResult& each = named[i];
-    words += (i == 0                  ? ""
-              : i + 1 == named.size() ? " and "
-                                      : ", ") +
-             with_shape(each) + look_alikes(each) + phrase(" (probability %.2f", each.probability);
-    if (each.closes_alone && each.closes_beside)
-      words += ", alone it closes " + percent(*each.closes_alone) + ", beside the others " +
-               percent(*each.closes_beside);
-    words += ")";
-  }
-  return words + phrase(" cause the gap together (p %.2g)", p);
+/// ". It closes 97 % of what calibration leaves; noise alone does as well in …"
+std::string worth_of(const Diagnosis& diagnosis, const char* what) {
+  const std::optional<double>& closed = diagnosis.gap.closed.fraction;
+  const std::string chance =
+      phrase("oise alone explains as much in %.2g of cases", diagnosis.p_value);
+  if (!closed) return ". N" + chance;
+  return std::string(". ") + what + " " + percent(*closed) + " of what calibration leaves; n" +
+         chance;
 }
 
-/// ", beside structure that …" where there is that as well; empty where what is named may be it.
+std::string one_cause(const Diagnosis& diagnosis) {
+  const CauseResult& verdict = diagnosis.verdict;
+  std::string words = with_shape(verdict) + " causes the gap (" + sure(verdict.probability) + ")";
+  if (const std::string alike = look_alikes(verdict); !alike.empty())
+    words += ", or " + alike +
+             " does: these rows cannot tell which (one of them: " + sure(verdict.together) + ")";
+  return words + worth_of(diagnosis, "It closes");
+}
+
+std::string several_causes(const Diagnosis& diagnosis) {
+  std::string words = phrase("%zu causes make the gap together: ", diagnosis.named.size());
+  for (size_t i = 0; i < diagnosis.named.size(); ++i) {
+    const CauseResult& each = diagnosis.named[i];
+    words += (i == 0 ? "" : "; ") + with_shape(each) + " (" + sure(each.probability);
+    if (each.closes_alone && each.closes_beside)
+      words += ", closes " + percent(*each.closes_beside) + " beside the others, " +
+               percent(*each.closes_alone) + " alone";
+    words += ")";
+    if (const std::string alike = look_alikes(each); !alike.empty())
+      words += ", or " + alike + ": these rows cannot tell which";
+  }
+  return words + worth_of(diagnosis, "Together they close");
+}
+
+/// ". Besides there is structure that …" where there is that as well; empty where what is named may
+/// be it.
 std::string beside_the_unknown(const Diagnosis& diagnosis) {
   for (const CauseResult& each : diagnosis.named)
     if (std::ranges::count(each.confounded_with, kUnknown) > 0) return {};
   for (const CauseResult& each : diagnosis.candidates)
     if (each.effect == kUnknown && each.probability > kDiagnosis.report.beside)
-      return phrase(", beside structure that no known effect explains (probability %.2f)",
-                    each.probability);
+      return ". Besides there is structure that no known effect explains (" +
+             sure(each.probability) + ")";
   return {};
 }
 
@@ -95,30 +112,34 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   return words;
 }
 
-/// Causes that are more probable than none, though noise may have made them: "backlash at j1 0.41".
+/// Causes that are more probable than none, though noise may have made them: "backlash at j1 (41 %
+/// sure)".
 std::string likelier_than_none(const Diagnosis& diagnosis) {
   std::string words;
   for (const CauseResult& each : diagnosis.candidates)
     if (names_effect(each.effect) && each.probability > diagnosis.verdict.probability)
-      words += (words.empty() ? "" : ", ") + with_places(each) + phrase(" %.2f", each.probability);
+      words +=
+          (words.empty() ? "" : ", ") + with_places(each) + " (" + sure(each.probability) + ")";
   return words;
 }
 
-/// ": rows near each other in the cell err alike; look at the machine, or …".
-std::string of_unknown(std::optional<KernelDomain> domain) {
-  const std::string advice =
-      domain == KernelDomain::same
-          ? "look at the machine, or go to some of them again from elsewhere: what a robot does "
-            "not repeat looks like this"
-          : "look at the machine, or repeat some configurations to be sure of the noise";
-  return ": " + (domain ? std::string(in_words(*domain)) + "; " : std::string()) + advice;
+/// ": rows near each other in the cell err alike", where that is known.
+std::string how_it_errs(std::optional<KernelDomain> domain) {
+  return domain ? ": " + std::string(in_words(*domain)) : std::string();
+}
+
+std::string advice_on_unknown(std::optional<KernelDomain> domain) {
+  return domain == KernelDomain::same
+             ? ". Look at the machine, or go to some of these configurations again from elsewhere: "
+               "what a robot does not repeat looks like this"
+             : ". Look at the machine, or repeat some configurations to be sure of the noise";
 }
 
 std::string no_cause(const Diagnosis& diagnosis) {
   if (const std::string likelier = likelier_than_none(diagnosis); !likelier.empty())
-    return "no cause is named: these rows do not settle it (" + likelier +
-           phrase(", none %.2f; as much is found in %.2g of resampled rows)",
-                  diagnosis.verdict.probability, diagnosis.p_value);
+    return "no cause is named: these rows do not settle whether it is " + likelier +
+           " or noise alone (" + sure(diagnosis.verdict.probability) +
+           phrase("; as much is found in %.2g of resampled rows)", diagnosis.p_value);
   if (diagnosis.p_value > DiagnosisOptions{}.name_below_p)
     return phrase(
         "no cause is named: noise alone explains what calibration leaves (as much is found in %.2g "
@@ -137,16 +158,23 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   const CauseResult& verdict = diagnosis.verdict;
   if (verdict.effect == kNone) return no_cause(diagnosis);
   if (verdict.effect != kUnknown)
-    return (diagnosis.named.size() > 1 ? several_causes(diagnosis.named, diagnosis.p_value)
-                                       : one_cause(verdict, diagnosis.p_value)) +
+    return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
            beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
     if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)
-      beside += (beside.empty() ? ", beside " : ", ") + with_places(each);
-  return "there is structure that no known effect explains" +
-         phrase(" (probability %.2f, p %.2g)", verdict.probability, diagnosis.p_value) + beside +
-         of_unknown(diagnosis.unknown) + unusual_sizes(diagnosis.named);
+      beside += (beside.empty() ? ". Probable besides: " : ", ") + with_places(each);
+  return "no known effect explains the gap (" + sure(verdict.probability) +
+         phrase("; noise alone does in %.2g of cases)", diagnosis.p_value) +
+         how_it_errs(diagnosis.unknown) + beside + advice_on_unknown(diagnosis.unknown) +
+         unusual_sizes(diagnosis.named);
+}
+
+std::string names_in_words(const std::vector<CauseResult>& causes) {
+  std::string words;
+  for (size_t i = 0; i < causes.size(); ++i)
+    words += (i == 0 ? "" : i + 1 == causes.size() ? " and " : ", ") + with_places(causes[i]);
+  return words;
 }
 
 }  // namespace selfcal

@@ -114,9 +114,19 @@ TEST(VerdictInWords, TellsOfLookAlikesWithTheProbabilityOfAllOfThem) {
                           .probability = 0.65,
                           .together = 0.99,
                           .confounded_with = {"link_compliance@j1"}};
-  EXPECT_EQ(verdict_in_words(with(cause)),
-            "joint_compliance at j2 and j3, or what these rows cannot tell from it "
-            "(link_compliance@j1), causes the gap (probability 0.65, with these 0.99, p 0.005)");
+  EXPECT_EQ(
+      verdict_in_words(with(cause)),
+      "joint_compliance at j2 and j3 causes the gap (65 % sure), or link_compliance@j1 does: "
+      "these rows cannot tell which (one of them: 99 % sure). Noise alone explains as much in "
+      "0.005 of cases");
+}
+
+TEST(VerdictInWords, TellsHowMuchOfTheGapIsClosed) {
+  Diagnosis diagnosis = with({.effect = "backlash", .where = {"j1"}, .probability = 0.999});
+  diagnosis.gap.closed.fraction = 0.966;
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "backlash at j1 causes the gap (over 99 % sure). It closes 97 % of what calibration "
+            "leaves; noise alone explains as much in 0.005 of cases");
 }
 
 TEST(VerdictInWords, TellsWhatIsLeftBesideWhatIsNamed) {
@@ -124,37 +134,40 @@ TEST(VerdictInWords, TellsWhatIsLeftBesideWhatIsNamed) {
       with({.effect = "backlash", .where = {"j1", "j2", "j3"}, .probability = 0.97});
   diagnosis.candidates.front().probability = 0.2;
   EXPECT_EQ(verdict_in_words(diagnosis),
-            "backlash at j1, j2 and j3 causes the gap (probability 0.97, p 0.005)");
+            "backlash at j1, j2 and j3 causes the gap (97 % sure). Noise alone explains as much in "
+            "0.005 of cases");
   diagnosis.candidates.front().probability = 0.9;
   EXPECT_EQ(verdict_in_words(diagnosis),
-            "backlash at j1, j2 and j3 causes the gap (probability 0.97, p 0.005), beside "
-            "structure that no known effect explains (probability 0.90)");
+            "backlash at j1, j2 and j3 causes the gap (97 % sure). Noise alone explains as much in "
+            "0.005 of cases. Besides there is structure that no known effect explains (90 % sure)");
   diagnosis.named.front().confounded_with = {std::string(kUnknown)};
-  EXPECT_EQ(verdict_in_words(diagnosis).find("beside structure"), std::string::npos)
+  EXPECT_EQ(verdict_in_words(diagnosis).find("Besides there is"), std::string::npos)
       << "what is named may be it";
 }
 
 TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
   EXPECT_EQ(verdict_in_words(with({.effect = kUnknown, .probability = 0.99})),
-            "there is structure that no known effect explains (probability 0.99, p 0.005), beside "
-            "joint_compliance at j2 and j3, base_drift at base: look at the machine, or repeat "
-            "some configurations to be sure of the noise");
+            "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases). "
+            "Probable besides: joint_compliance at j2 and j3, base_drift at base. Look at the "
+            "machine, or repeat some configurations to be sure of the noise");
 }
 
 TEST(VerdictInWords, TellsHowTheUnknownErrsAndWhatWouldShow) {
   Diagnosis diagnosis = with({.effect = kUnknown, .probability = 0.99});
   diagnosis.candidates.resize(1);
   diagnosis.unknown = KernelDomain::place;
-  EXPECT_EQ(verdict_in_words(diagnosis),
-            "there is structure that no known effect explains (probability 0.99, p 0.005): rows "
-            "near each other in the cell err alike; look at the machine, or repeat some "
-            "configurations to be sure of the noise");
+  EXPECT_EQ(
+      verdict_in_words(diagnosis),
+      "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): rows "
+      "near each other in the cell err alike. Look at the machine, or repeat some "
+      "configurations to be sure of the noise");
   diagnosis.unknown = KernelDomain::same;
-  EXPECT_EQ(verdict_in_words(diagnosis),
-            "there is structure that no known effect explains (probability 0.99, p 0.005): the "
-            "repeats of a configuration err alike, and no other rows with them; look at the "
-            "machine, or go to some of them again from elsewhere: what a robot does not repeat "
-            "looks like this");
+  EXPECT_EQ(
+      verdict_in_words(diagnosis),
+      "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): the "
+      "repeats of a configuration err alike, and no other rows with them. Look at the "
+      "machine, or go to some of these configurations again from elsewhere: what a robot does "
+      "not repeat looks like this");
 }
 
 TEST(VerdictInWords, SaysThatTheRowsDoNotSettleItWhereACauseIsLikelierThanNone) {
@@ -164,8 +177,8 @@ TEST(VerdictInWords, SaysThatTheRowsDoNotSettleItWhereACauseIsLikelierThanNone) 
                           {.effect = kNone, .probability = 0.24},
                           {.effect = "backlash", .where = {"j1"}, .probability = 0.2}};
   EXPECT_EQ(verdict_in_words(diagnosis),
-            "no cause is named: these rows do not settle it (fixture_shift at plane2 0.41, none "
-            "0.24; as much is found in 0.04 of resampled rows)");
+            "no cause is named: these rows do not settle whether it is fixture_shift at plane2 (41 "
+            "% sure) or noise alone (24 % sure; as much is found in 0.04 of resampled rows)");
 }
 
 TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
@@ -178,9 +191,9 @@ TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
                              .closes_alone = 0.6,
                              .closes_beside = 0.45});
   EXPECT_EQ(verdict_in_words(diagnosis),
-            "backlash at j1 (probability 0.97, alone it closes 40 %, beside the others 25 %) and "
-            "joint_compliance at j2 and j3 (probability 0.95, alone it closes 60 %, beside the "
-            "others 45 %) cause the gap together (p 0.005)");
+            "2 causes make the gap together: backlash at j1 (97 % sure, closes 25 % beside the "
+            "others, 40 % alone); joint_compliance at j2 and j3 (95 % sure, closes 45 % beside the "
+            "others, 60 % alone). Noise alone explains as much in 0.005 of cases");
 }
 
 TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
