@@ -218,6 +218,7 @@ struct DiagnosisConstants {
     double forces_cost = 0.97;
     double withdrawn = 0.95;  ///< probability of `unknown` that is left then; 0.5 to 1 [habit]
     double worth = 0.02;      ///< of probability that a step must bring; 0 to 0.2 [habit]
+    double most_times = 10;   ///< as many rows as a step has, that anybody takes; 2 to 50 [habit]
     std::size_t most_steps = 3, most_for_unknown = 4;  ///< 1 to 10 [habit]
     /// Least probable cause that may yet be there where none is named; 0.01 to 0.3 [habit]
     double edge = 0.05;

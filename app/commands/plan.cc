@@ -128,10 +128,10 @@ int plan_to_separate(const PlanArguments& arguments) {
                        " of them");
   std::fputs(separating_report(*rows).c_str(), stdout);
   if (rows->steps.empty()) return kAnswerIsNo;
-  if (const auto written = write_rows(arguments, observations_text(rows->steps[step - 1].rows));
-      !written)
+  const SeparatingStep& chosen = rows->steps[step - 1];
+  if (const auto written = write_rows(arguments, observations_text(chosen.rows)); !written)
     return tell(written.error());
-  return kDone;
+  return chosen.settles() ? kDone : kAnswerIsNo;
 }
 
 int plan_command(const PlanArguments& arguments) {

@@ -66,6 +66,9 @@ std::vector<Question> questions(const Diagnosis& diagnosis) {
     const bool named = std::ranges::count(diagnosis.named, each.effect, &CauseResult::effect) > 0;
     if (each.correction.empty() || each.probability < kDiagnosis.report.edge || named) continue;
     list.push_back({&each, nullptr, odds(each.probability, none)});
+    const CauseResult* other = look_alike(diagnosis, each);
+    if (other && other->probability >= kDiagnosis.report.edge)
+      list.push_back({&each, other, odds(each.probability, other->probability)});
     break;
   }
   return list;
@@ -130,9 +133,7 @@ class Planner {
     if (asked_.empty() && !unknown_at_issue(diagnosis_)) return {{}, why_nothing()};
     further_ = candidate_rows(linearised_, data_);
     for (const Question& each : asked_) try_all(each);
-    std::ranges::stable_sort(next_.steps, std::ranges::greater{}, &NextStep::probability_after);
-    if (next_.steps.size() > kDiagnosis.report.most_steps)
-      next_.steps.resize(kDiagnosis.report.most_steps);
+    take_best();
     if (unknown_at_issue(diagnosis_)) look_closer();
     if (next_.steps.empty() && next_.why.empty())
       next_.why = "this robot and these rows leave nothing to change from one visit to another";
@@ -199,30 +200,62 @@ class Planner {
     return taken(further.both.rows, added);
   }
 
-  /// All that are worth their while; where none is, the best of them, and that it is not.
-  void try_all(const Question& asked) {
+  /// What a question's rows would tell, and the log evidence that they are worth.
+  struct Tried {
+    NextStep step;
+    double gain;
+  };
+
+  std::vector<Tried> tried(const Question& asked) const {
     const double p = asked.probability;
-    std::vector<NextStep> steps;
+    std::vector<Tried> list;
     for (const CandidateRows& further : further_) {
       Separation causes(linearised_, entries_of(asked.one->correction), other_entries(asked.other),
                         further.both, data_.rows.rows());
       const double now = causes.apart();
       causes.take_all();
       const double gain = (causes.apart() - now) / 2;
-      steps.push_back(
-          {further.what, asked.names(), 1 / (1 + (1 - p) / p * std::exp(-gain)), rows_of(further)});
+      list.push_back(
+          {{further.what, asked.names(), 1 / (1 + (1 - p) / p * std::exp(-gain)), rows_of(further)},
+           gain});
     }
-    if (steps.empty()) return;
-    std::ranges::stable_sort(steps, std::ranges::greater{}, &NextStep::probability_after);
-    if (steps.front().probability_after <= p + kDiagnosis.report.worth) {
-      next_.why += (next_.why.empty() ? "" : "; ") + std::string("a dozen rows of no kind tell ") +
-                   asked.names().front() + " from " + asked.names().back() +
-                   ": take more of the first step's";
-      steps.resize(1);
-    }
-    for (NextStep& each : steps)
-      if (steps.size() == 1 || each.probability_after > p + kDiagnosis.report.worth)
-        next_.steps.push_back(std::move(each));
+    std::ranges::stable_sort(list, std::ranges::greater{}, &Tried::gain);
+    return list;
+  }
+
+  /// The best for each question, and all others that are worth their while; where the best leaves
+  /// the question open, that it does.
+  void try_all(const Question& asked) {
+    std::vector<Tried> list = tried(asked);
+    if (list.empty()) return;
+    if (list.front().step.probability_after < kDiagnosis.report.settled)
+      next_.why += (next_.why.empty() ? "" : "; ") + left_open(asked, list.front());
+    next_.steps.push_back(std::move(list.front().step));
+    for (auto each = list.begin() + 1; each != list.end(); ++each)
+      if (each->step.probability_after > asked.probability + kDiagnosis.report.worth)
+        others_.push_back(std::move(each->step));
+  }
+
+  /// How many rows like these it would take, each worth as much as the next one.
+  static std::string left_open(const Question& asked, const Tried& best) {
+    const auto log_odds = [](double p) { return std::log(p / (1 - p)); };
+    const std::string names = asked.names().front() + " from " + asked.names().back();
+    const double times =
+        (log_odds(kDiagnosis.report.settled) - log_odds(asked.probability)) / best.gain;
+    if (!(best.gain > 0 && times <= kDiagnosis.report.most_times))
+      return "rows of no such kind tell " + names +
+             ": what corrects the one corrects the other, as far as they can show";
+    return "\"" + best.step.what + "\" is not enough to tell " + names + ": about " +
+           format_number(std::ceil(times)) + " times as many rows are, " +
+           format_number(100 * kDiagnosis.report.settled) + " % sure";
+  }
+
+  /// Every question's best step, and the best of the others up to as many as are told.
+  void take_best() {
+    std::ranges::stable_sort(others_, std::ranges::greater{}, &NextStep::probability_after);
+    for (NextStep& each : others_)
+      if (next_.steps.size() < kDiagnosis.report.most_steps) next_.steps.push_back(std::move(each));
+    std::ranges::stable_sort(next_.steps, std::ranges::greater{}, &NextStep::probability_after);
   }
 
   /// What would show of which kind the structure is; how sure one would be then, nobody knows.
@@ -243,6 +276,7 @@ class Planner {
   const DiagnosisOptions& options_;
   const std::vector<Question> asked_;
   std::vector<CandidateRows> further_;
+  std::vector<NextStep> others_;  ///< that are not the best for their question
   NextSteps next_;
 };
 

@@ -91,7 +91,7 @@ TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const std::string file = (folder_ / "diagnosis.json").string();
   const std::string step =
       R"({"what": "repeat 2 rows twice at once", "separates": ["backlash@j1", "none"],
-    "probability_after": 0.93, "rows": [{"set": "t", "q": [0, 1], "repeat": "n1"}, {"set": "t", "q": [0, 1], "repeat": "n1"},
+    "probability_after": 0.97, "rows": [{"set": "t", "q": [0, 1], "repeat": "n1"}, {"set": "t", "q": [0, 1], "repeat": "n1"},
     {"set": "t", "q": [3, 1], "repeat": "n2"}, {"set": "t", "q": [0.5, null], "dq": [1, -1]}]})";
   std::ofstream(file) << R"({"next": [)" << step << R"(], "next_why": ""})";
   const std::string rows = (folder_ / "rows.csv").string();
@@ -99,7 +99,7 @@ TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_EQ(
       ran.out,
-      "1  repeat 2 rows twice at once: tells backlash@j1 from none, which is then 93 % sure\n");
+      "1  repeat 2 rows twice at once: tells backlash@j1 from none, which is then 97 % sure\n");
   const std::string text = text_of(rows);
   EXPECT_EQ(text.substr(0, text.find('\n')), "set,repeat,q1,q2,dq1,dq2");
   EXPECT_NE(text.find("t,0,0,1,,\nt,0,0,1,,\n"), std::string::npos) << text;
@@ -109,6 +109,14 @@ TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
     "separates": ["unknown", "how much is noise"], "probability_after": null}], "next_why": ""})";
   EXPECT_EQ(run_selfcal("plan --separate " + file, true).out,
             "1  repeat 2 rows twice at once: tells how much is noise\n");
+  std::ofstream(file) << R"({"next": [{"what": "repeat 2 rows with a payload of 2 kg", "rows": [],
+    "separates": ["backlash@j1", "zero_shift@j1"], "probability_after": 0.61}], "next_why": ""})";
+  const Ran open = run_selfcal("plan --separate " + file, true);
+  EXPECT_EQ(open.status, 1);
+  EXPECT_EQ(
+      open.out,
+      "1  repeat 2 rows with a payload of 2 kg: tells backlash@j1 from zero_shift@j1, which is "
+      "then 61 % sure: not enough to name it\n");
   std::ofstream(file) << R"({"next": [], "next_why": "nothing looks like what is named"})";
   const Ran nothing = run_selfcal("plan --separate " + file, true);
   EXPECT_EQ(nothing.status, 1);

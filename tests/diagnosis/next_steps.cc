@@ -78,6 +78,36 @@ TEST_F(NextStepsOfAnArm, TellACauseThatIsHardlyProbableFromNoise) {
   EXPECT_GT(next.steps.front().probability_after, 0.2 / 0.9);
 }
 
+TEST_F(NextStepsOfAnArm, TellTheLookAlikesOfACauseThatIsNotNamedFromEachOther) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = {.effect = kNone, .probability = 0.3};
+  diagnosis.candidates = {backlash(0.5), coupling(0.4), {.effect = kNone, .probability = 0.3}};
+  diagnosis.candidates.front().confounded_with = {"joint_coupling@j3"};
+  std::vector<std::string> from;
+  for (const NextStep& each : of(diagnosis).steps) from.push_back(each.separates.back());
+  EXPECT_THAT(from, testing::IsSupersetOf({std::string("joint_coupling@j3"), std::string(kNone)}));
+}
+
+TEST_F(NextStepsOfAnArm, PromiseNoMoreThanTheRowsCanDo) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = backlash(0.6);
+  diagnosis.named = {diagnosis.verdict};
+  CauseResult same = backlash(0.35);  // under another name: no row tells it from the other
+  same.effect = "zero_shift";
+  diagnosis.named.front().confounded_with = {"zero_shift@j3"};
+  diagnosis.candidates = {backlash(0.6), same};
+  const NextSteps next = of(diagnosis);
+  ASSERT_EQ(next.steps.size(), 1u);
+  EXPECT_NEAR(next.steps.front().probability_after, 0.6 / 0.95, 0.02);
+  EXPECT_THAT(next.why, HasSubstr("rows of no such kind tell backlash@j3 from zero_shift@j3"));
+
+  same = coupling(0.35);
+  diagnosis.named.front().confounded_with = {"joint_coupling@j3"};
+  diagnosis.candidates = {backlash(0.6), same};
+  const NextSteps other = of(diagnosis);
+  EXPECT_EQ(other.why.empty(), other.steps.front().probability_after >= 0.95) << other.why;
+}
+
 TEST_F(NextStepsOfAnArm, LookCloserAtTheUnknown) {
   Diagnosis diagnosis;
   diagnosis.verdict = {.effect = kUnknown, .probability = 0.9};

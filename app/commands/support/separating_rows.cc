@@ -5,6 +5,7 @@
 
 #include "app/report/format.h"
 #include "constraints/planning/tour.h"
+#include "diagnosis/constants.h"
 #include "diagnosis/evidence/hypothesis.h"
 #include "io/files/file.h"
 #include "io/files/json_parts.h"
@@ -87,6 +88,8 @@ void order(DataSet& data) {
 
 }  // namespace
 
+bool SeparatingStep::settles() const { return !(probability_after < kDiagnosis.report.settled); }
+
 Result<SeparatingRows> read_separating_rows(const std::string& file) {
   const auto text = read_file(file, kMostBytes);
   if (!text) return tl::unexpected(text.error());
@@ -121,7 +124,9 @@ std::string separating_report(const SeparatingRows& rows) {
     for (const std::string& each : step.separates)
       if (!closer || each != kUnknown) names += (names.empty() ? "" : " from ") + each;
     text += printed("%zu  %s: tells %s", i + 1, step.what.c_str(), names.c_str());
-    text += closer ? "\n" : printed(", which is then %.0f %% sure\n", 100 * step.probability_after);
+    text += closer ? "\n"
+                   : printed(", which is then %.0f %% sure%s\n", 100 * step.probability_after,
+                             step.settles() ? "" : ": not enough to name it");
   }
   if (!rows.why.empty())
     text += (rows.steps.empty() ? "nothing to measure: " : "") + rows.why + "\n";

@@ -15,6 +15,9 @@ struct SeparatingStep {
   std::vector<std::string> separates;  ///< causes
   double probability_after = 0;        ///< of the answer then; NaN where it is not known
   DataSet rows;                        ///< to measure, in the order of a short tour
+
+  /// Nothing is asked for after it, as far as is known beforehand.
+  bool settles() const;
 };
 
 struct SeparatingRows {
