@@ -33,7 +33,13 @@ function live_view() {
   const words = element("figcaption", {});
   const holder = element("div", {class: "view", role: "img", "aria-label": "the robot in its cell"});
   const figure_of_view = element("figure", {}, holder, words);
-  const empty = text => { holder.className = "view empty"; holder.textContent = text; words.textContent = ""; };
+  const empty = text => {
+    holder.className = "view empty";
+    holder.textContent = text;
+    words.textContent = "";
+    if (scene) discard(scene);
+    scene = built_for = null;
+  };
   let renderer, camera, turning, scene, size = 1, built_for = null, robot = null, marks = null, drawn_pose = null, drawn_count = -1;
   const update = () => { if (scene) renderer.render(scene, camera); };
   function open() {
@@ -71,7 +77,7 @@ function live_view() {
       try { open(); } catch (error) { return empty("The 3D view needs WebGL, which this browser does not give."); }
     }
     if (scene) discard(scene);
-    if (!built_for) place_camera(cell, box);
+    if (!built_for || built_for.model_hash !== cell.model_hash) place_camera(cell, box);
     holder.className = "view";
     holder.replaceChildren(renderer.domElement);
     scene = new THREE.Scene();
