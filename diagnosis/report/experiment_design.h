@@ -8,7 +8,7 @@ namespace selfcal {
 
 struct NextSteps {
   std::vector<NextStep> steps;
-  std::string why;  ///< there are none, or they promise little; empty otherwise
+  std::string why;  ///< there are none, or are not enough, and what would be; empty otherwise
 };
 
 /// For each named cause and the one most easily taken for it, and where none is named for the most

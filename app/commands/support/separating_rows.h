@@ -22,7 +22,7 @@ struct SeparatingStep {
 
 struct SeparatingRows {
   std::vector<SeparatingStep> steps;
-  std::string why;  ///< there are none, or they promise little
+  std::string why;  ///< there are none, or are not enough
 };
 
 /// Of `diagnosis.json`, or of the file that `diagnose --next` writes.
