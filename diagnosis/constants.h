@@ -27,7 +27,9 @@ struct DiagnosisConstants {
     /// Of the equations, that unknowns take at most where noise is told from the middle of what is
     /// left; 0.5 to 0.9 [habit]
     double most_taken = 0.7;
-    /// Sigmas by which the noises of two methods differ once the causes are known; 2 to 5 [habit]
+    /// Equations beyond the geometry from which a set has a noise of its own; 15 to 60 [habit]
+    double fewest_of_set = 20;
+    /// Sigmas by which two noises differ once the causes are known; 2 to 5 [habit]
     double unlike = 3;
   };
   /// Structure of no known cause; sizes are over the noise.

@@ -56,28 +56,47 @@ std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted) {
   return noise;
 }
 
+namespace {
+
+/// What is left of rows that have one noise.
+struct LeftOfRows {
+  std::vector<double> sizes;
+  double freedom = 0, variance = 1;
+
+  void operator+=(const LeftOfRows& other) {
+    sizes.insert(sizes.end(), other.sizes.begin(), other.sizes.end());
+    freedom += other.freedom;
+  }
+  double log_sigma() const { return std::sqrt(kOfMedian / freedom); }
+};
+
+}  // namespace
+
 std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& row,
                                  const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves) {
-  struct Left {
-    std::vector<double> sizes;
-    double freedom = 0, variance = 1;
-    double log_sigma() const { return std::sqrt(kOfMedian / freedom); }
-  };
-  std::map<Instrument, Left> by_instrument;
+  std::vector<LeftOfRows> of_set(data.sets.size());
   for (size_t i = 0; i < row.size(); ++i) {
     if (row[i] < 0) continue;
-    Left& left = by_instrument[instrument_of(data.sets[data.rows.set[row[i]]])];
+    LeftOfRows& left = of_set[static_cast<size_t>(data.rows.set[row[i]])];
     left.sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
     left.freedom += leaves[static_cast<Eigen::Index>(i)];
   }
+  // Sets of few rows stand together.
+  using Key = std::pair<Instrument, int>;
+  const auto key_of = [&](size_t s) {
+    const bool alone = of_set[s].freedom >= kDiagnosis.rows.fewest_of_set;
+    return Key(instrument_of(data.sets[s]), alone ? static_cast<int>(s) : -1);
+  };
+  std::map<Key, LeftOfRows> alike;
+  for (size_t s = 0; s < of_set.size(); ++s) alike[key_of(s)] += of_set[s];
   // Those that their own unknowns meet tell nothing.
-  std::erase_if(by_instrument, [](const auto& each) {
+  std::erase_if(alike, [](const auto& each) {
     return each.second.freedom < kDiagnosis.rows.fewest_freedoms;
   });
   std::vector<double> unlike(data.sets.size(), 1);
-  const Left *least = nullptr, *most = nullptr;
+  const LeftOfRows *least = nullptr, *most = nullptr;
   double squares = 0, freedom = 0;
-  for (auto& [instrument, left] : by_instrument) {
+  for (auto& [key, left] : alike) {
     const double share = left.freedom / static_cast<double>(left.sizes.size());
     left.variance =
         std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(left.sizes)), 2) / share;
@@ -91,8 +110,7 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
           kDiagnosis.rows.unlike * std::hypot(least->log_sigma(), most->log_sigma()))
     return unlike;
   for (size_t s = 0; s < unlike.size(); ++s)
-    if (const auto found = by_instrument.find(instrument_of(data.sets[s]));
-        found != by_instrument.end())
+    if (const auto found = alike.find(key_of(s)); found != alike.end())
       unlike[s] = found->second.variance * freedom / squares;
   return unlike;
 }

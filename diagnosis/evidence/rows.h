@@ -14,7 +14,8 @@ namespace selfcal {
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
 /// Variance of the noise of each set over that of all, from what the best explanation leaves
 /// (`residuals`) of equations of `row`, each of which keeps the share `leaves` beyond the geometry:
-/// one for all sets of a method and stated noise. 1 where the rows do not tell them apart.
+/// one for all sets of a method and stated noise but for those with rows enough for their own. 1
+/// where the rows do not tell them apart.
 std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& row,
                                  const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves);
 /// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where

@@ -222,7 +222,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const std::string names = names_in_words(diagnosis.named);
   diagnosis.named.clear();
-  if (named && diagnosis.next.empty())
+  if (!names.empty() && diagnosis.next.empty())
     diagnosis.next_why = "nothing is named: look at the rows and files first";
   for (FoundEffect& each : diagnosis.found) each.named = false;
   if (!names.empty()) diagnosis.model = without_names(diagnosis.model);
