@@ -18,6 +18,8 @@ constexpr double kShortStep = 50e-3;
 /// Of a pivot of the normal equations over its diagonal, which rounding blurs by some 1e-15: the
 /// step of a direction is then good to a thousandth, and the next iteration does the rest.
 constexpr double kLeastPivot = 1e-12;
+/// Of the groups' values, each with the rows' weights of the one before.
+constexpr int kSettlings = 2;
 
 /// What a change of each column is measured by: the robot's size where it is a length, else 1.
 Eigen::VectorXd units_of_columns(const Equations& equations) {
@@ -40,6 +42,7 @@ FitSystem::FitSystem(const Equations& equations, const Prior& prior, State start
       prior_(prior),
       columns_(free_columns(equations, prior)),
       units_(units_of_columns(equations)),
+      has_groups_(equations.nuisance_dimensions() > equations.nuisance_columns()),
       state_(std::move(start)),
       weighting_(std::move(weighting)) {
   linearise();
@@ -161,23 +164,38 @@ double FitSystem::whitened(const Eigen::MatrixXd& triangle, const Eigen::VectorX
   return (triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>() * s).norm();
 }
 
-bool FitSystem::go(const Eigen::VectorXd& step) {
-  State trial = stepped(step);
-  Linearised factor;
-  NormalEquations products;
+FitSystem::Trial FitSystem::at(State state) const {
+  Trial trial{std::move(state)};
   if (by_factor_)
-    factor = equations_.linearise(trial, weighting_);
+    trial.factor = equations_.linearise(trial.state, weighting_);
   else
-    products = equations_.normal_equations(trial, weighting_, columns_);
-  const double cost = (by_factor_ ? factor.cost : products.cost) + prior_cost(trial);
-  if (!(std::isfinite(cost) && cost <= cost_ * (1 + 1e-9) + 1e-9)) {
-    tried_ = {cost, std::move((by_factor_ ? static_cast<Passed&>(factor) : products).norms)};
-    return false;
+    trial.products = equations_.normal_equations(trial.state, weighting_, columns_);
+  trial.cost = (by_factor_ ? trial.factor.cost : trial.products.cost) + prior_cost(trial.state);
+  return trial;
+}
+
+FitSystem::Trial FitSystem::with_groups_settled(const Trial& trial) const {
+  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(equations_.columns());
+  return at(by_factor_ ? equations_.stepped(trial.state, trial.factor, stay)
+                       : equations_.stepped(trial.state, trial.products, stay));
+}
+
+bool FitSystem::go(const Eigen::VectorXd& step) {
+  const auto lower = [&](const Trial& trial) {
+    return std::isfinite(trial.cost) && trial.cost <= cost_ * (1 + 1e-9) + 1e-9;
+  };
+  Trial trial = at(stepped(step));
+  if (!lower(trial)) {
+    tried_ = {trial.cost, (by_factor_ ? static_cast<Passed&>(trial.factor) : trial.products).norms};
+    for (int i = 0; has_groups_ && i < kSettlings && std::isfinite(trial.cost) && !lower(trial);
+         ++i)
+      trial = with_groups_settled(trial);
+    if (!lower(trial)) return false;
   }
-  state_ = std::move(trial);
-  factor_ = std::move(factor);
-  products_ = std::move(products);
-  cost_ = cost;
+  state_ = std::move(trial.state);
+  factor_ = std::move(trial.factor);
+  products_ = std::move(trial.products);
+  cost_ = trial.cost;
   return true;
 }
 

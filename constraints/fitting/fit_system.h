@@ -41,7 +41,9 @@ class FitSystem {
     double cost = 0;
     std::vector<RowNorm> norms;  ///< as Passed's
   };
-  /// Goes on by `step` if the cost is none the higher there.
+  /// Goes on by `step` if the cost is none the higher there, or becomes so once the groups of rows
+  /// have settled for the other values: where these turn far, shared points go round a bend that
+  /// no step of all values takes.
   bool go(const Eigen::VectorXd& step);
   const Tried& tried() const { return tried_; }
 
@@ -53,6 +55,16 @@ class FitSystem {
   Linearised take_factor() { return std::move(factor_); }
 
  private:
+  /// A state with what a pass over the rows at it left.
+  struct Trial {
+    State state;
+    Linearised factor = {};
+    NormalEquations products = {};
+    double cost = 0;
+  };
+  Trial at(State state) const;
+  /// The same after a step of the groups' values alone.
+  Trial with_groups_settled(const Trial& trial) const;
   void linearise();
   State stepped(const Eigen::VectorXd& step) const;
   double prior_cost(const State& state) const;
@@ -71,6 +83,7 @@ class FitSystem {
   const Prior& prior_;
   const std::vector<int> columns_;
   const Eigen::VectorXd units_;  ///< what a change of each column is measured by
+  const bool has_groups_;
   State state_;
   Weighting weighting_;
   bool by_factor_ = false;  ///< the normal equations would leave a direction to rounding
