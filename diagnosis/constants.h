@@ -207,6 +207,11 @@ struct DiagnosisConstants {
     /// Of the squares that a moved instrument leaves: named effects that leave less tell it better;
     /// 0.5 to 1 [habit]
     double better_than_moved = 0.8;
+    /// Rows put aside, at least, that may have something in common, and the probability by which
+    /// they do by chance; 3 to 8, 1e-4 to 0.01 [habit]
+    int fewest_alike = 4;
+    double alike_by_chance = 1e-3;
+    double pause = 5;          ///< over the usual time from one row to the next; 3 to 20 [habit]
     double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
     /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
     double confirmed = 0.3;

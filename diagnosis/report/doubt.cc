@@ -41,7 +41,8 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
 
 bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
 
-/// A spring that pushes back more than it is pushed.
+/// A joint or a link that pushes back more than it is pushed. A tool may bend elsewhere than at its
+/// flange, which the law of tool_compliance has some numbers below zero for.
 std::string impossible_sign(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)

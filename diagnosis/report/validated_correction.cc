@@ -10,6 +10,7 @@
 #include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/holdout_validation.h"
 #include "diagnosis/report/named.h"
+#include "diagnosis/report/shared_by_outliers.h"
 #include "diagnosis/report/warnings.h"
 
 namespace selfcal {
@@ -42,6 +43,10 @@ class CorrectionValidation {
     share_among_named();
     validate_candidates();
     result_.warnings = warnings_of(linearised_, data_, validation);
+    if (std::string shared =
+            shared_by_outliers(data_, linearised_.geometry().joints(), result_.outliers);
+        !shared.empty())
+      result_.warnings.push_back(std::move(shared));
   }
 
   /// Geometry alone against geometry with what is named, and with everything found.
