@@ -6,6 +6,7 @@
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -108,6 +109,12 @@ double student_quantile(double probability, double freedom) {
 double student_below(double value, double freedom) {
   if (std::isnan(value) || !(freedom > 0)) return 0.5;
   return boost::math::cdf(boost::math::students_t_distribution<double, Fast>(freedom), value);
+}
+
+double as_many_drawn(unsigned seen, unsigned drawn, unsigned having, unsigned all) {
+  if (seen == 0 || seen + all <= having + drawn) return 1;
+  const boost::math::hypergeometric_distribution<> draw(having, drawn, all);
+  return cdf(complement(draw, seen - 1));
 }
 
 double signed_rank_p(const std::vector<double>& differences) {

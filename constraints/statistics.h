@@ -21,6 +21,10 @@ double student_quantile(double probability, double freedom);
 /// Probability that a Student t variable of `freedom` (any positive number) stays below `value`.
 double student_below(double value, double freedom);
 
+/// Probability that of `drawn` out of `all`, `having` of which have something, `seen` and more have
+/// it (Fisher's exact test).
+double as_many_drawn(unsigned seen, unsigned drawn, unsigned having, unsigned all);
+
 /// One-sided Wilcoxon signed-rank test that the differences are positive rather than symmetric
 /// about zero; exact up to 50 differences without ties, normal approximation with tie correction
 /// beyond. Zeros and what is no number are dropped; 1 when nothing is left.

@@ -46,7 +46,8 @@ bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compl
 std::string impossible_sign(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)
-      if (gives_way(each) && v.positive && v.value + kDiagnosis.report.other_sign * v.sigma < 0)
+      if (gives_way(each) && each.effect != "tool_compliance" && v.positive &&
+          v.value + kDiagnosis.report.other_sign * v.sigma < 0)
         return "no machine has " + v.name + " below zero, and the rows would need " +
                in_readable_unit(v.value, v.unit) + ": something else pulls where its weight would";
   return {};

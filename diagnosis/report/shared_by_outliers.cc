@@ -1,7 +1,6 @@
 #include "diagnosis/report/shared_by_outliers.h"
 
 #include <algorithm>
-#include <boost/math/distributions/hypergeometric.hpp>
 
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
@@ -14,14 +13,6 @@ struct Trait {
   std::string words;       ///< "were taken after a pause"
   std::vector<char> rows;  ///< by row, whether it has it
 };
-
-/// Probability that of `drawn` out of `all` rows, `having` of which have a trait, `seen` and more
-/// do.
-double by_chance(unsigned seen, unsigned drawn, unsigned having, unsigned all) {
-  if (seen == 0 || seen + all <= having + drawn) return 1;
-  const boost::math::hypergeometric_distribution<> draw(having, drawn, all);
-  return cdf(complement(draw, seen - 1));
-}
 
 std::vector<Trait> traits_of(const DataSet& data, const std::vector<Joint>& joints) {
   const Observations& rows = data.rows;
@@ -74,7 +65,7 @@ std::string shared_by_outliers(const DataSet& data, const std::vector<Joint>& jo
     const auto having = static_cast<unsigned>(std::ranges::count(trait.rows, char{1}));
     const auto seen = static_cast<unsigned>(std::ranges::count_if(
         outliers, [&](const Outlier& each) { return trait.rows[each.row - 1] != 0; }));
-    const double p = by_chance(seen, static_cast<unsigned>(outliers.size()), having, all);
+    const double p = as_many_drawn(seen, static_cast<unsigned>(outliers.size()), having, all);
     if (p > least) continue;
     least = p;
     words = "of the " + std::to_string(outliers.size()) + " rows put aside as false " +

@@ -159,5 +159,15 @@ TEST(Median, IsTheMiddleOne) {
   EXPECT_EQ(median({}), 0);
 }
 
+TEST(AsManyDrawn, CountsTheDrawsWithoutReplacement) {
+  // Of 60, ten of which have it, five: 252 of 5 461 512 draws have five of these.
+  EXPECT_NEAR(as_many_drawn(5, 5, 10, 60), 252 / 5461512.0, 1e-12);
+  // Of four, two of which have it, two: one of six draws has both, five have at least one.
+  EXPECT_NEAR(as_many_drawn(2, 2, 2, 4), 1 / 6.0, 1e-12);
+  EXPECT_NEAR(as_many_drawn(1, 2, 2, 4), 5 / 6.0, 1e-12);
+  EXPECT_EQ(as_many_drawn(0, 2, 2, 4), 1);
+  EXPECT_EQ(as_many_drawn(1, 3, 2, 4), 1) << "three of four cannot but have one";
+}
+
 }  // namespace
 }  // namespace selfcal
