@@ -169,11 +169,13 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised
   return frame_steps(*robot, calibrated.values, data, calibrated.residual.rows);
 }
 
-/// A drift looks like a step where the rows of either end lie together, and leaves less than it.
+/// A drift as machines have it looks like a step where the rows of either end lie together, and
+/// leaves less than it.
 bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
                         const Diagnosis& diagnosis, const Solution& calibrated) {
-  if (std::ranges::none_of(diagnosis.named,
-                           [](const CauseResult& each) { return moves(each.effect); }))
+  const bool drifts = std::ranges::any_of(
+      diagnosis.named, [](const CauseResult& each) { return each.effect == "base_drift"; });
+  if (!drifts || drifts_too_far(diagnosis.named) || !impossible_size(diagnosis.named).empty())
     return false;
   const double with_step =
       (1 - calibrated.frame_steps.front().share) * std::pow(calibrated.residual.fit.rms_after, 2);
