@@ -26,7 +26,7 @@ std::vector<Trait> traits_of(const DataSet& data, const std::vector<Joint>& join
   for (std::size_t s = 0; data.sets.size() > 1 && s < data.sets.size(); ++s)
     add("are of set " + data.sets[s].name,
         [&](int row) { return rows.set[static_cast<std::size_t>(row)] == static_cast<int>(s); });
-  for (Eigen::Index j = 0; j < rows.velocity.cols(); ++j)
+  for (Eigen::Index j = 0; rows.velocity.rows() > 0 && j < rows.velocity.cols(); ++j)
     for (const auto& [way, sign] : {std::pair("upwards", 1), std::pair("downwards", -1)})
       add("were approached with " + joints[static_cast<std::size_t>(j)].name + " going " + way,
           [&, sign = sign](int row) { return sign * rows.velocity(row, j) > 0; });
