@@ -94,11 +94,16 @@ Failure with_likely_wrong(Failure refused, const std::string& path) {
   return refused;
 }
 
+/// Of a gross misfit, that a calibration of rows that belong to the robot may leave.
+constexpr double kMostLeftOfGross = 0.5;
+
 LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
                          const std::shared_ptr<const Robot>& robot, const NominalFit& nominal) {
   const double gross = gross_misfit(*robot, nominal.lengths);
   const double tool = nominal.lengths ? tool_moved(nominal.model, nominal.values) : 0;
-  if (nominal.rms <= gross && tool <= gross) return {};
+  // Calibration takes in most of what the maker's tolerances leave.
+  const bool taken_in = nominal.calibrated <= kMostLeftOfGross * gross;
+  if (nominal.rms <= gross && tool <= gross && taken_in) return {};
   const auto look = look_at_files(path, loaded, robot);
   if (!look || look->found.empty()) return {};
   const std::string unit = look->lengths ? "mm" : "mrad";

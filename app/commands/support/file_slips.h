@@ -26,6 +26,7 @@ struct NominalFit {
   bool lengths = true;  ///< it is one of lengths
   const Robot& model;   ///< whose parameters `values` are
   const Eigen::VectorXd& values;
+  double calibrated = 0;  ///< what calibration leaves of it; 0 where that is not known
 };
 
 /// The same look for somebody who asked for something else.
