@@ -225,8 +225,7 @@ TouchPlan plan_touches(const Robot& robot, const Eigen::VectorXd& xi, const std:
     TouchPlan ordered = in_short_order(cell, sets, chosen);
     plan.touches = std::move(ordered.touches);
     plan.left_out = std::move(ordered.left_out);
-    const MotionTime time = motion_time(robot, xi, plan, options);
-    const double takes = time.travel + time.touching;
+    const double takes = motion_time(robot, xi, plan, options).total();
     if (options.longest <= 0) return plan;
     if (takes <= options.longest) {
       if (!best || best->touches.size() < plan.touches.size()) best = plan;

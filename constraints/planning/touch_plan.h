@@ -70,6 +70,7 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
 /// into the contacts and out.
 struct MotionTime {
   double travel = 0, touching = 0;
+  double total() const { return travel + touching; }
 };
 
 /// Out of a socket the robot moves so much faster than into it; off a surface as between touches.

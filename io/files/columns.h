@@ -24,6 +24,14 @@ enum class CellKind {
   celsius,   ///< a number that is a temperature of a robot at work
 };
 
+/// K of a joint's column PREFIXk ("q3", "dq3").
+std::optional<int> joint_of(std::string_view name, std::string_view prefix);
+/// Of a column by its name in data sets; `measured` are those that methods bring along.
+CellKind kind_of(std::string_view name, const std::vector<MeasuredColumn>& measured);
+/// What its numbers measure.
+Dimension dimension_of(std::string_view name, const std::vector<Joint>& joints,
+                       const std::vector<MeasuredColumn>& measured);
+
 struct Column {
   std::string name;  ///< as data sets have it
   CellKind kind = CellKind::ignored;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "kinematics/description.h"
-#include "tests/app/cell.h"
+#include "tests/app/program.h"
 #include "tests/support/text.h"
 
 namespace selfcal {
@@ -46,13 +46,10 @@ inline const std::string kLevels =
 
 using Cells = std::vector<std::string>;
 
-class DataCheck : public testing::Test {
+class DataCheck : public Program {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
+    Program::SetUp();
     std::ofstream(folder_ / "s.yaml") << kScenario;
     simulate(kTable);
   }

@@ -182,12 +182,12 @@ TEST(TouchPlan, FillsTheTimeThatItsMotionMayTake) {
   const MotionTime all = motion_time(rx90(), values(rx90()), free, cell.options);
   double used = 0;
   for (const double share : {0.7, 0.5, 0.35}) {
-    cell.options.longest = share * (all.travel + all.touching);
+    cell.options.longest = share * all.total();
     const TouchPlan some = cell.plan();
     ASSERT_EQ(some.unreached, "");
     const MotionTime time = motion_time(rx90(), values(rx90()), some, cell.options);
-    EXPECT_LE(time.travel + time.touching, cell.options.longest);
-    used += (time.travel + time.touching) / cell.options.longest / 3;
+    EXPECT_LE(time.total(), cell.options.longest);
+    used += time.total() / cell.options.longest / 3;
   }
   // Both sets get a touch more at a time, which take some 4 to 10 s together of 65 to 130 s.
   EXPECT_GT(used, 0.9);
@@ -197,11 +197,11 @@ TEST(TouchPlan, KeepsTouchesApartAndItsMotionWithinItsTime) {
   PlannedCell cell = table_and_wall(12);
   const TouchPlan free = cell.plan();
   const MotionTime all = motion_time(rx90(), values(rx90()), free, cell.options);
-  cell.options.longest = 0.6 * (all.travel + all.touching);
+  cell.options.longest = 0.6 * all.total();
   const TouchPlan shorter = cell.plan();
   const MotionTime some = motion_time(rx90(), values(rx90()), shorter, cell.options);
   EXPECT_EQ(shorter.unreached, "");
-  EXPECT_LE(some.travel + some.touching, cell.options.longest);
+  EXPECT_LE(some.total(), cell.options.longest);
   EXPECT_GE(shorter.touches.size(), 8U);
   EXPECT_LT(shorter.touches.size(), free.touches.size());
   cell.options.longest = 1;

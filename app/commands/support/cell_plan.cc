@@ -76,8 +76,8 @@ std::string cell_plan_report(const Config& config, const CellPlan& cell) {
       1e3 * cell.expected.workspace.rms, 1e3 * cell.expected.workspace.max,
       1e3 * cell.expected.endpoint.rms);
   text += printed("  motion %s: %s between touches, %s into contacts and out\n",
-                  duration(cell.time.travel + cell.time.touching).c_str(),
-                  duration(cell.time.travel).c_str(), duration(cell.time.touching).c_str());
+                  duration(cell.time.total()).c_str(), duration(cell.time.travel).c_str(),
+                  duration(cell.time.touching).c_str());
   text += curve_report(cell.expected.curve, config.target, "touches that identify", "  ");
   return text + printed("  target %.3g mm: %s\n", 1e3 * config.target,
                         cell.reaches(config)
