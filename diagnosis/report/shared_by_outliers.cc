@@ -40,7 +40,8 @@ std::vector<Trait> traits_of(const DataSet& data, const std::vector<Joint>& join
     add(words, [&, third = third](int row) {
       return 3 * place[static_cast<std::size_t>(row)] / count == third;
     });
-  if (rows.time.rows() == 0 || data.order_is_time || count < 2) return list;
+  const bool timed = rows.time.rows() > 0 && rows.time.allFinite() && !data.order_is_time;
+  if (!timed || count < 2) return list;
   std::vector<double> gaps;
   for (std::size_t i = 1; i < count; ++i)
     gaps.push_back(rows.time[order[i]] - rows.time[order[i - 1]]);
@@ -57,12 +58,16 @@ std::vector<Trait> traits_of(const DataSet& data, const std::vector<Joint>& join
 std::string shared_by_outliers(const DataSet& data, const std::vector<Joint>& joints,
                                const std::vector<Outlier>& outliers) {
   if (std::ssize(outliers) < kDiagnosis.report.fewest_alike) return {};
-  const auto all = static_cast<unsigned>(data.rows.rows());
+  const auto takes_part = [&](std::size_t row) { return data.rows.check[row] != kCopy; };
+  unsigned all = 0;
+  for (std::size_t row = 0; row < data.rows.check.size(); ++row) all += takes_part(row);
   const std::vector<Trait> traits = traits_of(data, joints);
   double least = kDiagnosis.report.alike_by_chance / static_cast<double>(traits.size());
   std::string words;
   for (const Trait& trait : traits) {
-    const auto having = static_cast<unsigned>(std::ranges::count(trait.rows, char{1}));
+    unsigned having = 0;
+    for (std::size_t row = 0; row < trait.rows.size(); ++row)
+      having += trait.rows[row] && takes_part(row);
     const auto seen = static_cast<unsigned>(std::ranges::count_if(
         outliers, [&](const Outlier& each) { return trait.rows[each.row - 1] != 0; }));
     const double p = as_many_drawn(seen, static_cast<unsigned>(outliers.size()), having, all);

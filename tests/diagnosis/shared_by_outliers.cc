@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/diagnosis/two_sessions.h"
 
 namespace selfcal {
@@ -41,6 +43,16 @@ TEST_F(SharedByOutliers, IsTheWayThatAJointWasApproached) {
 
 TEST_F(SharedByOutliers, IsAPauseBefore) {
   EXPECT_THAT(of({3, 13, 23, 43, 53}), HasSubstr("5 were taken after a pause, as 6 of all 60"));
+}
+
+TEST_F(SharedByOutliers, IsNoPauseWhereNotEveryRowHasItsTime) {
+  data.rows.time[7] = std::nan("");
+  EXPECT_EQ(of({3, 13, 23, 43, 53}), "");
+}
+
+TEST_F(SharedByOutliers, CountsNoRowThatTakesNoPart) {
+  for (int row = 6; row < 12; ++row) data.rows.check[row] = kCopy;
+  EXPECT_THAT(of({0, 12, 24, 36, 48}), HasSubstr("as 9 of all 54 rows were"));
 }
 
 TEST_F(SharedByOutliers, IsNothingWhereChanceDoesAsMuch) {
