@@ -134,8 +134,6 @@ class DataCheck : public Program {
     EXPECT_EQ(ran.status, 1) << ran.out;
     EXPECT_THAT(ran.out, testing::HasSubstr("likely wrong: " + what));
   }
-
-  std::filesystem::path folder_;
 };
 
 inline const Cells kReadings = {"q1", "q2", "q3", "q4", "q5", "q6"};

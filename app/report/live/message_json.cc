@@ -4,7 +4,6 @@
 
 namespace selfcal {
 
-
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
