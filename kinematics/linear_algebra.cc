@@ -53,6 +53,17 @@ void solve_in_place(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& L, Eigen::MatrixX
               width(B.cols()), 1, L.data(), width(L.rows()), B.data(), width(B.rows()));
 }
 
+/// op(A) B.
+Eigen::MatrixXd large_product(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& A,
+                              const Eigen::MatrixXd& B) {
+  Eigen::MatrixXd AB(op == CblasTrans ? A.cols() : A.rows(), B.cols());
+  const auto turn = turn_of_one();
+  cblas_dgemm(CblasColMajor, op, CblasNoTrans, width(AB.rows()), width(B.cols()), width(B.rows()),
+              1, A.data(), width(A.rows()), B.data(), width(B.rows()), 0, AB.data(),
+              width(AB.rows()));
+  return AB;
+}
+
 /// By divide and conquer.
 Symmetric large_symmetric_eigen(const Eigen::MatrixXd& A) {
   Symmetric eigen{Eigen::VectorXd(A.rows()), A};
@@ -157,7 +168,12 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 
 Eigen::MatrixXd least_squares_of_all(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   if (A.cols() == 0 || B.cols() == 0) return Eigen::MatrixXd::Zero(A.cols(), B.cols());
-  return A.completeOrthogonalDecomposition().solve(B);
+  if (A.rows() <= A.cols()) return A.completeOrthogonalDecomposition().solve(B);
+  const Eigen::Index n = A.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), n);
+  const Eigen::MatrixXd R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  return R.completeOrthogonalDecomposition().solve(transposed_product(Q, B));
 }
 
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {
@@ -212,16 +228,16 @@ Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::Ma
   return X;
 }
 
+Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  expects(A.cols() == B.rows(), "as many columns as rows");
+  if (static_cast<double>(A.size() * B.cols()) < kWorthACall) return A * B;
+  return large_product(CblasNoTrans, A, B);
+}
+
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   expects(A.rows() == B.rows(), "two of as many rows");
   if (static_cast<double>(A.size() * B.cols()) < kWorthACall) return A.transpose() * B;
-  Eigen::MatrixXd AB(A.cols(), B.cols());
-  if (AB.size() == 0) return AB;
-  const auto turn = turn_of_one();
-  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, width(A.cols()), width(B.cols()),
-              width(A.rows()), 1, A.data(), width(A.rows()), B.data(), width(B.rows()), 0,
-              AB.data(), width(A.cols()));
-  return AB;
+  return large_product(CblasTrans, A, B);
 }
 
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {

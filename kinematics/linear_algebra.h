@@ -44,6 +44,8 @@ Eigen::MatrixXd cholesky_root(Eigen::MatrixXd A);
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
 /// L^-T B.
 Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
+/// A B, of large ones too.
+Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// A^T B.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// Inverse of the positive definite `A`; not a number where it is none.

@@ -130,6 +130,7 @@ double squared(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
 /// What halves of the rows differ by more than they should, `by_repeats` being known.
 Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
                               const Eigen::MatrixXd& weight, const Eigen::MatrixXd& by_repeats) {
+  if (weight.isZero(0)) return Eigen::MatrixXd::Zero(by_repeats.rows(), by_repeats.cols());
   const HalfSamples halves = half_samples(equations, adjusted);
   const double seen = squared(weight, halves.seen);
   const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);

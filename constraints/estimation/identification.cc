@@ -154,17 +154,19 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
 
   const Weighting weighting{fitted.noise.used, fitted.noise.outlier};
   const Eigen::MatrixXd R = equations.linearise(fitted.state, weighting, true).R;
-  EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
+  const EndpointQuestion question = endpoint_question(equations, adjusted, R, options.seed);
   const bool nothing = nothing_free(adjusted);
   EndpointQuestion where_it_counts = question;
   where_it_counts.poses =
       workspace_poses(robot, question.xi, data.workspace, data.rows.q, kPoses, options.seed);
-  const Eigen::MatrixXd weight = endpoint_weight(where_it_counts);
-  std::vector<CovarianceSource> sources =
-      covariance_sources(equations, adjusted, R,
-                         where_it_counts.poses.rows() > 0 ? weight : endpoint_weight(question));
+  const auto deviations = [&](const EndpointQuestion& asked) {
+    return nothing ? EndpointDeviations{} : endpoint_deviations(asked);
+  };
+  const EndpointDeviations everywhere = deviations(question), there = deviations(where_it_counts);
+  std::vector<CovarianceSource> sources = covariance_sources(
+      equations, adjusted, R, there.shift.rows() > 0 ? there.weight : everywhere.weight);
   const ScaleJudgement scale =
-      nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, question);
+      nothing ? ScaleJudgement{} : judge_scale(equations, adjusted, R, everywhere.weight);
   for (const Eigen::VectorXd& doubt : scale.doubts)
     sources.push_back({"a length given that is contradicted", doubt * doubt.transpose()});
   const Eigen::MatrixXd C = sum(sources);
@@ -192,12 +194,12 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
     solution.verdict.why = "nothing was identified: every parameter is fixed or held";
     return solution;
   }
-  question.covariance = C.topLeftCorner(equations.robot_columns(), equations.robot_columns());
-  solution.endpoint = endpoint_sigma(question);
-  where_it_counts.covariance = question.covariance;
-  solution.workspace = endpoint_sigma(where_it_counts);
+  const Eigen::MatrixXd of_robot =
+      C.topLeftCorner(equations.robot_columns(), equations.robot_columns());
+  solution.endpoint = endpoint_sigma(everywhere, of_robot);
+  solution.workspace = endpoint_sigma(there, of_robot);
   solution.uncertainty =
-      uncertainty(equations, adjusted, sources, after, where_it_counts, weight, solution.workspace);
+      uncertainty(equations, adjusted, sources, after, where_it_counts, there, solution.workspace);
   solution.orientation_seen = orientation_is_seen(equations);
   Grounds grounds{solution.endpoint,
                   solution.workspace,

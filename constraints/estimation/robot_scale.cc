@@ -275,9 +275,9 @@ class ScaleTest {
 }  // namespace
 
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
-                           const Eigen::MatrixXd& R, const EndpointQuestion& question) {
+                           const Eigen::MatrixXd& R, const Eigen::MatrixXd& weight) {
   if (!adjusted.prior.use || equations.known_lengths() == 0) return {};
-  return ScaleTest(equations, adjusted, R, endpoint_weight(question)).run();
+  return ScaleTest(equations, adjusted, R, weight).run();
 }
 
 }  // namespace selfcal

@@ -15,11 +15,10 @@ struct ScaleJudgement {
   std::vector<Eigen::VectorXd> doubts;
 };
 
-/// `R` is whitened, at `adjusted.fitted`, with the columns beside the unknowns; `question` is that
-/// of the end position, whose covariance is not looked at. Nothing stands on given lengths where a
-/// length of the robot is held or fixed, though they are tested; without priors, or where nothing
-/// is free, they are not.
+/// `R` is whitened, at `adjusted.fitted`, with the columns beside the unknowns; `weight` is that
+/// of the end position. Nothing stands on given lengths where a length of the robot is held or
+/// fixed, though they are tested; without priors, or where nothing is free, they are not.
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
-                           const Eigen::MatrixXd& R, const EndpointQuestion& question);
+                           const Eigen::MatrixXd& R, const Eigen::MatrixXd& weight);
 
 }  // namespace selfcal

@@ -209,7 +209,7 @@ std::vector<GridCell> grid(const DataSet& data, const EndpointQuestion& question
 
 Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
                         const std::vector<CovarianceSource>& sources, const Judged& after,
-                        EndpointQuestion question, const Eigen::MatrixXd& weight,
+                        const EndpointQuestion& question, const EndpointDeviations& deviations,
                         const EndpointSigma& sigma) {
   const DataSet& data = equations.data();
   const Noise& noise = adjusted.fitted.noise;
@@ -219,17 +219,17 @@ Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
   result.k = student_quantile((1 + kCoverage) / 2, std::max(result.freedoms, 1.0));
   for (const CovarianceSource& source : sources)
     result.budget.push_back(
-        {std::string(source.name), endpoint_rms(weight, source.C.topLeftCorner(n, n))});
+        {std::string(source.name), endpoint_rms(deviations.weight, source.C.topLeftCorner(n, n))});
   result.expanded = result.k * sigma.rms;
   const std::vector<const RowResidual*> rows = used_rows(after, noise);
   result.lack_of_fit = lack_of_fit(data, rows, noise, result.freedoms);
   result.residuals = residual_tests(rows, noise);
   result.correlations = correlations(equations.robot(), sum(sources));
   result.repeats = pose_repeats(data, after);
-  question.covariance.setZero();
+  Eigen::MatrixXd lasting = Eigen::MatrixXd::Zero(n, n);
   for (const CovarianceSource& source : sources)
-    if (stays(source)) question.covariance += source.C.topLeftCorner(n, n);
-  result.grid = grid(data, question, sigma, endpoint_sigma(question), after);
+    if (stays(source)) lasting += source.C.topLeftCorner(n, n);
+  result.grid = grid(data, question, sigma, endpoint_sigma(deviations, lasting), after);
   return result;
 }
 

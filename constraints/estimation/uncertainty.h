@@ -10,12 +10,11 @@
 
 namespace selfcal {
 
-/// `sources` add up to the covariance; `question` is of the workspace, `weight` its
-/// endpoint_weight() and `sigma` its answer with that covariance; `after` are the residuals of the
-/// calibrated robot.
+/// `sources` add up to the covariance; `question` is of the workspace, `deviations` are its and
+/// `sigma` is what they say of that covariance; `after` are the residuals of the calibrated robot.
 Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
                         const std::vector<CovarianceSource>& sources, const Judged& after,
-                        EndpointQuestion question, const Eigen::MatrixXd& weight,
+                        const EndpointQuestion& question, const EndpointDeviations& deviations,
                         const EndpointSigma& sigma);
 
 }  // namespace selfcal

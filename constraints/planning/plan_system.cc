@@ -114,7 +114,7 @@ void PlanSystem::take_weight(const Workspace& workspace, const Eigen::MatrixXd& 
   aligned_ = unseen.cols() > 0 || point_unknown;
   if (question.poses.rows() == 0) return;
   weight_.setZero(equations_.columns(), equations_.columns());
-  weight_.topLeftCorner(robot_columns(), robot_columns()) = endpoint_weight(question);
+  weight_.topLeftCorner(robot_columns(), robot_columns()) = endpoint_deviations(question).weight;
 }
 
 void PlanSystem::take_prior() {

@@ -138,7 +138,7 @@ Eigen::MatrixXd weight_of(const Robot& robot, const Eigen::VectorXd& xi,
   question.point_unknown = std::ranges::none_of(
       candidates, [&](const PossibleTouch& each) { return sets[each.set].method->sees_point(); });
   question.poses = judged_poses(robot, xi, workspace);
-  return endpoint_weight(question);
+  return endpoint_deviations(question).weight;
 }
 
 /// Moves those of the candidates that identify.

@@ -255,21 +255,22 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   EndpointQuestion question;
   question.robot = &robot;
   question.xi = xi;
-  question.covariance = covariance_after(robot, xi, sets, touches, prior);
   question.unseen = unseen_by_touches(robot, xi, sets, touches);
   question.point_unknown = std::ranges::none_of(
       targets, [&](const TouchTarget& each) { return sets[each.set].method->sees_point(); });
   question.poses = random_poses(robot, nullptr, kPoses, kSeed);
+  const Eigen::MatrixXd C = covariance_after(robot, xi, sets, touches, prior);
   ExpectedSigma expected;
-  expected.endpoint = endpoint_sigma(question);
+  expected.endpoint = endpoint_sigma(endpoint_deviations(question), C);
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(touches.size()), question.poses.cols());
   for (std::size_t i = 0; i < touches.size(); ++i)
     rows.row(static_cast<Eigen::Index>(i)) = touches[i].q.transpose();
   question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
-  expected.workspace = endpoint_sigma(question);
+  const EndpointDeviations where_it_counts = endpoint_deviations(question);
+  expected.workspace = endpoint_sigma(where_it_counts, C);
   if (question.poses.rows() > 0 && !touches.empty())
     expected.curve =
-        sigma_by_count(robot, xi, sets, touches, endpoint_weight(question), progress, prior);
+        sigma_by_count(robot, xi, sets, touches, where_it_counts.weight, progress, prior);
   return expected;
 }
 

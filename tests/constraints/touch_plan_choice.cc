@@ -59,12 +59,12 @@ double sigma_after(const PlannedCell& cell, const std::vector<Eigen::VectorXd>& 
   EndpointQuestion question;
   question.robot = &rx90();
   question.xi = values(rx90());
-  question.covariance =
-      inverse_of_positive(information(cell, rows, set)).topLeftCorner(parameters, parameters);
   question.unseen = Eigen::MatrixXd::Identity(6, 6);
   question.point_unknown = true;
   question.poses = random_poses(rx90(), nullptr, 500, 1);
-  return endpoint_sigma(question).rms;
+  const Eigen::MatrixXd C =
+      inverse_of_positive(information(cell, rows, set)).topLeftCorner(parameters, parameters);
+  return endpoint_sigma(endpoint_deviations(question), C).rms;
 }
 
 TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {

@@ -65,8 +65,9 @@ double ratio(const Robot& robot, const Pair& halves, const Eigen::MatrixXd& pose
   double squares = 0;
   for (const Solution* each : {&halves.a, &halves.b}) {
     question.xi = each->values;
-    question.covariance = exported(robot, *each);
-    squares += apart_share(*each) * std::pow(endpoint_sigma(question).rms, 2);
+    const EndpointSigma sigma =
+        endpoint_sigma(endpoint_deviations(question), exported(robot, *each));
+    squares += apart_share(*each) * std::pow(sigma.rms, 2);
   }
   Eigen::VectorXd apart(3 * poses.rows());
   Eigen::MatrixXd motion(3 * poses.rows(), 6);
