@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinematics/expects.h"
+#include "kinematics/kernels/kernels.h"
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
                         int* info);
@@ -35,7 +36,8 @@ namespace selfcal {
 namespace {
 
 constexpr Eigen::Index kLarge = 64;  ///< rows from which a call of OpenBLAS is worth its start
-constexpr double kWorthACall = 1e5;  ///< multiplications from which it is
+constexpr Eigen::Index kReflectedTogether = 128;  ///< columns from which LAPACK's QR is in blocks
+constexpr double kWorthACall = 1e5;               ///< multiplications from which it is
 
 int width(Eigen::Index n) { return static_cast<int>(n); }
 
@@ -91,6 +93,20 @@ void large_qr(Eigen::Ref<Eigen::MatrixXd> A) {
   expects(info == 0, "every matrix has a QR decomposition");
 }
 
+/// The rows of `A`, no fewer than its columns, appended to a triangle of nothing.
+void small_qr(Eigen::Ref<Eigen::MatrixXd> A) {
+  constexpr auto kStep = static_cast<Eigen::Index>(kernels::kMultiple);
+  const Eigen::Index columns = A.cols();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero((A.rows() + kStep - 1) / kStep * kStep, columns);
+  rows.topRows(A.rows()) = A;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(columns, columns);
+  kernels::append_rows(R.data(), static_cast<std::size_t>(columns), rows.data(),
+                       static_cast<std::size_t>(rows.rows()),
+                       static_cast<std::size_t>(rows.rows()));
+  A.setZero();
+  A.topRows(columns) = R;
+}
+
 /// What everything that is made of it shows.
 Eigen::MatrixXd no_root(Eigen::Index n) {
   return Eigen::MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
@@ -103,10 +119,8 @@ bool large(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
 }  // namespace
 
 void triangularise(Eigen::Ref<Eigen::MatrixXd> A) {
-  if (A.cols() < kLarge)
-    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(A);
-  else
-    large_qr(A);
+  if (A.cols() < kReflectedTogether && A.rows() >= A.cols()) return small_qr(A);
+  large_qr(A);
   A.triangularView<Eigen::StrictlyLower>().setZero();
 }
 

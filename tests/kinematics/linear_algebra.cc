@@ -70,6 +70,17 @@ TEST(Triangularise, LeavesAnUpperTriangleWithTheSameProduct) {
   }
 }
 
+TEST(Triangularise, LosesNothingWhereAColumnSaysNothing) {
+  std::mt19937_64 random(47);
+  for (const Eigen::Index rows : {20, 8, 5}) {
+    Eigen::MatrixXd A = random_matrix(rows, 8, random);
+    A.col(0).setZero();
+    Eigen::MatrixXd R = A;
+    triangularise(R);
+    EXPECT_LT((gram(R) - gram(A)).norm(), kMatrixRounding) << rows;
+  }
+}
+
 TEST(Triangularise, WorksOnTheTopRowsOfALargerMatrix) {
   std::mt19937_64 random(42);
   const Eigen::MatrixXd A = random_matrix(20, 4, random);
