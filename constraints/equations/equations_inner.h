@@ -75,10 +75,10 @@ class Equations::Rows {
   }
   /// All that was pushed is in the result, which alone is kept of the products.
   void finish() {
-    result_ = products_ ? products_->sum() : factor_->R();
+    result_ = products_ ? products_->sum() : factor_->rows();
     products_.reset();
   }
-  const Eigen::MatrixXd& R() const { return result_; }
+  const Eigen::MatrixXd& rows() const { return result_; }
   const Eigen::MatrixXd& products() const { return result_; }
 
  private:

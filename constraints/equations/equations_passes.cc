@@ -97,7 +97,7 @@ Linearised Equations::linearise(const State& state, const Weighting& weighting, 
   sweep(pass, of_sets, result, [&](int set, Rows& rows) {
     std::optional<Rows>& factor = factors[static_cast<size_t>(set)];
     if (factor)
-      factor->push(rows.R());
+      factor->push(rows.rows());
     else
       factor = std::move(rows);
   });
@@ -109,13 +109,13 @@ Linearised Equations::linearise(const State& state, const Weighting& weighting, 
     if (!factors[s]) continue;
     factors[s]->finish();
     const Layout& of_set = of_sets[s];
-    const Eigen::MatrixXd& R = factors[s]->R();
-    on_top(Eigen::seqN(tops, of_set.lone), of_set.global) = R.topRows(of_set.lone);
-    tops += of_set.lone;
+    Eigen::MatrixXd rows = factors[s]->rows();
+    const auto kept = static_cast<Eigen::Index>(eliminate(rows, of_set.lone).size());
+    on_top(Eigen::seqN(tops, kept), of_set.global) = rows.topRows(kept);
+    tops += kept;
     for (int k = 0; k < of_set.lone; ++k)
       lone[static_cast<size_t>(of_set.global[static_cast<size_t>(k)])] = 1;
-    const Eigen::Index left = of_set.width() - of_set.lone;
-    rest[s] = R.bottomRightCorner(left, left);
+    rest[s] = rows.bottomRightCorner(rows.rows() - kept, of_set.width() - of_set.lone);
   }
   std::vector<int> shared, place(static_cast<size_t>(pass.width), -1);
   for (int c = 0; c < pass.width; ++c)

@@ -35,6 +35,11 @@ const Eigen::MatrixXd& StreamingQr::R() {
   return R_;
 }
 
+Eigen::MatrixXd StreamingQr::rows() {
+  if (!reduced_ && filled_ <= R_.cols()) return buffer_.topRows(filled_);
+  return R();
+}
+
 void StreamingQr::reduce() {
   constexpr auto kStep = static_cast<Eigen::Index>(kernels::kMultiple);
   const Eigen::Index rows = (filled_ + kStep - 1) / kStep * kStep;
@@ -42,6 +47,7 @@ void StreamingQr::reduce() {
   kernels::append_rows(R_.data(), static_cast<size_t>(R_.cols()), buffer_.data(),
                        static_cast<size_t>(rows), static_cast<size_t>(buffer_.rows()));
   filled_ = 0;
+  reduced_ = true;
 }
 
 }  // namespace selfcal

@@ -16,11 +16,14 @@ class StreamingQr {
   void push(const Eigen::Ref<const Eigen::MatrixXd>& rows);
   /// R such that R^T R = W^T W over all rows.
   const Eigen::MatrixXd& R();
+  /// What says the same: the rows as they came where they are no more than R's, else R.
+  Eigen::MatrixXd rows();
 
  private:
   void reduce();
 
   Eigen::Index filled_ = 0;
+  bool reduced_ = false;
   Eigen::MatrixXd R_, buffer_;  ///< of the rows before, the rows since
 };
 

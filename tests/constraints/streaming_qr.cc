@@ -37,6 +37,19 @@ TEST(StreamingQr, OfAThousandRowsInOddPiecesHasTheirProduct) {
   expect_factor_of(qr.R(), W);
 }
 
+TEST(StreamingQr, GivesRowsAsTheyCameOnlyWhereTheyAreNoMoreThanColumns) {
+  for (const int count : {0, 5, kColumns, kColumns + 1, 1000}) {
+    const Eigen::MatrixXd W = random_rows(count, 4);
+    StreamingQr qr(kColumns);
+    qr.push(W);
+    const Eigen::MatrixXd rows = qr.rows();
+    if (count <= kColumns)
+      EXPECT_EQ(rows, W);
+    else
+      expect_factor_of(rows, W);
+  }
+}
+
 TEST(StreamingQr, OfFewerRowsThanColumnsHasTheirProduct) {
   const Eigen::MatrixXd W = random_rows(3, 2);
   StreamingQr qr(kColumns);
