@@ -11,9 +11,11 @@
 
 namespace selfcal {
 
-/// Processors that this process may run on (taskset and CPUAffinity= bound them), at most eight.
+/// Processors that this process may run on when it first asks (taskset and CPUAffinity= bound
+/// them), at most eight.
 inline int processors() {
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
+  static const int count = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
+  return count;
 }
 
 /// Calls make(i) of each i below `count`, up to `at_once` at a time, and take(i, what it gave) of
