@@ -97,7 +97,7 @@ double log_chi_square_below(double value, double freedom) {
 double f_exceeds(double value, double upper_freedom, double lower_freedom) {
   if (!(value > 0 && upper_freedom > 0 && lower_freedom > 0)) return 1;
   if (std::isinf(value)) return 0;
-  const boost::math::fisher_f_distribution<double> distribution(
+  const boost::math::fisher_f_distribution<double, Fast> distribution(
       std::min(upper_freedom, kMostFreedom), std::min(lower_freedom, kMostFreedom));
   return boost::math::cdf(boost::math::complement(distribution, value));
 }
