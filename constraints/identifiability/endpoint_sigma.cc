@@ -29,12 +29,16 @@ ConfigurationBlock block_of(const Eigen::MatrixXd& q, Eigen::Index first) {
   return block;
 }
 
-/// The rows of one lane of Psi, from row `at` of J on.
-void take_lane(const PsiBlock& psi, int lane, Eigen::Index at, Moves& moves) {
+/// Psi of the lanes that close, from pose `first` on.
+void take(const PsiBlock& psi, const Closure& closure, int count, Eigen::Index first,
+          Moves& moves) {
   for (Eigen::Index c = 0; c < psi.cols(); ++c)
-    for (int i = 0; i < 3; ++i) {
-      moves.shift(at + i, c) = psi(i * kLanes + lane, c);
-      moves.turn(at + i, c) = psi((3 + i) * kLanes + lane, c);
+    for (int lane = 0; lane < count; ++lane) {
+      if (!closure.closes(lane)) continue;
+      for (int i = 0; i < 3; ++i) {
+        moves.shift(3 * (first + lane) + i, c) = psi(i * kLanes + lane, c);
+        moves.turn(3 * (first + lane) + i, c) = psi((3 + i) * kLanes + lane, c);
+      }
     }
 }
 
@@ -53,10 +57,10 @@ Moves moves_of(const EndpointQuestion& question) {
     // A lane that does not close with the values found has no derivative, and adds nothing.
     const Closure closure = robot.locate(block, question.xi, Body::endpoint, X, &psi);
     if (unseen > motions) robot.locate(block, question.xi, Body::last_link, link, nullptr);
+    take(psi, closure, block.count, first, D);
     for (int lane = 0; lane < block.count; ++lane) {
       if (!closure.closes(lane)) continue;
       const Eigen::Index at = 3 * (first + lane);
-      take_lane(psi, lane, at, D);
       Eigen::Matrix<double, 3, 6> motion;
       motion << Eigen::Matrix3d::Identity(), -skew(X.p(lane));
       D.unseen_shift.block(at, 0, 3, motions) = motion * question.unseen;
