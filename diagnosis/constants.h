@@ -101,6 +101,8 @@ struct DiagnosisConstants {
     /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of
     /// them; 0.05 to 0.5 [trials]
     double most_left = 0.2;
+    double of_moment =
+        0.95;  ///< probability of the rows that a step is told between; 0.9 to 0.99 [habit]
     std::size_t most_explaining = 20;  ///< candidates; 5 to 60 [cost]
     double surely_unknown = 0.7;       ///< probability; 0.5 to 0.95 [trials]
     double also_there = 0.5;           ///< of the cause's own: further places; 0.2 to 0.9 [trials]

@@ -160,10 +160,18 @@ class Diagnostician {
                                   .variance *
                               evaluator_->noise_variance(best.structure);
       // The evaluator and the linearised model must end up with the same rows.
-      if (pass + 1 == kDiagnosis.rows.passes ||
-          !linearised_.refine(linearised_.residuals(columns, sigma), variance))
-        break;
+      if (pass + 1 == kDiagnosis.rows.passes) break;
+      const bool refined = linearised_.refine(linearised_.residuals(columns, sigma), variance);
+      if (!linearised_.try_moments_near(steps_of(best)) && !refined) break;
     }
+  }
+
+  std::vector<ShapedEffect> steps_of(const Hypothesis& h) const {
+    std::vector<ShapedEffect> steps;
+    for (const int c : h.candidates)
+      if (const Candidate& each = linearised_.candidates().list[c]; each.shape.moment)
+        steps.push_back({each.effect, each.at, each.shape});
+    return steps;
   }
 
   /// Noise of a new configuration over that of an immediate repeat.

@@ -43,6 +43,7 @@ struct Supposition {
   double doubt = 0.25;   ///< size of what is beside over its own
   int together = 0;      ///< not 0: the first so many of the same effect and place as one
   bool profile = false;  ///< asked for only once it is known to be there
+  double share = 1;      ///< how likely beside the effect's other shapes at its place
   bool drifts = false;   ///< smooth in time, as all is that goes with the places in their order
 };
 

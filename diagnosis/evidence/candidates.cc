@@ -22,8 +22,9 @@ bool spreads(const Eigen::VectorXd& column, double least) {
 
 class Maker {
  public:
-  Maker(const Robot& robot, const DataSet& data, const MeasurementContext& context)
-      : robot_(robot), data_(data), context_(context) {}
+  Maker(const Robot& robot, const DataSet& data, const MeasurementContext& context,
+        const std::vector<ShapedEffect>& likely)
+      : robot_(robot), data_(data), context_(context), likely_(likely) {}
 
   Candidates run() {
     for (size_t j = 0; j < robot_.joints().size(); ++j)
@@ -54,7 +55,8 @@ class Maker {
                            supposed.untestable().end());
     for (const Supposition& each : supposed.list()) {
       if (each.together == 0) {
-        add(each, place.joint);
+        add(each, place);
+        if (each.shape.moment) add_finer(each, place);
         continue;
       }
       (each.profile ? all_.profiles : all_.list).push_back(together(each));
@@ -62,8 +64,8 @@ class Maker {
   }
 
   /// Where the robot or the context cannot have it, that is told.
-  void add(const Supposition& supposed, int joint) {
-    Candidate candidate{.effect = supposed.effect, .at = supposed.at, .joint = joint};
+  void add(const Supposition& supposed, const EffectPlace& place, double share = 1) {
+    Candidate candidate{.effect = supposed.effect, .at = supposed.at, .joint = place.joint};
     const auto made = static_cast<std::ptrdiff_t>(all_.made.size());
     const int parameters = parameters_;
     Problems problems;
@@ -85,6 +87,8 @@ class Maker {
     candidate.shape = supposed.shape;
     candidate.beside = supposed.beside;
     candidate.doubt = supposed.doubt;
+    candidate.share = share * supposed.share;
+    if (supposed.shape.moment) candidate.between = around(*supposed.shape.moment, place.set);
     if (supposed.drifts && data_.order_is_time) candidate.meant = kDiagnosis.shapes.order_as_time;
     all_.list.push_back(std::move(candidate));
   }
@@ -123,14 +127,52 @@ class Maker {
     return static_cast<int>(std::count(data_.rows.set.begin(), data_.rows.set.end(), set));
   }
 
-  /// Between the rows of a set (-1: of all), as many rows from one to the next; of few rows between
-  /// any two.
-  std::vector<double> moments(int set) const {
+  /// A likely step at the moments between those next to its own, each the less probable.
+  void add_finer(Supposition step, const EffectPlace& place) {
+    const auto found = std::ranges::find_if(likely_, [&](const ShapedEffect& each) {
+      return each.effect == step.effect && each.at == step.at && each.shape == step.shape;
+    });
+    if (found == likely_.end() || all_.list.empty() || all_.list.back().shape != step.shape) return;
+    const double own = *step.shape.moment;
+    const std::vector<double> coarse = moments(place.set), t = times(place.set);
+    const auto at = std::ranges::find(coarse, own);
+    const double from = at == coarse.begin() ? t.front() : *(at - 1),
+                 to = at + 1 == coarse.end() ? t.back() : *(at + 1);
+    std::vector<double> between;
+    for (size_t i = 1; i < t.size(); ++i)
+      if (const double moment = (t[i - 1] + t[i]) / 2;
+          moment > from && moment < to && moment != own)
+        between.push_back(moment);
+    const auto most = static_cast<size_t>(kDiagnosis.shapes.moments);
+    const size_t few = std::min(between.size(), most);
+    const double share = 2.0 / std::max(2.0, static_cast<double>(few) + 1);
+    all_.list.back().share *= share;
+    for (size_t i = 0; i < few; ++i) {
+      step.shape.moment = between[i * between.size() / few];
+      add(step, place, share);
+    }
+  }
+
+  /// When the rows of a set (-1: of all) were taken, ascending.
+  std::vector<double> times(int set) const {
     std::set<double> times;
     for (int row = 0; row < data_.rows.rows() && data_.rows.time.size() > 0; ++row)
       if ((set < 0 || data_.rows.set[row] == set) && std::isfinite(data_.rows.time[row]))
         times.insert(data_.rows.time[row]);
-    const std::vector<double> t(times.begin(), times.end());
+    return {times.begin(), times.end()};
+  }
+
+  /// The row of a set (-1: of all) before a moment and that behind (s).
+  std::pair<double, double> around(double moment, int set) const {
+    const std::vector<double> t = times(set);
+    const auto behind = std::ranges::lower_bound(t, moment);
+    return {behind == t.begin() ? moment : *(behind - 1), behind == t.end() ? moment : *behind};
+  }
+
+  /// Between the rows of a set (-1: of all), as many rows from one to the next; of few rows between
+  /// any two.
+  std::vector<double> moments(int set) const {
+    const std::vector<double> t = times(set);
     std::vector<double> list;
     const auto n = static_cast<double>(t.size());
     const int most = n <= kDiagnosis.shapes.few_times ? static_cast<int>(t.size()) - 1
@@ -147,13 +189,13 @@ class Maker {
   void spread_priors() {
     for (Candidate& each : all_.list) {
       std::set<std::string> places;
-      int shapes = 0;
+      double shapes = 0;
       for (const Candidate& other : all_.list) {
         if (other.effect != each.effect) continue;
         places.insert(other.at);
-        shapes += other.at == each.at;
+        if (other.at == each.at) shapes += other.share;
       }
-      each.log_prior = -std::log(static_cast<double>(places.size())) - std::log(shapes);
+      each.log_prior = std::log(each.share / shapes) - std::log(static_cast<double>(places.size()));
     }
     // As probable as one of the shapes that it holds.
     for (Candidate& profile : all_.profiles)
@@ -166,6 +208,7 @@ class Maker {
   const Robot& robot_;
   const DataSet& data_;
   const MeasurementContext& context_;
+  const std::vector<ShapedEffect>& likely_;
   Candidates all_;
   int parameters_ = 0;
 };
@@ -178,8 +221,9 @@ Candidates with_profiles(Candidates all) {
   return all;
 }
 
-Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context) {
-  return Maker(robot, data, context).run();
+Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context,
+                      const std::vector<ShapedEffect>& likely) {
+  return Maker(robot, data, context, likely).run();
 }
 
 }  // namespace selfcal

@@ -6,7 +6,9 @@
 // the effect alone. Priors are spread equally over families, then places, then shapes.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "constraints/methods/data_set.h"
@@ -25,7 +27,10 @@ struct Candidate {
   double doubt = 0.25;          ///< size of those, together, over the main ones
   int joint = -1;               ///< at which it acts; -1 elsewhere
   std::string needs = {};       ///< what rows must have so that it can be seen
+  double share = 1;             ///< of its shape among the shapes at its place
   double log_prior = 0;         ///< of the place and the shape within the family
+  /// Of a step: the last row before it, the first one behind (s).
+  std::optional<std::pair<double, double>> between = {};
   /// Probability that it is meant where it explains; else it is what no candidate has.
   double meant = 1;
 };
@@ -42,7 +47,9 @@ struct Candidates {
 /// The same with the profiles at the end of the list.
 Candidates with_profiles(Candidates all);
 
-/// every candidate whose measurement context the rows carry.
-Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context);
+/// Every candidate whose measurement context the rows carry. Steps are tried at few moments; those
+/// `likely` are there, at as many more up to the moments next to theirs.
+Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context,
+                      const std::vector<ShapedEffect>& likely = {});
 
 }  // namespace selfcal

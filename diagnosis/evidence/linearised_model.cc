@@ -46,30 +46,48 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
       candidates_(selfcal::candidates(*geometry_, data, context_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
       adjusted_(adjust(*equations_, geometry_options(options), progress)) {
-  Problems problems;
-  std::vector<Node> entries;
-  for (const ShapedEffect& each : candidates_.made) entries.push_back(entry_of(each));
-  everything_ = correct(geometry_, entries, context_, problems);
-  expects(everything_ != nullptr, "every candidate is an effect that the robot can have");
-  for (const Effect* effect : effects_of(*everything_))
-    parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
-  all_equations_ = std::make_unique<Equations>(*everything_, data, Use::fit);
   const Fit& fitted = adjusted_.fitted;
   noise_ = pooled_noise(data, fitted);
   bound_noise();
   held_ = weighed_rows(data.rows, static_cast<double>(fitted.at.equations),
                        kDiagnosis.validation.most_grown);
-  std::vector<char> left_out(held_.size());
-  std::ranges::transform(held_, left_out.begin(), std::logical_not());
-  all_ = all_equations_->dense(
-      extended(fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())), noise_,
-      left_out);
+  linearise();
   outlier_ = fitted.noise.outlier;
   left_ = all_.y;
   weigh(kDiagnosis.rows.most_weighed);
   steps_ = credible_steps(data.rows.q, by_joint());
+}
 
+void LinearisedModel::linearise() {
+  Problems problems;
+  std::vector<Node> entries;
+  for (const ShapedEffect& each : candidates_.made) entries.push_back(entry_of(each));
+  everything_ = correct(geometry_, entries, context_, problems);
+  expects(everything_ != nullptr, "every candidate is an effect that the robot can have");
+  parameters_.clear();
+  for (const Effect* effect : effects_of(*everything_))
+    parameters_.insert(parameters_.end(), effect->parameters().begin(), effect->parameters().end());
+  all_equations_ = std::make_unique<Equations>(*everything_, data_, Use::fit);
+  std::vector<char> left_out(held_.size());
+  std::ranges::transform(held_, left_out.begin(), std::logical_not());
+  all_.W.resize(0, 0);  // before there is a second one
+  all_ = all_equations_->dense(
+      extended(adjusted_.fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())),
+      noise_, left_out);
   nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
+}
+
+bool LinearisedModel::try_moments_near(const std::vector<ShapedEffect>& steps) {
+  const size_t before = likely_steps_.size();
+  for (const ShapedEffect& step : steps)
+    if (std::ranges::none_of(likely_steps_, [&](const ShapedEffect& each) {
+          return each.effect == step.effect && each.at == step.at;
+        }))
+      likely_steps_.push_back(step);
+  if (likely_steps_.size() == before) return false;
+  candidates_ = selfcal::candidates(*geometry_, data_, context_, likely_steps_);
+  linearise();
+  return true;
 }
 
 void LinearisedModel::bound_noise() {

@@ -81,10 +81,16 @@ class LinearisedModel {
   /// configurations. Whitened at a scale of one.
   const DenseEquations& all() const { return all_; }
 
+  /// Tries `steps` that are likely at as many more moments near their own. True where any of them
+  /// was not tried so before.
+  bool try_moments_near(const std::vector<ShapedEffect>& steps);
+
   /// How many equations take part (a data set with more is thinned out).
   void weigh(double most);
 
  private:
+  /// The equations with every candidate's columns.
+  void linearise();
   /// By row: weighed and that are no outliers.
   std::vector<char> taking_part() const;
   /// What an error of each joint's reading moves each equation of kept() (equations x joints,
@@ -103,12 +109,13 @@ class LinearisedModel {
   double most_outliers_;
   std::shared_ptr<const Robot> given_, geometry_, everything_;
   MeasurementContext context_;
+  std::vector<ShapedEffect> likely_steps_;
   Candidates candidates_;
   std::vector<EffectParameter> parameters_;
   std::unique_ptr<Equations> equations_, all_equations_;
   Adjusted adjusted_;
   Nuisance nuisance_;
-  DenseEquations all_;
+  DenseEquations all_;  ///< of the noise as the geometry's fit has it
   std::vector<int> quieter_;
   std::vector<Scale> noise_;   ///< by set, at a scale of one
   std::vector<char> held_;     ///< by row: all() is of it

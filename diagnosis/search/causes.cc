@@ -13,26 +13,38 @@
 namespace selfcal {
 namespace {
 
-/// What the linear parameters do not say of it. Where the order of the rows is the time, row 1 is
-/// at 0 s.
-std::string in_words(const EffectShape& shape, bool order_is_time) {
-  const struct {
-    std::optional<double> value;
-    const char *seconds, *rows;
-    int first;  ///< row that stands for 0 s
-  } told[] = {{shape.moment, "from %.0f s on", "from row %.0f on", 1},
-              {shape.settle, "settling in %.0f s", "settling in %.0f rows", 0},
-              {shape.lag, "lagging by %.0f s", "lagging by %.0f rows", 0}};
-  for (const auto& [value, seconds, rows, first] : told) {
-    if (!value) continue;
-    char text[64];
-    if (order_is_time)
-      std::snprintf(text, sizeof text, rows, std::ceil(*value) + first);
-    else
-      std::snprintf(text, sizeof text, seconds, *value);
-    return text;
-  }
-  return shape.half_waves.empty() ? "" : "wandering";
+/// A time, or the row of it where the order of the rows is the time: row 1 is at 0 s.
+std::string in_words(double seconds, bool order_is_time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f", order_is_time ? std::ceil(seconds) + 1 : seconds);
+  return text;
+}
+
+/// What the linear parameters do not say of it; a step lies `between` two rows.
+std::string in_words(const EffectShape& shape, const std::pair<double, double>& between,
+                     bool order_is_time) {
+  const auto time = [&](double seconds) { return in_words(seconds, order_is_time); };
+  const auto lasting = [&](double seconds) {
+    char text[32];
+    std::snprintf(text, sizeof text, order_is_time ? "%.0f rows" : "%.0f s", seconds);
+    return std::string(text);
+  };
+  std::vector<std::string> parts;
+  if (shape.moment && order_is_time)
+    parts.push_back("from row " + time(*shape.moment) + " on");
+  else if (shape.moment)
+    parts.push_back("from " + time(*shape.moment) + " s on");
+  if (shape.moment && order_is_time)
+    parts.push_back("between rows " + time(between.first) + " and " + time(between.second));
+  else if (shape.moment)
+    parts.push_back("between " + time(between.first) + " and " + time(between.second) + " s");
+  if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
+  if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
+  if (shape.tool) parts.emplace_back("of the tool too");
+  if (!shape.half_waves.empty()) parts.emplace_back("wandering");
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
 }
 
 class Teller {
@@ -114,7 +126,8 @@ class Teller {
                       CauseResult& cause) const {
     const Candidate& found = candidate(c);
     FoundEffect effect{.what = {found.effect, found.at, found.shape}};
-    if (cause.shape.empty()) cause.shape = in_words(found.shape, linearised_.order_is_time());
+    if (cause.shape.empty())
+      cause.shape = in_words(found.shape, when(found), linearised_.order_is_time());
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = linearised_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);
@@ -125,6 +138,34 @@ class Teller {
       effect.values.emplace_back(p.name, estimate.mean[i]);
     }
     cause.correction.push_back(std::move(effect));
+  }
+
+  /// The rows between which a step lies, but for one in twenty of its probability.
+  std::pair<double, double> when(const Candidate& step) const {
+    std::map<std::pair<double, double>, double> probability;  // by the rows about a moment
+    double all = 0;
+    for (const Hypothesis& h : posterior_.hypotheses) {
+      const Candidate* nearest = nullptr;
+      for (const int c : h.candidates)
+        if (const Candidate& each = candidate(c);
+            each.between && each.effect == step.effect && each.at == step.at &&
+            (!nearest || std::abs(*each.shape.moment - *step.shape.moment) <
+                             std::abs(*nearest->shape.moment - *step.shape.moment)))
+          nearest = &each;
+      if (!nearest) continue;
+      probability[*nearest->between] += std::exp(h.log_weight);
+      all += std::exp(h.log_weight);
+    }
+    std::vector<std::pair<double, std::pair<double, double>>> likely;
+    for (const auto& [rows, p] : probability) likely.emplace_back(p, rows);
+    std::ranges::sort(likely, std::greater());
+    std::pair<double, double> range{INFINITY, -INFINITY};
+    double held = 0;
+    for (const auto& [p, rows] : likely) {
+      range = {std::min(range.first, rows.first), std::max(range.second, rows.second)};
+      if ((held += p) >= kDiagnosis.naming.of_moment * all) break;
+    }
+    return range;
   }
 
   /// Other families that are probable where this one is not: the rows cannot tell them apart.

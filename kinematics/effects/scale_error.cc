@@ -65,11 +65,14 @@ std::unique_ptr<Effect> make_scale_error(const EffectPlan& plan) {
 }
 
 void suppose_scale_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  // An instrument's unit may be off, or grow with the air's temperature.
+  // An instrument's unit may be off, or grow with the air's temperature: most allow for that, and
+  // the arm before them grows in any case.
   if (place.set < 0 || !rows.shows(place.set)) return;
   if (!rows.context.sets[static_cast<size_t>(place.set)].lengths) return;
   to.add(place.name);
-  if (rows.warms) to.add(place.name, {.by = "temperature"});
+  if (!rows.warms) return;
+  to.add(place.name, {.by = "temperature"});
+  to.last().share = 0.1;
 }
 
 }  // namespace selfcal

@@ -1,9 +1,10 @@
 // Thermal expansion: every length of the moving links grows by alpha (T - T0),
 //   delta p_tip = alpha (T - T0) sum over their frames of (d_k X_k + r_k Z_k),
 // the vector from the foot of the first moving frame (the last base frame's origin) to the origin
-// of the last one; fixed frames in between belong to the links. T lags behind the thermometer,
-// `lag` dT/dt = T_measured - T (s; 0: at once); `reference` is T0 (C, default the mean of the
-// record). alpha: 1/K.
+// of the last one; fixed frames in between belong to the links. With `tool` what it carries grows
+// as they do, and the vector ends at the tip. T lags behind the thermometer, `lag` dT/dt =
+// T_measured - T (s; 0: at once); `reference` is T0 (C, default the mean of the record). alpha:
+// 1/K.
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +31,7 @@ class ThermalExpansion final : public Effect {
   explicit ThermalExpansion(const EffectPlan& plan) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
     plan.mechanics();
+    tool_ = plan.fields.flag("tool", false);
     lag_ = plan.fields.number("lag", 0.0);
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.context.times;
@@ -44,7 +46,7 @@ class ThermalExpansion final : public Effect {
     if (std::isnan(T)) return;
     const int first = at.mechanics->link_of(0);
     const int last = at.mechanics->link_of(static_cast<int>(at.q.size()) - 1);
-    Eigen::Vector3d grown = at.poses[last].translation();
+    Eigen::Vector3d grown = (tool_ ? at.poses.back() : at.poses[last]).translation();
     if (first > 0) grown -= at.poses[first - 1].translation();
     into.tip.col(0).head<3>() = (T - reference_.value_or(kRoomTemperature)) * grown;
   }
@@ -63,9 +65,11 @@ class ThermalExpansion final : public Effect {
 
   void describe_shape(Node& node) const override {
     node.set("lag", Node::of(lag_));
+    if (tool_) node.set("tool", Node::of(std::string("true")));
     if (reference_) node.set("reference", Node::of(*reference_));
   }
 
+  bool tool_ = false;  ///< grows as well
   double lag_ = 0;
   std::optional<double> reference_;  ///< C
   std::vector<double> times_, temperatures_;
@@ -80,12 +84,18 @@ std::unique_ptr<Effect> make_thermal_expansion(const EffectPlan& plan) {
 
 void suppose_thermal_expansion(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (!place.whole()) return;
-  if (!rows.robot.statics()) return to.cannot("", std::string(kNoStatics));
+  const Statics* statics = rows.robot.statics();
+  if (!statics) return to.cannot("", std::string(kNoStatics));
   if (!rows.warms) return to.cannot("", "the rows carry no temperatures that change");
-  to.add("");
   const double span = rows.context.end - rows.context.begin;
-  for (const double share : {0.125, 0.25, 0.5, 1.0})
-    if (span > 0) to.add("", {.lag = share * span});
+  const Mechanics& mechanics = statics->mechanics();
+  const int last = mechanics.link_of(static_cast<int>(rows.robot.joints().size()) - 1);
+  for (const bool tool : {false, true}) {
+    if (tool && last + 1 == static_cast<int>(mechanics.links.size())) continue;
+    to.add("", {.tool = tool});
+    for (const double share : {0.125, 0.25, 0.5, 1.0})
+      if (span > 0) to.add("", {.lag = share * span, .tool = tool});
+  }
 }
 
 }  // namespace selfcal

@@ -42,6 +42,40 @@ TEST(Candidates, HaveAMomentBetweenAnyTwoOfFewRowsAndSpreadOverMany) {
   EXPECT_NEAR(many.back(), 384, 1);
 }
 
+/// Moments of the zero shifts, and between which rows they lie; all candidates sum to one.
+void expect_likely_moments(int rows, double likely, const std::vector<double>& near) {
+  const Session session(rows);
+  const Candidates all =
+      candidates(*session.robot, session.data, session.context,
+                 {{.effect = "zero_shift", .at = "j1", .shape = {.moment = likely}}});
+  std::vector<double> more;
+  double sum = 0;
+  const std::vector<Candidate> before = session.candidates().list;
+  for (const Candidate& each : all.list) {
+    if (each.effect != "zero_shift") continue;
+    sum += std::exp(each.log_prior);
+    const double moment = each.shape.moment.value();
+    ASSERT_TRUE(each.between.has_value());
+    EXPECT_EQ(each.between->first, moment - 0.5);
+    EXPECT_EQ(each.between->second, moment + 0.5);
+    if (std::ranges::none_of(before, [&](const Candidate& one) {
+          return one.effect == each.effect && one.shape == each.shape;
+        }))
+      more.push_back(moment);
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_EQ(more, near);
+}
+
+TEST(Candidates, HaveEveryMomentBetweenThoseNextToALikelyOne) {
+  // Of 100 rows: 3.5, 7.5, 11.5, 15.5 ...
+  expect_likely_moments(100, 7.5, {4.5, 5.5, 6.5, 8.5, 9.5, 10.5});
+  expect_likely_moments(100, 3.5, {0.5, 1.5, 2.5, 4.5, 5.5, 6.5});
+  expect_likely_moments(100, 95.5, {92.5, 93.5, 94.5, 96.5, 97.5, 98.5});
+  expect_likely_moments(100, 8.5, {});  // was not tried
+  expect_likely_moments(20, 7.5, {});   // each is tried already
+}
+
 TEST(Candidates, ShareTheProbabilityOfTheirFamilyAmongPlacesThenShapes) {
   const Candidates all = Session(50).candidates();
   std::map<std::string, double> sum;

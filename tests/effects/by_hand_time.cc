@@ -28,6 +28,17 @@ TEST(ThermalExpansionByHand, GrowsTheLengthsOfTheMovingLinks) {
   expect_near(moved(kColumn, warm, held).p, 0, 0, 0);
 }
 
+TEST(ThermalExpansionByHand, GrowsTheToolAsWellWhereToldSo) {
+  // 1e-4 of the tool's 0.1 m too, which lies against x at q1 = q2 = 90 degrees.
+  const std::string warm =
+      "[{effect: thermal_expansion, tool: true, reference: 20, alpha: 2.0e-5}]";
+  Held held{numbers({0, 0})};
+  held.temperature = 25;
+  expect_near(moved(kColumn, warm, held).p, 140e-6, 0, 40e-6, 1e-15);
+  held.q = numbers({90 * kDegree, 90 * kDegree});
+  expect_near(moved(kColumn, warm, held).p, 20e-6, 100e-6, 40e-6, 1e-15);
+}
+
 TEST(ThermalExpansionByHand, HasTheWorldsOriginForAFootWithoutABaseFrame) {
   // 1e-4 of r = 0.4 m and d = 0.3 m of the first frame of all.
   const std::string arm = with_frames(

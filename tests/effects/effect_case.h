@@ -38,6 +38,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"JointCoupling", "effect: joint_coupling, at: JOINT, from: OTHER"},
       {"ThermalExpansion", "effect: thermal_expansion"},
       {"ThermalExpansionThatLags", "effect: thermal_expansion, lag: 600, reference: 21"},
+      {"ThermalExpansionOfTheTool", "effect: thermal_expansion, tool: true, reference: 21"},
       {"BaseDrift", "effect: base_drift, at: base"},
       {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
       {"BaseDriftThatWanders", "effect: base_drift, half_waves: [1, 2.5]"},
