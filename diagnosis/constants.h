@@ -72,6 +72,7 @@ struct DiagnosisConstants {
   struct Shapes {
     int moments = 24;         ///< at which a step may have happened; 8 to 100 [cost]
     int few_times = 40;       ///< up to which it may have between any two; 10 to 100 [cost]
+    double likely = 1e-6;     ///< probability from which a step is tried at more; 0 to 0.1 [cost]
     double fewest_times = 8;  ///< below which none is looked for; 4 to 20 [habit]
     int most_waves = 64;      ///< a turn; 10 to 200 [physics]
     int profile = 30;         ///< waves a turn, of a profile; 10 to most_waves [cost]

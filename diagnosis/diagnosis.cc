@@ -162,15 +162,21 @@ class Diagnostician {
       // The evaluator and the linearised model must end up with the same rows.
       if (pass + 1 == kDiagnosis.rows.passes) break;
       const bool refined = linearised_.refine(linearised_.residuals(columns, sigma), variance);
-      if (!linearised_.try_moments_near(steps_of(best)) && !refined) break;
+      if (!linearised_.try_moments_near(likely_steps()) && !refined) break;
     }
   }
 
-  std::vector<ShapedEffect> steps_of(const Hypothesis& h) const {
+  /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks
+  /// for another.
+  std::vector<ShapedEffect> likely_steps() const {
     std::vector<ShapedEffect> steps;
-    for (const int c : h.candidates)
-      if (const Candidate& each = linearised_.candidates().list[c]; each.shape.moment)
-        steps.push_back({each.effect, each.at, each.shape});
+    for (const Hypothesis& h : posterior_.hypotheses) {
+      if (h.log_weight < std::log(kDiagnosis.shapes.likely)) break;
+      for (const int c : h.candidates)
+        if (const Candidate& each = linearised_.candidates().list[c]; each.shape.moment)
+          steps.push_back({each.effect, each.at, each.shape});
+      if (!steps.empty()) break;
+    }
     return steps;
   }
 

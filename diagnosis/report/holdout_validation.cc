@@ -21,7 +21,7 @@ struct Left {
 
 /// The figures of every validation row, and which of them no model comes near.
 void take_rows(const Left& left, const DataSet& data, const std::vector<double>& noise,
-               HoldoutValidation& validation) {
+               const std::vector<char>& undecided, HoldoutValidation& validation) {
   // A set that only judges has a noise of its own: what its data sheet says, or what the
   // best of the models leaves.
   const Judged& whole = left.whole;
@@ -38,6 +38,10 @@ void take_rows(const Left& left, const DataSet& data, const std::vector<double>&
     const RowResidual& after = left.named.check[i];
     const RowResidual& all = whole.check[i];
     if (all.lengths == 0) continue;
+    if (undecided[all.row]) {
+      ++validation.undecided;
+      continue;
+    }
     const double near = std::min({before.length, after.length, all.length});
     const double limit = chi_quantile(all.lengths, kDiagnosis.validation.far);
     const bool false_reading =
@@ -59,6 +63,7 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
                                       const Correction& correction,
                                       const MeasurementContext& context,
                                       const std::vector<double>& noise,
+                                      const std::vector<char>& undecided,
                                       const DiagnosisOptions& options) {
   HoldoutValidation validation;
   const auto note = [&](const Fit& fit) {
@@ -85,7 +90,7 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
     left.named = alone.judged(data);
     note(alone.adjusted.fitted);
   }
-  take_rows(left, data, noise, validation);
+  take_rows(left, data, noise, undecided, validation);
   validation.model = std::move(all.model);
   validation.all = std::move(all.adjusted);
   return validation;

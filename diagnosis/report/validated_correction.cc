@@ -78,7 +78,25 @@ class CorrectionValidation {
 
   HoldoutValidation validated(const Correction& correction) const {
     return validate_on_holdout(linearised_.shared_geometry(), linearised_.adjusted(), data_,
-                               correction, linearised_.context(), noise_of_lengths(), options_);
+                               correction, linearised_.context(), noise_of_lengths(),
+                               undecided(correction), options_);
+  }
+
+  /// By row: kept aside, and taken when a step of the correction may or may not have happened.
+  std::vector<char> undecided(const Correction& correction) const {
+    std::vector<char> rows(static_cast<size_t>(data_.rows.rows()), 0);
+    for (const FoundEffect& found : correction)
+      for (const CauseResult& each : result_.candidates) {
+        if (!found.what.shape.moment || !each.between || !of(each, found)) continue;
+        const int set = linearised_.context().find(found.what.at);
+        for (size_t row = 0; row < rows.size(); ++row) {
+          const double time = data_.rows.time[static_cast<Eigen::Index>(row)];
+          rows[row] =
+              rows[row] || (data_.rows.check[row] && time > each.between->first &&
+                            time < each.between->second && (set < 0 || data_.rows.set[row] == set));
+        }
+      }
+    return rows;
   }
 
   Gap gap_with(Correction correction) const {

@@ -15,6 +15,14 @@ std::string of_fits(const HoldoutValidation& validation) {
   return "a fit did not converge: " + validation.stop_reason;
 }
 
+std::string of_undecided(const HoldoutValidation& validation) {
+  if (validation.undecided == 0) return {};
+  return std::to_string(validation.undecided) +
+         (validation.undecided == 1 ? " row kept aside was" : " rows kept aside were") +
+         " taken when the step may or may not have happened, and judge" +
+         (validation.undecided == 1 ? "s" : "") + " nothing";
+}
+
 /// With everything found in the model, which may be what a gear alone would have stood for.
 std::string of_gears(const HoldoutValidation& validation) {
   std::string gears;
@@ -114,8 +122,8 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
                                      const HoldoutValidation& validation) {
   std::vector<std::string> list;
   for (const std::string& each :
-       {of_fits(validation), of_gears(validation), of_noise(linearised, data), of_order(data),
-        of_masses(linearised)})
+       {of_fits(validation), of_undecided(validation), of_gears(validation),
+        of_noise(linearised, data), of_order(data), of_masses(linearised)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

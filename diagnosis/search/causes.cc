@@ -21,8 +21,8 @@ std::string in_words(double seconds, bool order_is_time) {
 }
 
 /// What the linear parameters do not say of it; a step lies `between` two rows.
-std::string in_words(const EffectShape& shape, const std::pair<double, double>& between,
-                     bool order_is_time) {
+std::string in_words(const EffectShape& shape,
+                     const std::optional<std::pair<double, double>>& between, bool order_is_time) {
   const auto time = [&](double seconds) { return in_words(seconds, order_is_time); };
   const auto lasting = [&](double seconds) {
     char text[32];
@@ -34,10 +34,10 @@ std::string in_words(const EffectShape& shape, const std::pair<double, double>& 
     parts.push_back("from row " + time(*shape.moment) + " on");
   else if (shape.moment)
     parts.push_back("from " + time(*shape.moment) + " s on");
-  if (shape.moment && order_is_time)
-    parts.push_back("between rows " + time(between.first) + " and " + time(between.second));
-  else if (shape.moment)
-    parts.push_back("between " + time(between.first) + " and " + time(between.second) + " s");
+  if (between && order_is_time)
+    parts.push_back("between rows " + time(between->first) + " and " + time(between->second));
+  else if (between)
+    parts.push_back("between " + time(between->first) + " and " + time(between->second) + " s");
   if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
   if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
   if (shape.tool) parts.emplace_back("of the tool too");
@@ -126,8 +126,10 @@ class Teller {
                       CauseResult& cause) const {
     const Candidate& found = candidate(c);
     FoundEffect effect{.what = {found.effect, found.at, found.shape}};
-    if (cause.shape.empty())
-      cause.shape = in_words(found.shape, when(found), linearised_.order_is_time());
+    if (cause.shape.empty()) {
+      if (found.between) cause.between = when(found);
+      cause.shape = in_words(found.shape, cause.between, linearised_.order_is_time());
+    }
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = linearised_.parameters()[candidate(c).main[k]];
       const Eigen::Index i = first + static_cast<Eigen::Index>(k);

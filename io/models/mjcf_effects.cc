@@ -93,6 +93,8 @@ class Taking {
   std::string tool(const Node& entry) {
     const int last = serial::moving_frames(model_).back();
     if (last + 1 == static_cast<int>(model_.frames.size())) return "no tool frame to carry";
+    if (text_in(entry, "by") == "tool")
+      return "the tool itself bends, which takes more than springs";
     if (number_in(entry, "mass") > 0) return "its tool's frames have no mass";
     const auto compliance = bends(entry, "tool_compliance");
     if (!compliance) return "a negative compliance";

@@ -2,8 +2,11 @@
 // frame's origin O by
 //   omega = (bend_x M_x, bend_y M_y, twist M_z),   rad/(N m)
 // M the moment about O, in that frame's axes, of the tool's weight and of the wrench at its tip (a
-// rigid tool on a spring; a link that bends along its length is link_compliance). Where the tool's
-// frames have no mass, `mass` (kg, 1 where nothing is said) hangs at the tip.
+// rigid tool on a spring; a link that bends along its length is link_compliance). Where it gives
+// way elsewhere (`by: tool`: a stylus that bends, a spring askew), the tip moves by
+//   S f,   S = (xx xy xz; xy yy yz; xz yz zz),   m/N
+// f that weight and the wrench's force, in the tip's axes. Where the tool's frames have no mass,
+// `mass` (kg, 1 where nothing is said) hangs at the tip.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
@@ -22,9 +25,17 @@ class ToolCompliance final : public Effect {
  public:
   ToolCompliance(const EffectPlan& plan, const Mechanics& mechanics)
       : last_(mechanics.link_of(static_cast<int>(plan.robot.joints().size()) - 1)) {
-    parameters_ = {{"bend_x", "rad/(N m)", 1e-6, 2e-4, true},
-                   {"bend_y", "rad/(N m)", 1e-6, 2e-4, true},
-                   {"twist", "rad/(N m)", 1e-6, 2e-4, true}};
+    const std::string by = plan.fields.text("by", "mount");
+    if (by != "mount" && by != "tool") plan.fields.fail("by", "mount or tool");
+    bends_ = by == "tool";
+    if (bends_)
+      parameters_ = {{"xx", "m/N", 1e-8, 1e-5, true}, {"yy", "m/N", 1e-8, 1e-5, true},
+                     {"zz", "m/N", 1e-8, 1e-5, true}, {"xy", "m/N", 1e-8, 1e-5},
+                     {"xz", "m/N", 1e-8, 1e-5},       {"yz", "m/N", 1e-8, 1e-5}};
+    else
+      parameters_ = {{"bend_x", "rad/(N m)", 1e-6, 2e-4, true},
+                     {"bend_y", "rad/(N m)", 1e-6, 2e-4, true},
+                     {"twist", "rad/(N m)", 1e-6, 2e-4, true}};
     weightless_ = !has_weight(mechanics, last_);
     if (weightless_) mass_ = plan.fields.number("mass", 1.0);
     if (mass_ < 0) plan.fields.fail("mass", "at least 0 kg");
@@ -35,6 +46,7 @@ class ToolCompliance final : public Effect {
   }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
+    if (bends_) return bending(at, into);
     const Eigen::Isometry3d& mount = at.poses[static_cast<size_t>(last_)];
     const Eigen::Vector3d arm = at.poses.back().translation() - mount.translation();
     const Load load =
@@ -49,11 +61,25 @@ class ToolCompliance final : public Effect {
   }
 
  private:
+  void bending(const RegressorInput& at, Regressor& into) const {
+    const Eigen::Isometry3d& tip = at.poses.back();
+    const Load load = load_about(*at.mechanics, at.poses, at.wrench, last_ + 1, tip.translation());
+    const Eigen::Matrix3d& R = tip.linear();
+    const Eigen::Vector3d f = R.transpose() * (load.force + mass_ * at.mechanics->gravity);
+    for (int axis = 0; axis < 3; ++axis) {
+      into.tip.col(axis).head<3>() = R.col(axis) * f[axis];
+      const int a = axis == 2 ? 1 : 0, b = axis == 0 ? 1 : 2;  // xy, xz, yz
+      into.tip.col(3 + axis).head<3>() = R.col(a) * f[b] + R.col(b) * f[a];
+    }
+  }
+
   void describe_shape(Node& node) const override {
+    if (bends_) node.set("by", Node::of(std::string("tool")));
     if (weightless_) node.set("mass", Node::of(mass_));
   }
 
   int last_;
+  bool bends_ = false;       ///< by: tool
   bool weightless_ = false;  ///< its frames have no mass
   double mass_ = 0;          ///< kg, at the tip
 };
@@ -72,7 +98,7 @@ void suppose_tool_compliance(const Supposed& rows, const EffectPlace& place, Sup
   const Statics* statics = rows.robot.statics();
   if (!statics) return to.cannot("probe", std::string(kNoStatics));
   if (statics->mechanics().gravity.norm() > 0 || rows.context.loads)
-    to.add("probe");
+    for (const char* by : {"", "tool"}) to.add("probe", {.by = by});
   else
     to.cannot("probe", "without gravity the rows carry no loads");
 }

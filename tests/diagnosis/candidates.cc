@@ -122,7 +122,7 @@ TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
         all.list, [&](const Candidate& each) { return each.effect == effect && each.at == at; });
   };
   EXPECT_EQ(count("tool_shift", "probe"), 24);
-  EXPECT_EQ(count("tool_compliance", "probe"), 1);
+  EXPECT_EQ(count("tool_compliance", "probe"), 2);
   EXPECT_EQ(count("scale_error", "leica"), 1);
   EXPECT_EQ(count("scale_error", "table"), 0);
   session.data.rows.temperature = Eigen::VectorXd::LinSpaced(50, 20, 21);

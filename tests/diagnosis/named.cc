@@ -127,10 +127,11 @@ TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   const DiagnosisOptions options = quick();
   const LinearisedModel linearised(of.robot, of.data, options, {});
   const ShapedEffect gear{"transmission_error", "j2", {.waves = {3}}};
+  const std::vector<char> none(static_cast<size_t>(of.data.rows.rows()), 0);
   const auto closed = [&](bool named) {
     return gap_of(validate_on_holdout(linearised.shared_geometry(), linearised.adjusted(), of.data,
                                       {{gear, {}, {1e-3, 1e-3}, named}}, linearised.context(),
-                                      {kNoise}, options)
+                                      {kNoise}, none, options)
                       .rows,
                   1);
   };
@@ -140,6 +141,25 @@ TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   EXPECT_GT(*found.closed_all.fraction, 0.5);
   EXPECT_EQ(named.rms_after, named.rms_all);
   EXPECT_EQ(named.rms_all, found.rms_all);
+}
+
+TEST(Named, IsNotJudgedByRowsOfWhichAStepMayLieOnEitherSide) {
+  const TwoCauses of;
+  const DiagnosisOptions options = quick();
+  const LinearisedModel linearised(of.robot, of.data, options, {});
+  const auto judged = [&](const std::vector<char>& undecided) {
+    return validate_on_holdout(linearised.shared_geometry(), linearised.adjusted(), of.data, {},
+                               linearised.context(), {kNoise}, undecided, options);
+  };
+  std::vector<char> undecided(static_cast<size_t>(of.data.rows.rows()), 0);
+  const HoldoutValidation all = judged(undecided);
+  EXPECT_EQ(all.undecided, 0);
+  const auto kept = std::ranges::find(of.data.rows.check, char{1}) - of.data.rows.check.begin();
+  undecided[static_cast<size_t>(kept)] = 1;
+  const HoldoutValidation others = judged(undecided);
+  EXPECT_EQ(others.undecided, 1);
+  ASSERT_EQ(others.rows.size() + 1, all.rows.size());
+  EXPECT_EQ(others.rows.front().before, all.rows[1].before);
 }
 
 TEST(WithNamed, PutsBackThePlacesThatTheVerdictNames) {

@@ -63,6 +63,25 @@ TEST(ToolComplianceByHand, GivesWayToTheWrenchAboutEachAxisOfTheMount) {
   expect_near(by.p, 0, 40e-6, 0);
 }
 
+TEST(ToolComplianceByHand, LetsTheToolItselfBendByForcesAtItsTip) {
+  // 29.43 N along the tool's y: 1e-6 m/N along y, which points down, and 5e-7 m/N along x.
+  const std::string soft = "[{effect: tool_compliance, by: tool, yy: 1.0e-6, xy: 5.0e-7}]";
+  const Moved level = moved(gripper(kThreeKg), soft, {});
+  expect_near(level.turn, 0, 0, 0);
+  expect_near(level.p, 14.715e-6, 0, -29.43e-6);
+  // 60 degrees down (25.487, 14.715, 0) N: 7.3575 um along x = (1/2, 0, -sin 60), and 14.715 um +
+  // 12.7434 um along y = (-sin 60, 0, -1/2).
+  const Moved steep = moved(gripper(kThreeKg), soft, {numbers({60 * kDegree})});
+  expect_near(steep.p, 3.67875e-6 - 23.7799e-6, 0, -6.37178e-6 - 13.7292e-6);
+  // 10 N along the tool's z by themselves.
+  Held held;
+  held.wrench = numbers({0, 0, 10, 0, 0, 0});
+  expect_near(moved(gripper(""),
+                    "[{effect: tool_compliance, by: tool, mass: 0, zz: 2.0e-6, yz: 1.0e-6}]", held)
+                  .p,
+              0, 20e-6, -10e-6);
+}
+
 MeasurementContext tracked() {
   MeasurementContext context;
   context.sets = {{"table", true, {0, 0, 0}, {0, 0, 1}}, {"tracker", false, {}, {}, true}};
