@@ -40,6 +40,8 @@ std::string in_words(const EffectShape& shape,
     parts.push_back("between " + time(between->first) + " and " + time(between->second) + " s");
   if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
   if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
+  if (shape.by == "temperature") parts.emplace_back("following the temperature");
+  if (shape.by == "tool") parts.emplace_back("of the tool itself");
   if (shape.tool) parts.emplace_back("of the tool too");
   if (!shape.half_waves.empty()) parts.emplace_back("wandering");
   std::string text;

@@ -131,6 +131,25 @@ TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
   EXPECT_EQ(count("tool_shift", "probe"), 0);
 }
 
+TEST(Candidates, LetWhatFollowsTheTemperatureBeLessLikelyThanWhatDoesNot) {
+  Session session(50);
+  session.context.sets = {{.name = "leica", .lengths = true}};
+  session.data.rows.temperature = Eigen::VectorXd::LinSpaced(50, 20, 21);
+  const auto following = [](const std::vector<Candidate>& all, const std::string& effect) {
+    double probability = 0;
+    for (const Candidate& each : all)
+      if (each.effect == effect && each.shape.by == "temperature")
+        probability += std::exp(each.log_prior);
+    return probability;
+  };
+  const std::vector<Candidate> all = session.candidates().list;
+  EXPECT_NEAR(following(all, "zero_shift"), 0.3 / 1.3, 1e-12);
+  EXPECT_NEAR(following(all, "scale_error"), 0.1 / 1.1, 1e-12);
+  // Without times nothing steps.
+  session.data.rows.time.resize(0);
+  EXPECT_NEAR(following(session.candidates().list, "zero_shift"), 1, 1e-12);
+}
+
 TEST(Candidates, SayWhatTheRowsCannotTest) {
   const auto list = Session(50).candidates().untestable;
   EXPECT_TRUE(std::ranges::any_of(

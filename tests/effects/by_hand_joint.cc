@@ -86,6 +86,18 @@ TEST(ZeroShiftByHand, StepsAtItsMoment) {
   }
 }
 
+TEST(ZeroShiftByHand, FollowsTheTemperatureWhereItIsSaid) {
+  // 20 urad/K times 4 K from 21 C; a row without a temperature has none.
+  const std::string warped =
+      "[{effect: zero_shift, at: j1, by: temperature, reference: 21, k: 2.0e-5}]";
+  for (const auto& [celsius, turn] :
+       {std::pair(25.0, 80e-6), std::pair(21.0, 0.0), std::pair(kUnknown, 0.0)}) {
+    Held held;
+    held.temperature = celsius;
+    expect_near(moved(kTurntable, warped, held).turn, 0, 0, turn, 1e-12);
+  }
+}
+
 TEST(TriggerLatencyByHand, TakesTheJointsBackByVelocityTimesDelay) {
   // 2 ms late at 0.05 rad/s: the joint was 100 urad short of where it was read when the touch
   // happened. Rows that touch nothing (no normal), or whose velocity is not known, are not late.

@@ -43,6 +43,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
       {"BaseDriftThatWanders", "effect: base_drift, half_waves: [1, 2.5]"},
       {"ZeroShift", "effect: zero_shift, at: JOINT, moment: 1000"},
+      {"ZeroShiftByTemperature", "effect: zero_shift, at: JOINT, by: temperature, reference: 21"},
       {"ProbePretravel", "effect: probe_pretravel, at: probe"},
       {"TriggerLatency", "effect: trigger_latency"},
       {"PlaneFormError", "effect: plane_form_error, at: table"},
