@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -76,7 +77,7 @@ tl::expected<std::shared_ptr<const Robot>, std::string> with_effects(
   const auto geometry = with_mass_of_its_size(geometry_of(robot));
   std::vector<Node> entries = effect_entries(*robot);
   std::erase_if(entries, [&](const Node& each) { return is_requested(each, arguments.effects); });
-  entries.insert(entries.end(), chosen.entries.begin(), chosen.entries.end());
+  std::ranges::transform(chosen.effects, std::back_inserter(entries), entry_of);
   std::shared_ptr<const Robot> corrected =
       correct(geometry, entries, context_of(*geometry, data), problems);
   if (!corrected) return tl::unexpected(problems.list.front());

@@ -1,6 +1,7 @@
 #include "diagnosis/search/shapes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -37,13 +38,10 @@ std::string why_none(const LinearisedModel& linearised, const std::string& asked
   return asked + ": it cannot act there on these rows";
 }
 
-}  // namespace
-
-ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const DataSet& data,
-                             const std::vector<std::string>& asked) {
+/// Of every effect asked for, by place, the shape with the best evidence.
+ChosenEffects best_shapes(const LinearisedModel& linearised, const DataSet& data,
+                          const std::vector<std::string>& asked, const DiagnosisOptions& options) {
   ChosenEffects chosen;
-  const DiagnosisOptions options;
-  const LinearisedModel linearised(robot, data, options, {});
   const DenseEquations rows = linearised.kept();
   const Candidates all = with_profiles(linearised.candidates());
   const EvidenceEvaluator evaluator(
@@ -64,9 +62,24 @@ ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const Da
     if (best.empty()) chosen.problem = why_none(linearised, each);
     for (const auto& [place, found] : best) {
       const Candidate& candidate = all.list[found.second];
-      chosen.entries.push_back(entry_of({candidate.effect, candidate.at, candidate.shape}));
+      chosen.effects.push_back({candidate.effect, candidate.at, candidate.shape});
     }
   }
+  return chosen;
+}
+
+}  // namespace
+
+ChosenEffects choose_effects(const std::shared_ptr<const Robot>& robot, const DataSet& data,
+                             const std::vector<std::string>& asked) {
+  const DiagnosisOptions options;
+  LinearisedModel linearised(robot, data, options, {});
+  ChosenEffects chosen = best_shapes(linearised, data, asked, options);
+  std::vector<ShapedEffect> steps;
+  std::ranges::copy_if(chosen.effects, std::back_inserter(steps),
+                       [](const ShapedEffect& each) { return each.shape.moment.has_value(); });
+  if (!steps.empty() && linearised.try_moments_near(steps))
+    chosen = best_shapes(linearised, data, asked, options);
   return chosen;
 }
 

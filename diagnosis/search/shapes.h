@@ -1,4 +1,4 @@
-// Effects asked for by name, EFFECT[@PLACE], made into entries with the shape that the rows favour.
+// Effects asked for by name, EFFECT[@PLACE], each in the shape that the rows favour.
 #pragma once
 
 #include <memory>
@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "constraints/methods/data_set.h"
+#include "kinematics/effect_shape.h"
 #include "kinematics/robot.h"
 
 namespace selfcal {
 
 struct ChosenEffects {
-  std::vector<Node> entries;
+  std::vector<ShapedEffect> effects;
   std::string problem;  ///< why there are none; empty otherwise
 };
 

@@ -11,6 +11,7 @@
 
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/search/shapes.h"
 #include "io/files/robot_file.h"
 #include "tests/diagnosis/two_sessions.h"
 #include "tests/recovery/session.h"
@@ -165,6 +166,21 @@ TEST(OrderOfRows, StandsForTheTimeAndIsSaid) {
   EXPECT_GE(behind, 26);
   EXPECT_LE(behind - before, 3);
   EXPECT_THAT(diagnosis.warnings, testing::Contains(testing::HasSubstr("order is taken for it")));
+}
+
+TEST(AskedEffects, StepBetweenTheRowsWhereItHappened) {
+  TwoSessions sessions;
+  DataSet& data = sessions.before;
+  const int rows = data.rows.rows();
+  data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, 10.0 * (rows - 1));
+  for (const int first : {22, 23, 24, 25, 26}) {
+    const Eigen::VectorXd before = data.rows.q.col(2);
+    data.rows.q.col(2).tail(rows - first).array() -= 2e-3;
+    const ChosenEffects chosen = choose_effects(sessions.robot, data, {"zero_shift@j3"});
+    data.rows.q.col(2) = before;
+    ASSERT_EQ(chosen.effects.size(), 1U) << chosen.problem;
+    EXPECT_NEAR(*chosen.effects.front().shape.moment, 10 * first - 5, 11);
+  }
 }
 
 /// A drift of a fifth of a millimetre over the rows, a second from one to the next.
