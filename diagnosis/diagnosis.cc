@@ -53,6 +53,7 @@ class Diagnostician {
     result_.next_why = std::move(next.why);
     tell("closing the gap", 0.85);
     validate_correction(linearised_, freedom_alone(), posterior_, data_, options_, result_);
+    if (!left_out_.empty()) result_.warnings.push_back(left_out_);
     result_.why = verdict_in_words(result_);
     if (const std::string doubt = doubt_of(linearised_, data_, result_); !doubt.empty())
       withdraw(doubt, options_, result_);
@@ -113,6 +114,7 @@ class Diagnostician {
     result_.verdict = unless_none(std::move(result_.verdict), result_.candidates, options_);
     agree(result_.candidates, result_.verdict);
     result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
+    left_out_ = leave_out_impossible(result_.named, result_.verdict);
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named);
   }
 
@@ -199,6 +201,7 @@ class Diagnostician {
   std::unique_ptr<EvidenceEvaluator> evaluator_;
   Posterior posterior_;
   Diagnosis result_;
+  std::string left_out_;  ///< of what would be named, and why
 };
 
 void cross_validate(const std::shared_ptr<const Robot>& robot, const DataSet& data,

@@ -89,8 +89,8 @@ int EffectPlan::joint() const {
   return 0;
 }
 
-int EffectPlan::leg() const {
-  if (robot.leg_parameter(0) >= 0) return joint();
+int EffectPlan::leg(Legs of) const {
+  if (robot.leg_parameter(0) >= 0) return of == Legs::all ? 0 : joint();
   fields.fail("effect", "an effect of another kind: " + std::string(kNoLegs));
   return -1;
 }

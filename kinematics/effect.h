@@ -147,8 +147,9 @@ struct EffectPlan {
 
   /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
   int joint() const;
-  /// The same of a robot with legs; without them it notes a problem and gives -1.
-  int leg() const;
+  enum class Legs { one, all };
+  /// The same of a robot with legs, of all the first; without them it notes a problem and gives -1.
+  int leg(Legs of = Legs::one) const;
   /// Index of the set called `at`; -1 outside a data set. Notes a problem when the context lacks
   /// it.
   int set() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "constraints/estimation/check_comparison.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -65,6 +66,12 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         "Mark about a third of the rows `check` (column part): a result is judged on rows "
         "it has not seen.");
+  else if (solution.verdict.answer == Answer::not_determined &&
+           solution.residual.check.configurations < kFewestCompared)
+    steps.push_back(with_figures(
+        "Keep at least %.0f configurations aside (column part), better a third: fewer cannot say "
+        "that they are met better.",
+        kFewestCompared));
   else if (solution.scale.against_maker)
     steps.push_back(
         "Measure the length given once more, or give another one: on a wrong one the whole robot "

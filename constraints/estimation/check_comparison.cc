@@ -95,7 +95,9 @@ CheckComparison compare_check_rows(const std::vector<CheckRow>& before,
     compared.rms_before = std::sqrt(compared.rms_before / rows);
     compared.rms_after = std::sqrt(compared.rms_after / rows);
   }
-  compared.p_value = signed_rank_p(gains(before, after, !alike));
+  const std::vector<double> gained = gains(before, after, !alike);
+  compared.configurations = static_cast<int>(gained.size());
+  compared.p_value = signed_rank_p(gained);
   // Of all, and of each set that only judges: many small gains must not outvote one great loss.
   const auto change_of = [](const auto& each) -> const SetChange& { return each.second; };
   const auto counts = [&](const SetChange& each) { return each.angle_alone == alone; };

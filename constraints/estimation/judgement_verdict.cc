@@ -51,6 +51,8 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
     v.why = "the identification did not converge; " + v.why;
   } else if (!grounds.contradictions.empty()) {
     for (const std::string& each : grounds.contradictions) v.why += "; " + each;
+  } else if (known_to(grounds.workspace, grounds.target) && compared.too_few()) {
+    v.why += "; no test of so few configurations kept aside can say that they are met better";
   } else if (known_to(grounds.workspace, grounds.target)) {
     v.answer = compared.better() ? Answer::improved : Answer::not_improved;
     if (compared.angles_rise) v.why += "; the angles are met worse than before";

@@ -41,15 +41,20 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
 
 bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
 
-/// A joint or a link that pushes back more than it is pushed. A tool may bend elsewhere than at its
-/// flange, which the law of tool_compliance has some numbers below zero for.
+/// What a joint or a link that pushes back more than it is pushed would need. A tool may bend
+/// elsewhere than at its flange, which the law of tool_compliance has some numbers below zero for.
+std::string impossible_sign(const CauseResult& cause) {
+  for (const NamedValue& v : cause.parameters)
+    if (gives_way(cause) && cause.effect != "tool_compliance" && v.positive &&
+        v.value + kDiagnosis.report.other_sign * v.sigma < 0)
+      return "no machine has " + v.name + " below zero, and the rows would need " +
+             in_readable_unit(v.value, v.unit) + ": something else pulls where its weight would";
+  return {};
+}
+
 std::string impossible_sign(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
-    for (const NamedValue& v : each.parameters)
-      if (gives_way(each) && each.effect != "tool_compliance" && v.positive &&
-          v.value + kDiagnosis.report.other_sign * v.sigma < 0)
-        return "no machine has " + v.name + " below zero, and the rows would need " +
-               in_readable_unit(v.value, v.unit) + ": something else pulls where its weight would";
+    if (std::string why = impossible_sign(each); !why.empty()) return why;
   return {};
 }
 
@@ -221,6 +226,18 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
     return why;
   const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();
   return !settled && hardly_closes(diagnosis) ? beyond_sheet(linearised, data) : std::string();
+}
+
+std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict) {
+  std::string why;
+  if (!impossible_sign(verdict).empty()) return why;
+  std::erase_if(named, [&](const CauseResult& each) {
+    const std::string of_this = impossible_sign(each);
+    if (of_this.empty()) return false;
+    why += (why.empty() ? "" : "; ") + each.effect + " is not named: " + of_this;
+    return true;
+  });
+  return why;
 }
 
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/findings.h"
@@ -22,6 +23,10 @@ namespace selfcal {
 /// sheet's that no repeat confirms.
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis);
+
+/// Of what is named beside the verdict, springs of the wrong sign are left out: the shape of the
+/// verdict's own law makes such. Says which and why; nothing where the verdict is one itself.
+std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict);
 
 /// Takes back what is named: the verdict is `unknown`, and its words begin with the doubt.
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis);

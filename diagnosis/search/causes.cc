@@ -84,12 +84,15 @@ class Teller {
     });
   }
 
+  /// None where it most probably acts on the whole robot.
   std::vector<std::string> places(const std::string& family, double probability) const {
     std::vector<std::pair<double, std::string>> ranked;
     for (const auto& [cause, p] : posterior_.cause)
-      if (cause.first == family && !cause.second.empty()) ranked.emplace_back(-p, cause.second);
+      if (cause.first == family) ranked.emplace_back(-p, cause.second);
     std::sort(ranked.begin(), ranked.end());
     std::vector<std::string> list;
+    if (!ranked.empty() && ranked.front().second.empty()) return list;
+    std::erase_if(ranked, [](const auto& each) { return each.second.empty(); });
     for (const auto& [p, at] : ranked)
       if (list.empty() || -p > kDiagnosis.naming.also_there * probability) list.push_back(at);
     return list;

@@ -1,5 +1,5 @@
-// Growth of a leg as it warms: delta l = alpha (T - T0) l, l its length at the reading. `reference`
-// is T0 (C, default the mean of the record). alpha: 1/K.
+// Growth of a leg, or of all alike where none is named, as it warms: delta l = alpha (T - T0) l, l
+// its length at the reading. `reference` is T0 (C, default the mean of the record). alpha: 1/K.
 #include <cmath>
 
 #include "kinematics/effect.h"
@@ -12,7 +12,9 @@ namespace {
 class LegThermalGrowth final : public Effect {
  public:
   explicit LegThermalGrowth(const EffectPlan& plan)
-      : leg_(plan.leg()), reference_(plan.reference()) {
+      : all_(plan.place.empty()),
+        leg_(plan.leg(all_ ? EffectPlan::Legs::all : EffectPlan::Legs::one)),
+        reference_(plan.reference()) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
   }
 
@@ -22,7 +24,10 @@ class LegThermalGrowth final : public Effect {
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (std::isnan(at.temperature)) return;
     const double warmer = at.temperature - reference_.value_or(kRoomTemperature);
-    into.tip.col(0) = warmer * at.leg_lengths[leg_] * at.legs.col(leg_);
+    if (all_)
+      into.tip.col(0) = warmer * at.legs * at.leg_lengths;
+    else
+      into.tip.col(0) = warmer * at.leg_lengths[leg_] * at.legs.col(leg_);
   }
 
  private:
@@ -30,6 +35,7 @@ class LegThermalGrowth final : public Effect {
     if (reference_) node.set("reference", Node::of(*reference_));
   }
 
+  bool all_;
   int leg_;
   std::optional<double> reference_;  ///< C
 };
@@ -41,10 +47,12 @@ std::unique_ptr<Effect> make_leg_thermal_growth(const EffectPlan& plan) {
 }
 
 void suppose_leg_thermal_growth(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  if (place.joint < 0 || rows.robot.leg_parameter(place.joint) < 0) return;
+  // What warms one leg warms them all, more or less.
+  const int joint = place.whole() ? 0 : place.joint;
+  if (joint < 0 || rows.robot.leg_parameter(joint) < 0) return;
   if (rows.warms)
     to.add(place.name);
-  else
+  else if (!place.whole())
     to.cannot(place.name, "the rows carry no temperatures that change");
 }
 

@@ -12,6 +12,11 @@
 namespace selfcal {
 namespace {
 
+/// Turns a metre of the screws and belts that slides have, finer than those asked one by one:
+/// pitches of 15, 12.5, 12, 10, 8, 6, 5.08, 5, 4, 3, 2.5 and 2 mm.
+constexpr double kScrews[] = {66.67,  80,  83.33, 100,    125, 166.67,
+                              196.85, 200, 250,   333.33, 400, 500};
+
 class TransmissionError final : public Effect {
  public:
   TransmissionError(const EffectPlan& plan, int joint) : joint_(joint) {
@@ -52,6 +57,9 @@ std::unique_ptr<Effect> make_transmission_error(const EffectPlan& plan) {
 void suppose_transmission_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.joint < 0) return;
   for (int k = 1; k <= rows.most_waves; ++k) to.add(place.name, {.waves = {1.0 * k}});
+  if (rows.robot.joints()[place.joint].quantity != Quantity::angle)
+    for (const double k : kScrews)
+      if (k > rows.most_waves) to.add(place.name, {.waves = {k}});
   to.add(place.name);
   to.last().together = 2;
   to.add(place.name);

@@ -33,7 +33,9 @@ std::unique_ptr<Effect> make_trigger_latency(const EffectPlan& plan) {
 }
 
 void suppose_trigger_latency(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  if (!place.whole() || !rows.context.touched()) return;
+  if (!place.whole()) return;
+  if (!rows.context.touched())
+    return to.cannot("probe", "no plane is touched, and only a touch is asked for a latency");
   if (rows.context.speeds && rows.normals)
     to.add("probe");
   else

@@ -84,7 +84,7 @@ TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
   EXPECT_EQ(rows.answer(), Answer::improved);
 }
 
-TEST(Verdict, IsNotImprovedByRepeatsOfFewConfigurations) {
+TEST(Verdict, IsNotDeterminedByRepeatsOfFewConfigurations) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
   rows.data.rows.repeat.resize(60);
@@ -93,7 +93,8 @@ TEST(Verdict, IsNotImprovedByRepeatsOfFewConfigurations) {
     EXPECT_EQ(rows.figures().check.configurations, configurations);
     return rows.answer();
   };
-  EXPECT_EQ(answer_of(3), Answer::not_improved);  // three of three are better in one of eight
+  EXPECT_EQ(answer_of(4), Answer::not_determined);  // four of four are better in one of sixteen
+  EXPECT_THAT(rows.judged().why, testing::HasSubstr("no test of so few configurations"));
   EXPECT_EQ(answer_of(10), Answer::improved);
 }
 

@@ -99,6 +99,24 @@ TEST(Candidates, HaveFiguresToTellOfARobotWhoseLastJointSlides) {
   for (const Candidate& each : all.list) EXPECT_FALSE(each.main.empty()) << each.effect << each.at;
 }
 
+TEST(Candidates, LookForThePitchOfTheScrewsOfSlides) {
+  Session session(50);
+  session.robot = robot_of(
+      "robot: slide\nkind: serial\nframes:\n"
+      "  - {name: x, joint: prismatic, limits: [0, 2]}\n"
+      "  - {name: turn, joint: revolute}\n  - {name: tool, joint: fixed, d: 1}\n");
+  session.data.rows.q = Eigen::MatrixXd::Zero(50, 2);
+  const auto finest = [&](const char* joint) {
+    double waves = 0;
+    for (const Candidate& each : session.candidates().list)
+      if (each.effect == "transmission_error" && each.at == joint)
+        for (const double k : each.shape.waves) waves = std::max(waves, k);
+    return waves;
+  };
+  EXPECT_EQ(finest("x"), 500);  // of 2 mm
+  EXPECT_EQ(finest("turn"), 64);
+}
+
 TEST(Candidates, LetTheBaseDriftSettleAndWander) {
   int straight = 0, settling = 0, wandering = 0;
   for (const Candidate& each : Session(50).candidates().list) {

@@ -141,6 +141,27 @@ TEST(Doubt, NamesNoSpringThatPushesBack) {
   EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "") << "noise may make it of nothing";
 }
 
+TEST(LeaveOutImpossible, LeavesWhatElseIsNamed) {
+  const CauseResult play{.effect = "joint_clearance", .where = {"leg3"}};
+  const auto spring = [](double value) {
+    return CauseResult{.effect = "leg_compliance",
+                       .where = {"leg3"},
+                       .parameters = {{"leg3.c", "m/N", value, 1e-7, 1e-8, 5e-6, true}}};
+  };
+  std::vector<CauseResult> named{play, spring(-1e-6)};
+  EXPECT_THAT(leave_out_impossible(named, play),
+              HasSubstr("leg_compliance is not named: no machine has leg3.c below zero"));
+  ASSERT_EQ(named.size(), 1U);
+  EXPECT_EQ(named.front().effect, "joint_clearance");
+  // What may be noise stays; so does a verdict that is one itself, which is withdrawn whole.
+  named = {play, spring(-1e-7)};
+  EXPECT_EQ(leave_out_impossible(named, play), "");
+  EXPECT_EQ(named.size(), 2U);
+  named = {spring(-1e-6), play};
+  EXPECT_EQ(leave_out_impossible(named, named.front()), "");
+  EXPECT_EQ(named.size(), 2U);
+}
+
 TEST(Withdraw, LeavesNothingNamedAndNothingClosedByIt) {
   Diagnosis diagnosis;
   diagnosis.named = {{.effect = "backlash", .where = {"j1"}}};

@@ -177,6 +177,9 @@ TEST(LegThermalGrowthByHand, RaisesAPlatformOnItsLegsAndLowersItOnItsLinks) {
   held.temperature = 28;
   expect_near(moved(standing(), of_all("leg", warm), held).p, 0, 0, 50e-6, 1e-7);
   expect_near(moved(hanging(), of_all("chain", warm), held).p, 0, 0, -50e-6, 1e-7);
+  // Where no leg is named all grow alike.
+  expect_near(moved(standing(), "[{" + warm + "}]", held).p, 0, 0, 50e-6, 1e-7);
+  expect_near(moved(hanging(), "[{" + warm + "}]", held).p, 0, 0, -50e-6, 1e-7);
 }
 
 TEST(JointClearanceByHand, LowersAPlatformByHalfThePlayUnderALoad) {

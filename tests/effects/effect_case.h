@@ -62,6 +62,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"LegComplianceOfADelta", "effect: leg_compliance, at: JOINT, mass: 0", "linear-delta"},
       {"LegComplianceOfAHexaSlide", "effect: leg_compliance, at: JOINT, mass: 9", "hexaslide"},
       {"LegThermalGrowth", "effect: leg_thermal_growth, at: JOINT", "gough-stewart"},
+      {"LegThermalGrowthOfAllLegs", "effect: leg_thermal_growth", "gough-stewart"},
       {"LegThermalGrowthOfADelta", "effect: leg_thermal_growth, at: JOINT, reference: 21",
        "linear-delta"},
       {"JointClearance", "effect: joint_clearance, at: JOINT", "gough-stewart"},
