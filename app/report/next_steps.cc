@@ -66,12 +66,6 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         "Mark about a third of the rows `check` (column part): a result is judged on rows "
         "it has not seen.");
-  else if (solution.verdict.answer == Answer::not_determined &&
-           solution.residual.check.configurations < kFewestCompared)
-    steps.push_back(with_figures(
-        "Keep at least %.0f configurations aside (column part), better a third: fewer cannot say "
-        "that they are met better.",
-        kFewestCompared));
   else if (solution.scale.against_maker)
     steps.push_back(
         "Measure the length given once more, or give another one: on a wrong one the whole robot "
@@ -87,6 +81,12 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         what_helps(solution));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
+  else if (solution.verdict.answer == Answer::not_determined &&
+           solution.residual.check.configurations < kFewestCompared)
+    steps.push_back(with_figures(
+        "Keep at least %.0f configurations aside (column part), better a third: fewer cannot say "
+        "that they are met better.",
+        kFewestCompared));
   else if (solution.verdict.answer == Answer::not_determined)
     steps.push_back(
         "Mend what the verdict and the warnings name: until then nothing of it is to be used.");

@@ -81,6 +81,15 @@ TEST(NextSteps, SendACandidateToTheDiagnosisAsWell) {
                                         Contains(HasSubstr("selfcal diagnose"))));
 }
 
+TEST(NextSteps, AskForMoreConfigurationsAsideWhereTooFewJudge) {
+  Solution solution = known_to(0.5e-3, 0.4e-3, 0);
+  solution.verdict.answer = Answer::not_determined;
+  solution.residual.check.configurations = 4;
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Keep at least 5 configurations aside")));
+  solution.residual.check.configurations = 5;
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("Mend what the verdict")));
+}
+
 TEST(Summary, CountsOneRowAndGivesANoiseOfAnglesAlone) {
   Solution solution = known_to(0.5e-3, 0.4e-3, 0);
   solution.residual.check.rows = 1;
