@@ -21,6 +21,8 @@ struct DiagnosisConstants {
     double most_weighed = 720;
     /// Probability that noise stays below; 1 - 1e-3 to 1 - 1e-7 [habit]
     double far = 1 - 1e-5;
+    int fewest_offered = 4;           ///< rows put aside, that are offered back; 3 to 10 [habit]
+    double hardly_any = 0.3;          ///< of them; 0.1 to 0.5 [habit]
     double median_to_sigma = 1.4826;  ///< of a normal variable [exact]
     double fewest_visits = 6;         ///< freedoms that tell a visit's noise; 4 to 20 [habit]
     double most_of_visits = 10;       ///< over the noise of immediate repeats; 3 to 100 [physics]

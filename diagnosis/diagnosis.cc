@@ -47,7 +47,7 @@ class Diagnostician {
     if (!named()) return std::move(result_);
     result_.where = attribution(linearised_, *evaluator_, data_);
     result_.untestable = linearised_.candidates().untestable;
-    list_detectable(linearised_, *evaluator_, options_, result_);
+    list_detectable(linearised_, *evaluator_, data_, options_, result_);
     NextSteps next = next_steps(linearised_, data_, result_, options_);
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);
@@ -149,23 +149,47 @@ class Diagnostician {
 
   /// Every cause on rows without the false ones, until neither these nor the noise change.
   void weigh() {
+    offer_back();
     for (int pass = 0; pass < kDiagnosis.rows.passes; ++pass) {
       tell("weighing the causes", 0.2 + 0.2 * pass);
       prepare();
       result_.problem = lacking();
       if (!result_.problem.empty()) return;
       posterior_ = evaluator_->search();
-      const Hypothesis& best = posterior_.hypotheses.front();
-      const auto [columns, sigma] = MarginalLikelihood::unfold(evaluator_->terms(best));
-      const double variance = evaluator_->marginal_likelihood(best.structure)
-                                  .estimate(evaluator_->terms(best))
-                                  .variance *
-                              evaluator_->noise_variance(best.structure);
       // The evaluator and the linearised model must end up with the same rows.
       if (pass + 1 == kDiagnosis.rows.passes) break;
-      const bool refined = linearised_.refine(linearised_.residuals(columns, sigma), variance);
+      const bool refined = refine_by(posterior_.hypotheses.front());
       if (!linearised_.try_moments_near(likely_steps()) && !refined) break;
     }
+  }
+
+  bool refine_by(const Hypothesis& best) {
+    const auto [columns, sigma] = MarginalLikelihood::unfold(evaluator_->terms(best));
+    const double variance =
+        evaluator_->marginal_likelihood(best.structure).estimate(evaluator_->terms(best)).variance *
+        evaluator_->noise_variance(best.structure);
+    return linearised_.refine(linearised_.residuals(columns, sigma), variance);
+  }
+
+  /// A cause that acts in few rows has these put aside before it is looked for. Where one of all
+  /// rows leaves hardly any of them far, they take part.
+  void offer_back() {
+    const std::vector<char> aside = linearised_.outlier();
+    const auto count = std::ranges::count(aside, char{1});
+    if (count < kDiagnosis.rows.fewest_offered) return;
+    linearised_.start_with(std::vector<char>(aside.size(), 0));
+    prepare();
+    if (lacking().empty()) {
+      posterior_ = evaluator_->search();
+      const Hypothesis& best = posterior_.hypotheses.front();
+      if (!best.candidates.empty()) {
+        refine_by(best);
+        const auto left = std::ranges::count(linearised_.outlier(), char{1});
+        if (static_cast<double>(left) <= kDiagnosis.rows.hardly_any * static_cast<double>(count))
+          return;
+      }
+    }
+    linearised_.start_with(aside);
   }
 
   /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks

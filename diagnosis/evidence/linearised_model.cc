@@ -241,6 +241,15 @@ Eigen::VectorXd LinearisedModel::geometry_leaves(const Whitened& rows) const {
   return (1 - Q.rowwise().squaredNorm().array()).max(0);
 }
 
+void LinearisedModel::start_with(std::vector<char> outlier) {
+  for (size_t row = 0; row < held_.size(); ++row)
+    if (!held_[row]) outlier[row] = outlier_[row];
+  outlier_ = std::move(outlier);
+  left_ = all_.y;
+  scale_ = 1;
+  relative_.assign(relative_.size(), 1);
+}
+
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
   const std::vector<double> unlike =
       unlike_noise(data_, kept().row, residuals(equations_of(all_, taking_part())),

@@ -77,6 +77,9 @@ class LinearisedModel {
   /// each by its own rows, and puts aside the rows whose
   /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
   bool refine(const Eigen::VectorXd& residuals, double variance);
+  /// Puts aside these of the held rows (by row of the data set), no others, with the noise that the
+  /// geometry's fit has.
+  void start_with(std::vector<char> outlier);
   /// The rows that are held, put aside or not; of a large data set one of every so many
   /// configurations. Whitened at a scale of one.
   const DenseEquations& all() const { return all_; }

@@ -15,15 +15,27 @@ bool moves_nothing(const LinearisedModel& linearised, const Candidate& candidate
       candidate.main, [&](int k) { return linearised.all().W.col(first + k).isZero(1e-12); });
 }
 
-std::string why_untestable(const LinearisedModel& linearised, const Candidate& candidate) {
+/// A lock sees the chain behind its joint, which follows from the readings alone.
+bool all_under_locks(const DataSet& data) {
+  return std::ranges::all_of(data.rows.set, [&](int set) {
+    return data.sets[static_cast<size_t>(set)].method->planned() == Planned::lock;
+  });
+}
+
+std::string why_untestable(const LinearisedModel& linearised, const DataSet& data,
+                           const Candidate& candidate) {
   if (!moves_nothing(linearised, candidate)) return "absorbed by calibration on these rows";
+  if (candidate.effect.starts_with("leg_") || candidate.effect == "joint_clearance")
+    if (all_under_locks(data))
+      return "rows under locks are met by the readings alone here: it needs touches or measured "
+             "positions beside them";
   return "it moves nothing in these rows: it needs " + candidate.needs;
 }
 
 }  // namespace
 
 void list_detectable(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
-                     const DiagnosisOptions& options, Diagnosis& into) {
+                     const DataSet& data, const DiagnosisOptions& options, Diagnosis& into) {
   std::map<Cause, Detectable> best;
   const std::vector<Candidate>& list = linearised.candidates().list;
   for (int c = 0; c < static_cast<int>(list.size()); ++c) {
@@ -39,7 +51,7 @@ void list_detectable(const LinearisedModel& linearised, const EvidenceEvaluator&
   for (auto& [cause, each] : best) into.detectable.push_back(std::move(each));
   for (const Candidate& each : list)
     if (best.try_emplace({each.effect, each.at}).second)
-      into.untestable.push_back({each.effect, each.at, why_untestable(linearised, each)});
+      into.untestable.push_back({each.effect, each.at, why_untestable(linearised, data, each)});
 }
 
 }  // namespace selfcal

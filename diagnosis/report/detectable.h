@@ -12,6 +12,6 @@ struct DiagnosisOptions;
 /// Fills `detectable` with each cause in its best seen shape, and adds to `untestable` what
 /// calibration absorbs or nothing moves.
 void list_detectable(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
-                     const DiagnosisOptions& options, Diagnosis& into);
+                     const DataSet& data, const DiagnosisOptions& options, Diagnosis& into);
 
 }  // namespace selfcal

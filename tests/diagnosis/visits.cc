@@ -168,6 +168,18 @@ TEST(OrderOfRows, StandsForTheTimeAndIsSaid) {
   EXPECT_THAT(diagnosis.warnings, testing::Contains(testing::HasSubstr("order is taken for it")));
 }
 
+TEST(RowsPutAside, AreOfferedToACauseThatActsInThemAlone) {
+  TwoSessions sessions;
+  DataSet& data = sessions.before;
+  const int rows = data.rows.rows();
+  data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, 10.0 * (rows - 1));
+  data.rows.q.col(2).tail(6).array() -= 1e-3;  // beyond what the geometry's fit takes for noise
+  const Diagnosis diagnosis = diagnose(sessions.robot, data, without_simulation());
+  EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
+  EXPECT_THAT(diagnosis.verdict.where, testing::ElementsAre("j3"));
+  EXPECT_LE(diagnosis.outliers.size(), 1U);
+}
+
 TEST(AskedEffects, StepBetweenTheRowsWhereItHappened) {
   TwoSessions sessions;
   DataSet& data = sessions.before;
