@@ -89,11 +89,13 @@ int EffectPlan::joint() const {
   return 0;
 }
 
-int EffectPlan::leg(Legs of) const {
-  if (robot.leg_parameter(0) >= 0) return of == Legs::all ? 0 : joint();
+bool EffectPlan::legs() const {
+  if (robot.leg_parameter(0) >= 0) return true;
   fields.fail("effect", "an effect of another kind: " + std::string(kNoLegs));
-  return -1;
+  return false;
 }
+
+int EffectPlan::leg() const { return legs() ? joint() : -1; }
 
 int EffectPlan::set() const {
   const int set = context.find(fields.text("at"));

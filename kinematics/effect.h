@@ -147,9 +147,10 @@ struct EffectPlan {
 
   /// Index of the joint called `at`; notes a problem and gives 0 otherwise.
   int joint() const;
-  enum class Legs { one, all };
-  /// The same of a robot with legs, of all the first; without them it notes a problem and gives -1.
-  int leg(Legs of = Legs::one) const;
+  /// Legs carry the robot. Notes a problem otherwise.
+  bool legs() const;
+  /// The same of a robot with legs; without them it notes a problem and gives -1.
+  int leg() const;
   /// Index of the set called `at`; -1 outside a data set. Notes a problem when the context lacks
   /// it.
   int set() const;

@@ -266,11 +266,10 @@ ExpectedSigma expected_sigma(const Robot& robot, const Eigen::VectorXd& xi,
   for (std::size_t i = 0; i < touches.size(); ++i)
     rows.row(static_cast<Eigen::Index>(i)) = touches[i].q.transpose();
   question.poses = workspace_poses(robot, xi, workspace, rows, kPoses, kSeed);
-  const EndpointDeviations where_it_counts = endpoint_deviations(question);
-  expected.workspace = endpoint_sigma(where_it_counts, C);
+  const EndpointDeviations there = endpoint_deviations(question);
+  expected.workspace = endpoint_sigma(there, C);
   if (question.poses.rows() > 0 && !touches.empty())
-    expected.curve =
-        sigma_by_count(robot, xi, sets, touches, where_it_counts.weight, progress, prior);
+    expected.curve = sigma_by_count(robot, xi, sets, touches, there.weight, progress, prior);
   return expected;
 }
 

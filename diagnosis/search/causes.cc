@@ -14,7 +14,7 @@ namespace selfcal {
 namespace {
 
 /// A time, or the row of it where the order of the rows is the time: row 1 is at 0 s.
-std::string in_words(double seconds, bool order_is_time) {
+std::string time_in_words(double seconds, bool order_is_time) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f", order_is_time ? std::ceil(seconds) + 1 : seconds);
   return text;
@@ -23,21 +23,19 @@ std::string in_words(double seconds, bool order_is_time) {
 /// What the linear parameters do not say of it; a step lies `between` two rows.
 std::string in_words(const EffectShape& shape,
                      const std::optional<std::pair<double, double>>& between, bool order_is_time) {
-  const auto time = [&](double seconds) { return in_words(seconds, order_is_time); };
+  const auto time = [&](double seconds) { return time_in_words(seconds, order_is_time); };
   const auto lasting = [&](double seconds) {
     char text[32];
     std::snprintf(text, sizeof text, order_is_time ? "%.0f rows" : "%.0f s", seconds);
     return std::string(text);
   };
   std::vector<std::string> parts;
-  if (shape.moment && order_is_time)
-    parts.push_back("from row " + time(*shape.moment) + " on");
-  else if (shape.moment)
-    parts.push_back("from " + time(*shape.moment) + " s on");
-  if (between && order_is_time)
-    parts.push_back("between rows " + time(between->first) + " and " + time(between->second));
-  else if (between)
-    parts.push_back("between " + time(between->first) + " and " + time(between->second) + " s");
+  const std::string row = order_is_time ? "row " : "", rows = order_is_time ? "rows " : "",
+                    unit = order_is_time ? "" : " s";
+  if (shape.moment) parts.push_back("from " + row + time(*shape.moment) + unit + " on");
+  if (between)
+    parts.push_back("between " + rows + time(between->first) + " and " + time(between->second) +
+                    unit);
   if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
   if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
   if (shape.by == "temperature") parts.emplace_back("following the temperature");

@@ -1,8 +1,6 @@
 // Growth of a leg, or of all alike where none is named, as it warms: delta l = alpha (T - T0) l, l
 // its length at the reading. `reference` is T0 (C, default the mean of the record). alpha: 1/K.
-#include <cmath>
-
-#include "kinematics/effect.h"
+#include "kinematics/effects/shared/warmth.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
 
@@ -12,9 +10,7 @@ namespace {
 class LegThermalGrowth final : public Effect {
  public:
   explicit LegThermalGrowth(const EffectPlan& plan)
-      : all_(plan.place.empty()),
-        leg_(plan.leg(all_ ? EffectPlan::Legs::all : EffectPlan::Legs::one)),
-        reference_(plan.reference()) {
+      : leg_(plan.legs() && !plan.place.empty() ? plan.joint() : -1), warmth_(plan) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
   }
 
@@ -22,22 +18,18 @@ class LegThermalGrowth final : public Effect {
   std::string needs() const override { return "temperatures that change"; }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    if (std::isnan(at.temperature)) return;
-    const double warmer = at.temperature - reference_.value_or(kRoomTemperature);
-    if (all_)
+    const double warmer = warmth_.above(at.temperature);
+    if (leg_ < 0)
       into.tip.col(0) = warmer * at.legs * at.leg_lengths;
     else
       into.tip.col(0) = warmer * at.leg_lengths[leg_] * at.legs.col(leg_);
   }
 
  private:
-  void describe_shape(Node& node) const override {
-    if (reference_) node.set("reference", Node::of(*reference_));
-  }
+  void describe_shape(Node& node) const override { warmth_.describe(node); }
 
-  bool all_;
-  int leg_;
-  std::optional<double> reference_;  ///< C
+  int leg_;  ///< -1: all
+  Warmth warmth_;
 };
 
 }  // namespace

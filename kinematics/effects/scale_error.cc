@@ -3,9 +3,7 @@
 // so that what it measures stands off the robot's model as if the tip, seen from the device's
 // `origin` o, were that much farther out: shift = s (p - o). o is where the set's rows have the
 // device, the world's origin of one that measures in the world's frame. s: 1, k: 1/K.
-#include <cmath>
-
-#include "kinematics/effect.h"
+#include "kinematics/effects/shared/warmth.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
 
@@ -14,32 +12,25 @@ namespace {
 
 class ScaleError final : public Effect {
  public:
-  ScaleError(const EffectPlan& plan, int set) : set_(set) {
+  ScaleError(const EffectPlan& plan, int set) : set_(set), warmth_(warmth_by(plan)) {
     if (const auto written = plan.fields.numbers("origin", 3))
       origin_ = *written;
     else if (set >= 0 && !plan.context.sets[set].without_rows)
       origin_ = plan.context.sets[set].device;
-    const std::string by = plan.fields.text("by", "");
-    if (!by.empty() && by != "temperature") plan.fields.fail("by", "temperature");
-    by_temperature_ = by == "temperature";
-    if (by_temperature_) {
+    if (warmth_)
       parameters_ = {{"k", "1/K", 1e-7, 2e-5}};
-      reference_ = plan.reference();
-    } else {
+    else
       parameters_ = {{"s", "1", 1e-6, 5e-5}};
-    }
   }
 
   bool of_machine() const override { return false; }
   std::string needs() const override {
-    return by_temperature_ ? "temperatures that change" : "lengths that are known otherwise";
+    return warmth_ ? "temperatures that change" : "lengths that are known otherwise";
   }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
-    const double share =
-        by_temperature_ ? at.temperature - reference_.value_or(kRoomTemperature) : 1;
-    if (std::isnan(share)) return;
+    const double share = warmth_ ? warmth_->above(at.temperature) : 1;
     into.tip.col(0).head<3>() =
         share * (at.poses.back().translation() - origin_.value_or(Eigen::Vector3d::Zero()));
   }
@@ -47,15 +38,14 @@ class ScaleError final : public Effect {
  private:
   void describe_shape(Node& node) const override {
     if (origin_) node.set("origin", Node::of(Eigen::VectorXd(*origin_)));
-    if (!by_temperature_) return;
+    if (!warmth_) return;
     node.set("by", Node::of(std::string("temperature")));
-    if (reference_) node.set("reference", Node::of(*reference_));
+    warmth_->describe(node);
   }
 
   int set_;
   std::optional<Eigen::Vector3d> origin_;  ///< m, world
-  bool by_temperature_ = false;
-  std::optional<double> reference_;  ///< C
+  std::optional<Warmth> warmth_;           ///< by: temperature
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinematics/effect.h"
+#include "kinematics/effects/shared/warmth.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
 
@@ -28,7 +28,7 @@ std::vector<double> lagged(const std::vector<double>& t, const std::vector<doubl
 
 class ThermalExpansion final : public Effect {
  public:
-  explicit ThermalExpansion(const EffectPlan& plan) {
+  explicit ThermalExpansion(const EffectPlan& plan) : warmth_(plan) {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
     plan.mechanics();
     tool_ = plan.fields.flag("tool", false);
@@ -36,19 +36,16 @@ class ThermalExpansion final : public Effect {
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.context.times;
     temperatures_ = lagged(times_, plan.context.temperatures, lag_);
-    reference_ = plan.reference();
   }
 
   std::string needs() const override { return "temperatures that change"; }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    const double T = temperature(at);
-    if (std::isnan(T)) return;
     const int first = at.mechanics->link_of(0);
     const int last = at.mechanics->link_of(static_cast<int>(at.q.size()) - 1);
     Eigen::Vector3d grown = (tool_ ? at.poses.back() : at.poses[last]).translation();
     if (first > 0) grown -= at.poses[first - 1].translation();
-    into.tip.col(0).head<3>() = (T - reference_.value_or(kRoomTemperature)) * grown;
+    into.tip.col(0).head<3>() = warmth_.above(temperature(at)) * grown;
   }
 
  private:
@@ -66,12 +63,12 @@ class ThermalExpansion final : public Effect {
   void describe_shape(Node& node) const override {
     node.set("lag", Node::of(lag_));
     if (tool_) node.set("tool", Node::of(std::string("true")));
-    if (reference_) node.set("reference", Node::of(*reference_));
+    warmth_.describe(node);
   }
 
   bool tool_ = false;  ///< grows as well
   double lag_ = 0;
-  std::optional<double> reference_;  ///< C
+  Warmth warmth_;
   std::vector<double> times_, temperatures_;
 };
 

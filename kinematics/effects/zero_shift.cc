@@ -3,9 +3,8 @@
 // or follows the temperature (`by: temperature`), as where an encoder's bracket warps,
 //   delta q = k (T - T0),   k: rad/K (m/K), T0 the `reference` (C; the rows' mean).
 #include <algorithm>
-#include <cmath>
 
-#include "kinematics/effect.h"
+#include "kinematics/effects/shared/warmth.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
 
@@ -14,14 +13,10 @@ namespace {
 
 class ZeroShift final : public Effect {
  public:
-  ZeroShift(const EffectPlan& plan, int joint) : joint_(joint) {
+  ZeroShift(const EffectPlan& plan, int joint) : joint_(joint), warmth_(warmth_by(plan)) {
     const bool turns = plan.robot.joints()[joint].quantity == Quantity::angle;
-    const std::string by = plan.fields.text("by", "");
-    if (!by.empty() && by != "temperature") plan.fields.fail("by", "temperature");
-    by_temperature_ = by == "temperature";
-    if (by_temperature_) {
+    if (warmth_) {
       parameters_ = {{"k", turns ? "rad/K" : "m/K", 1e-6, 1e-4}};
-      reference_ = plan.reference();
     } else {
       parameters_ = {{"step", turns ? "rad" : "m", 5e-5, 5e-3}};
       moment_ = plan.fields.number("moment");
@@ -29,30 +24,27 @@ class ZeroShift final : public Effect {
   }
 
   std::string needs() const override {
-    return by_temperature_ ? "temperatures that change" : "rows with times before and after it";
+    return warmth_ ? "temperatures that change" : "rows with times before and after it";
   }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    if (!by_temperature_)
-      into.joints(joint_, 0) = at.time >= moment_ ? 1 : 0;
-    else if (!std::isnan(at.temperature))
-      into.joints(joint_, 0) = at.temperature - reference_.value_or(kRoomTemperature);
+    const bool stepped = at.time >= moment_;
+    into.joints(joint_, 0) = warmth_ ? warmth_->above(at.temperature) : stepped;
   }
 
  private:
   void describe_shape(Node& node) const override {
-    if (!by_temperature_) {
+    if (!warmth_) {
       node.set("moment", Node::of(moment_));
       return;
     }
     node.set("by", Node::of(std::string("temperature")));
-    if (reference_) node.set("reference", Node::of(*reference_));
+    warmth_->describe(node);
   }
 
   int joint_;
-  bool by_temperature_ = false;
+  std::optional<Warmth> warmth_;  ///< by: temperature
   double moment_ = 0;
-  std::optional<double> reference_;  ///< C
 };
 
 }  // namespace
