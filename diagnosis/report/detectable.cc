@@ -25,10 +25,9 @@ bool all_under_locks(const DataSet& data) {
 std::string why_untestable(const LinearisedModel& linearised, const DataSet& data,
                            const Candidate& candidate) {
   if (!moves_nothing(linearised, candidate)) return "absorbed by calibration on these rows";
-  if (candidate.effect.starts_with("leg_") || candidate.effect == "joint_clearance")
-    if (all_under_locks(data))
-      return "rows under locks are met by the readings alone here: it needs touches or measured "
-             "positions beside them";
+  if (all_under_locks(data))
+    return "rows under locks are met by the readings alone: it needs touches or measured positions "
+           "beside them";
   return "it moves nothing in these rows: it needs " + candidate.needs;
 }
 

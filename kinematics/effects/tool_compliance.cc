@@ -4,9 +4,10 @@
 // M the moment about O, in that frame's axes, of the tool's weight and of the wrench at its tip (a
 // rigid tool on a spring; a link that bends along its length is link_compliance). Where it gives
 // way elsewhere (`by: tool`: a stylus that bends, a spring askew), the tip moves by
-//   S f,   S = (xx xy xz; xy yy yz; xz yz zz),   m/N
-// f that weight and the wrench's force, in the tip's axes. Where the tool's frames have no mass,
-// `mass` (kg, 1 where nothing is said) hangs at the tip.
+//   S f,   S = (xx xy xz; xy yy yz; xz yz 0),   m/N
+// f that weight and the wrench's force, in the tip's axes; z is the tool's own, along which it is
+// stiff: what gives way to its weight alike in all directions moves the tip as the base would.
+// Where the tool's frames have no mass, `mass` (kg, 1 where nothing is said) hangs at the tip.
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
 #include "kinematics/suppositions.h"
@@ -29,9 +30,11 @@ class ToolCompliance final : public Effect {
     if (by != "mount" && by != "tool") plan.fields.fail("by", "mount or tool");
     bends_ = by == "tool";
     if (bends_)
-      parameters_ = {{"xx", "m/N", 1e-8, 1e-5, true}, {"yy", "m/N", 1e-8, 1e-5, true},
-                     {"zz", "m/N", 1e-8, 1e-5, true}, {"xy", "m/N", 1e-8, 1e-5},
-                     {"xz", "m/N", 1e-8, 1e-5},       {"yz", "m/N", 1e-8, 1e-5}};
+      parameters_ = {{"xx", "m/N", 1e-8, 1e-5, true},
+                     {"yy", "m/N", 1e-8, 1e-5, true},
+                     {"xy", "m/N", 1e-8, 1e-5},
+                     {"xz", "m/N", 1e-8, 1e-5},
+                     {"yz", "m/N", 1e-8, 1e-5}};
     else
       parameters_ = {{"bend_x", "rad/(N m)", 1e-6, 2e-4, true},
                      {"bend_y", "rad/(N m)", 1e-6, 2e-4, true},
@@ -66,11 +69,14 @@ class ToolCompliance final : public Effect {
     const Load load = load_about(*at.mechanics, at.poses, at.wrench, last_ + 1, tip.translation());
     const Eigen::Matrix3d& R = tip.linear();
     const Eigen::Vector3d f = R.transpose() * (load.force + mass_ * at.mechanics->gravity);
-    for (int axis = 0; axis < 3; ++axis) {
-      into.tip.col(axis).head<3>() = R.col(axis) * f[axis];
-      const int a = axis == 2 ? 1 : 0, b = axis == 0 ? 1 : 2;  // xy, xz, yz
-      into.tip.col(3 + axis).head<3>() = R.col(a) * f[b] + R.col(b) * f[a];
-    }
+    const auto moves = [&](int a, int b) -> Eigen::Vector3d {
+      return R.col(a) * f[b] + R.col(b) * f[a];
+    };
+    into.tip.col(0).head<3>() = R.col(0) * f[0];
+    into.tip.col(1).head<3>() = R.col(1) * f[1];
+    into.tip.col(2).head<3>() = moves(0, 1);
+    into.tip.col(3).head<3>() = moves(0, 2);
+    into.tip.col(4).head<3>() = moves(1, 2);
   }
 
   void describe_shape(Node& node) const override {

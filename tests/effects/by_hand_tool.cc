@@ -73,13 +73,13 @@ TEST(ToolComplianceByHand, LetsTheToolItselfBendByForcesAtItsTip) {
   // 12.7434 um along y = (-sin 60, 0, -1/2).
   const Moved steep = moved(gripper(kThreeKg), soft, {numbers({60 * kDegree})});
   expect_near(steep.p, 3.67875e-6 - 23.7799e-6, 0, -6.37178e-6 - 13.7292e-6);
-  // 10 N along the tool's z by themselves.
+  // 10 N along the tool's z, which is the world's y, by themselves: 10 um along y, which points
+  // down, and 20 um along x.
   Held held;
   held.wrench = numbers({0, 0, 10, 0, 0, 0});
-  expect_near(moved(gripper(""),
-                    "[{effect: tool_compliance, by: tool, mass: 0, zz: 2.0e-6, yz: 1.0e-6}]", held)
-                  .p,
-              0, 20e-6, -10e-6);
+  const std::string askew =
+      "[{effect: tool_compliance, by: tool, mass: 0, xz: 2.0e-6, yz: 1.0e-6}]";
+  expect_near(moved(gripper(""), askew, held).p, 20e-6, 0, -10e-6);
 }
 
 MeasurementContext tracked() {
