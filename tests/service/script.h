@@ -26,6 +26,8 @@ inline std::string name_of(Action::Do what) {
       return "go_along";
     case Do::go_to_start:
       return "go_to_start";
+    case Do::go_nearer:
+      return "go_nearer";
     case Do::go_touch:
       return "go_touch";
     case Do::go_back:

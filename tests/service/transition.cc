@@ -67,6 +67,46 @@ TEST(Transition, GoesAlongThePlacesOfTheWayBeforeTheStart) {
   EXPECT_EQ(script.s.step, 1);
 }
 
+/// At the start of a touch before whose slow part a stretch is known to be free.
+Script script_at_a_start_far_out(int step) {
+  Script script = script_at(ServiceState::planning);
+  script.planned(3, SessionKind::full, 0, false);
+  script.on(What::moved).on(What::closed).on(What::at_rest);
+  Event read;
+  read.what = What::read;
+  read.step = step;
+  read.nearer = true;
+  script.on(read).on(What::opened).on(What::moved);
+  return script;
+}
+
+TEST(Transition, ComesNearerBeforeItTouchesWhereThatIsKnownToBeFree) {
+  Script script = script_at_a_start_far_out(1);
+  EXPECT_EQ(script.done(), "go_to_start");
+  EXPECT_EQ(script.on(What::moved).done(), "go_nearer");
+  EXPECT_EQ(script.s.phase, Phase::approach);
+  EXPECT_EQ(script.on(What::moved).done(), "go_touch");
+  EXPECT_EQ(script.s.phase, Phase::touch);
+}
+
+TEST(Transition, ComesNearerBeforeARepeat) {
+  Script script = script_at_a_start_far_out(0);
+  EXPECT_EQ(script.done(), "go_nearer");
+  EXPECT_EQ(script.s.phase, Phase::approach);
+  EXPECT_EQ(script.on(What::moved).done(), "go_touch");
+}
+
+TEST(Transition, IsSlowAllTheWayOnceItWasStruckWhereItShouldBeFree) {
+  Script script = script_at_a_start_far_out(1);
+  script.on(What::moved);
+  EXPECT_EQ(script.on(What::closed).done(), "stop");
+  EXPECT_EQ(script.on(What::at_rest).done(), "tell, back_off");
+  script.on(What::opened);
+  EXPECT_EQ(script.on(What::moved).done(), "go_home");
+  EXPECT_EQ(script.on(What::moved).done(), "go_to_start");
+  EXPECT_EQ(script.on(What::moved).done(), "go_touch");
+}
+
 TEST(Transition, GoesHomeFromAStrayContactWhateverTheWayWas) {
   Script script = script_at(ServiceState::planning);
   Event planned;

@@ -124,13 +124,14 @@ Event random_event(std::mt19937_64& random, const ExtendedState& s) {
   event.step = event.what == What::planned ? below(event.steps + 1) : s.step + below(2);
   event.via_home = below(2) == 0;
   event.way = below(3);
+  event.nearer = below(2) == 0;
   event.decision = static_cast<Event::Decision>(below(4));
   return event;
 }
 
 bool moves(Do what) {
-  return what == Do::go_home || what == Do::go_to_start || what == Do::go_touch ||
-         what == Do::go_back || what == Do::back_off;
+  return what == Do::go_home || what == Do::go_to_start || what == Do::go_nearer ||
+         what == Do::go_touch || what == Do::go_back || what == Do::back_off;
 }
 
 TEST(Transition, HoldsItsPromisesWhateverHappensInWhateverOrder) {

@@ -75,7 +75,7 @@ std::string cell_plan_report(const Config& config, const CellPlan& cell) {
       "over the whole range of the joints\n",
       1e3 * cell.expected.workspace.rms, 1e3 * cell.expected.workspace.max,
       1e3 * cell.expected.endpoint.rms);
-  text += printed("  motion %s: %s between touches, %s into contacts and out\n",
+  text += printed("  motion at most %s: %s between touches, %s into contacts and out\n",
                   duration(cell.time.total()).c_str(), duration(cell.time.travel).c_str(),
                   duration(cell.time.touching).c_str());
   text += curve_report(cell.expected.curve, config.target, "touches that identify", "  ");

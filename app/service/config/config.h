@@ -29,7 +29,8 @@
 //     touch_speed    0.01       1e-4 to 1 m/s   of the endpoint towards a surface
 //     clearance      0.03       1e-3 to 0.5 m   how far before the surface free ways end
 //     slow           search     search to       how far before it the robot, coming straight in,
-//                               clearance       slows down to touch_speed
+//                               clearance       slows down to touch_speed; less once touches of
+//                                               the set tell where the surface lies
 //     search         0.01       1e-4 to 0.1 m   how far off the surface may be, either way
 //     apart          0.02       0 to 0.5 m      kept from every other surface; below clearance
 //     tilt           1.2        0.01 to 3.2 rad most between stylus and the way in

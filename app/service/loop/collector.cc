@@ -135,6 +135,15 @@ void Collector::tell_way(int step, Event& event) const {
   if (step >= static_cast<int>(session_.plan.size())) return;
   event.via_home = session_.plan[step].via_home || step > c_.extended_state.step + 1;
   event.way = static_cast<int>(session_.plan[step].way.size());
+  event.nearer = may_come_nearer(step);
+}
+
+/// Where the last attempt was felt too early, or not at all, the next one is slow all the way.
+bool Collector::may_come_nearer(int step) const {
+  if (lock_of(step) != 0) return false;
+  const TouchRecord* last = session_.touches.empty() ? nullptr : &session_.touches.back();
+  if (last && last->step == step && last->outcome == TouchOutcome::outlier) return false;
+  return slow_from(step) != session_.plan[step].start;
 }
 
 bool Collector::is_loaded(int step) const {

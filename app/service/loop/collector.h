@@ -86,11 +86,14 @@ class Collector {
   /// No move of ours is under way: what moves now is not ours to stop.
   void leave_alone();
   double touch_speed(const StepRecord& step) const;
+  /// Readings from which on the touch of a step is slow; its start where nothing tells more.
+  std::vector<double> slow_from(int step) const;
   std::string label() const;
   void announce_plan();
   /// Of a session that is in the store.
   void refuse_plan(const std::string& why, bool later = false);
   void tell_way(int step, Event& event) const;
+  bool may_come_nearer(int step) const;
   bool is_loaded(int step) const;
   /// The plan has touches with the payload, so that it may be on the tool.
   bool touched_loaded() const;

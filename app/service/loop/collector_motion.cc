@@ -1,6 +1,6 @@
 // What the robot is asked: moves of the touch in progress, and to stop.
 #include "app/service/loop/collector.h"
-#include "app/service/session/touch_decision.h"
+#include "app/service/session/slow_height.h"
 
 namespace selfcal {
 namespace {
@@ -35,6 +35,8 @@ void Collector::make_move(Action::Do what) {
     case Do::go_to_start:
       return c_.extended_state.closed ? move(MoveKind::retract, step.start, touch_speed(step))
                                       : move(MoveKind::travel, step.start, travel);
+    case Do::go_nearer:
+      return move(MoveKind::travel, slow_from(c_.extended_state.step), travel / 4);
     case Do::go_touch:
       return move(step.group.empty() ? MoveKind::touch : MoveKind::seat, step.end,
                   touch_speed(step));
@@ -50,6 +52,12 @@ void Collector::make_move(Action::Do what) {
     default:
       return;
   }
+}
+
+std::vector<double> Collector::slow_from(int index) const {
+  const Session recent = lately(session_, static_cast<std::size_t>(index));
+  return selfcal::slow_from(*c_.models.active(), recent, decoding_, session_.plan[index],
+                            c_.config.plan.search);
 }
 
 std::string Collector::label() const {

@@ -19,6 +19,7 @@ void Service::act(const Action& action) {
     case Do::go_home:
     case Do::go_along:
     case Do::go_to_start:
+    case Do::go_nearer:
     case Do::go_touch:
     case Do::go_back:
     case Do::back_off:

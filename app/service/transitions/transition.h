@@ -49,10 +49,12 @@ struct ExtendedState {
   int lost_in_a_row = 0;       ///< steps put aside one after another
   bool via_home = false;       ///< on the way to home, not yet to the start
   int way = 0;                 ///< places of the step's way that are still ahead, before the start
+  bool nearer = false;         ///< from the start on there is a stretch before the slow one
   bool stray = false;          ///< the trigger closed where nothing was to be touched
   int next_step = 0;           ///< after the retract; `step` itself when it needs another touch
   bool next_via_home = false;  ///< of the step after this one
   int next_way = 0;            ///< as well
+  bool next_nearer = false;    ///< as well
   bool out = false;            ///< what was asked has ended; the trigger may not have followed
   int lock = 0;                ///< that the step wants engaged; 0 for none
   int next_lock = 0;           ///< of the step after this one
@@ -108,6 +110,7 @@ struct Event {
   int step = 0, steps = 0;
   bool via_home = false;  ///< of the step that comes next
   int way = 0;            ///< as well: places that the way leads through
+  bool nearer = false;    ///< as well: it becomes slow nearer to the surface than the start is
   int lock = 0;           ///< of the step that comes next
   bool loaded = false;    ///< as well
   bool load_unknown =
@@ -130,6 +133,7 @@ struct Action {
     go_home,
     go_along,  ///< to the next place of the step's way
     go_to_start,
+    go_nearer,  ///< straight in, to where it becomes slow
     go_touch,
     go_back,   ///< motion for the step in progress
     lock,      ///< engage the lock of the step in progress

@@ -32,6 +32,7 @@ void TransitionStep::planned() {
   s_.next_step = s_.step;
   s_.next_via_home = event_.via_home;
   s_.next_way = event_.way;
+  s_.next_nearer = event_.nearer;
   if (event_.release) return release();
   // Nobody changes the payload of a robot that stands in a contact.
   const bool touching = s_.closed && s_.step < s_.steps && s_.loaded != s_.next_loaded;
@@ -47,13 +48,21 @@ void TransitionStep::approach() {
   s_.next_step = s_.step;
   s_.via_home = s_.next_via_home;
   s_.way = s_.via_home ? 0 : s_.next_way;
-  go_nearer();
+  s_.nearer = s_.next_nearer;
+  come();
 }
 
 /// Through home or along the way that was planned, then to the start.
-void TransitionStep::go_nearer() {
+void TransitionStep::come() {
   enter(Phase::approach);
   act(s_.via_home ? Do::go_home : s_.way > 0 ? Do::go_along : Do::go_to_start);
+}
+
+/// Straight in from the start: at first a stretch that is known to be free, where there is one.
+void TransitionStep::come_in() {
+  if (!std::exchange(s_.nearer, false)) return touch();
+  enter(Phase::approach);
+  act(Do::go_nearer);
 }
 
 void TransitionStep::touch() {
@@ -91,9 +100,9 @@ void TransitionStep::moved() {
     return fault("the trigger is closed before " + touch_name() + ": it is stuck");
   if (s_.phase == Phase::approach && (s_.via_home || s_.way > 0)) {
     if (!std::exchange(s_.via_home, false)) --s_.way;
-    return go_nearer();
+    return come();
   }
-  if (s_.phase == Phase::approach) return s_.lock != 0 ? lock() : touch();
+  if (s_.phase == Phase::approach) return s_.lock != 0 ? lock() : come_in();
   if (s_.phase == Phase::touch) return act(Do::outlier, "no touch up to the end of the search");
   if (s_.phase == Phase::visit) return enter(Phase::settle);
   s_.out = true;
@@ -121,8 +130,9 @@ void TransitionStep::back_out() {
   if (s_.state != ServiceState::collecting || s_.phase != Phase::retract || !s_.out) return;
   if (s_.closed) return;  // the time limit tells when it is stuck
   if (s_.stray) return backed_off();
-  if (s_.next_step == s_.step) return touch();
-  go_on();
+  if (s_.next_step != s_.step) return go_on();
+  s_.nearer = s_.next_nearer;
+  come_in();
 }
 
 /// To the next step, from where nothing is touched and nothing locked.
@@ -156,7 +166,8 @@ void TransitionStep::backed_off() {
   if (s_.loaded != s_.next_loaded) return go_on_loaded();
   s_.via_home = true;
   s_.way = 0;
-  go_nearer();
+  s_.nearer = false;
+  come();
 }
 
 void TransitionStep::read() {
@@ -165,6 +176,7 @@ void TransitionStep::read() {
   s_.next_step = event_.step;
   s_.next_via_home = event_.via_home;
   s_.next_way = event_.way;
+  s_.next_nearer = event_.nearer;
   s_.next_lock = event_.lock;
   s_.next_loaded = event_.loaded;
   s_.out = false;

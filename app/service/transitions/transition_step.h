@@ -63,7 +63,8 @@ class TransitionStep {
   // transition_collecting.cc
   void planned();
   void approach();
-  void go_nearer();
+  void come();
+  void come_in();
   void touch();
   void closed();
   void opened();
