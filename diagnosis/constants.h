@@ -220,6 +220,13 @@ struct DiagnosisConstants {
     double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
     /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
     double confirmed = 0.3;
+    /// Where nothing is found in rows that scatter more than their files state: how wrong a stated
+    /// noise is, in its logarithm (1 sigma, of a Student variable of five freedoms); how probable
+    /// it is, over none, that something unknown scatters them, of any size from a quarter of the
+    /// noise to sixteen times; what repeats show of it confirms it as noise; 0.1 to 0.4, 0.03 to
+    /// 0.3, 0.6 to 0.95 [physics]
+    double sheet_is_off = 0.15, scattered = 0.1, surely_confirmed = 0.8;
+    double worth_a_word = 1.3;  ///< of the stated noise; 1.1 to 2 [habit]
     /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
     /// farther are no noise, if there are as many as told; 1.4 to 2, 5 to 30 [trials]
     double beyond_noise = 1.6;

@@ -13,6 +13,7 @@
 #include "diagnosis/report/detectable.h"
 #include "diagnosis/report/doubt.h"
 #include "diagnosis/report/experiment_design.h"
+#include "diagnosis/report/scatter.h"
 #include "diagnosis/report/validated_correction.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
@@ -116,6 +117,7 @@ class Diagnostician {
     result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
     left_out_ = leave_out_impossible(result_.named, result_.verdict);
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named);
+    doubt_noise(linearised_, data_, evaluator_->marginal_likelihood(0).freedom(), result_);
   }
 
   /// The most probable causes beside structure of no known one.

@@ -9,6 +9,7 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/report/scatter.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/search/naming.h"
 #include "kinematics/corrected_robot.h"
@@ -65,23 +66,10 @@ std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis
 }
 
 std::string beyond_sheet(const LinearisedModel& linearised, const DataSet& data) {
-  const std::vector<Scale> noise = linearised.noise_of_sets();
-  for (std::size_t s = 0; s < data.sets.size(); ++s) {
-    const Set& set = data.sets[s];
-    const bool lengths = set.method->has_lengths();
-    const double declared = lengths ? set.noise : set.noise_angle;
-    const double found = lengths ? noise[s].length : noise[s].angle;
-    if (declared <= 0 || found <= kDiagnosis.report.beyond_sheet * declared) continue;
-    const double repeats = repeat_sigma(data, static_cast<int>(s), linearised.residuals_of_rows(),
-                                        linearised.outlier());
-    if (repeats > kDiagnosis.report.confirmed * found) continue;
-    const auto figure = [&](double value) {
-      return lengths ? millimetres(value) : in_readable_unit(value, "rad");
-    };
-    return "the rows of " + set.name + " scatter by " + figure(found) +
-           " once the robot is calibrated, and their files state a noise of " + figure(declared) +
-           (repeats > 0 ? ", and their repeats differ by " + figure(repeats) : "");
-  }
+  for (const SetScatter& each : scatter_of_sets(linearised, data))
+    if (each.found > kDiagnosis.report.beyond_sheet * each.declared &&
+        each.repeats <= kDiagnosis.report.confirmed * each.found)
+      return scatter_in_words(each, data);
   return {};
 }
 
@@ -250,18 +238,11 @@ void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnos
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
   diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom,
                          diagnosis.gap.validated_on);
-  const auto unknown = std::ranges::find(diagnosis.candidates, kUnknown, &CauseResult::effect);
-  if (unknown != diagnosis.candidates.end() && unknown->probability < kDiagnosis.report.withdrawn) {
-    const double others =
-        (1 - kDiagnosis.report.withdrawn) / std::max(1 - unknown->probability, 1e-12);
-    for (CauseResult& each : diagnosis.candidates) each.probability *= std::min(others, 1.0);
-    unknown->probability = kDiagnosis.report.withdrawn;
-  }
   for (CauseResult& each : diagnosis.candidates)
     if (each.effect != kUnknown)
       each.probability = std::min(each.probability, 1 - kDiagnosis.report.withdrawn);
-  diagnosis.verdict = {.effect = kUnknown, .probability = kDiagnosis.report.withdrawn};
-  agree(diagnosis.candidates, diagnosis.verdict);
+  say_unknown(kDiagnosis.report.withdrawn, diagnosis.candidates, diagnosis.verdict);
+  diagnosis.scatter.clear();
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
                   "; look at the rows and files first" +
                   (names.empty() ? "" : ". Without this doubt it would be " + names);

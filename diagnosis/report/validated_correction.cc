@@ -42,7 +42,7 @@ class CorrectionValidation {
     result_.converged = validation.converged;
     share_among_named();
     validate_candidates();
-    result_.warnings = warnings_of(linearised_, data_, validation);
+    result_.warnings = warnings_of(linearised_, data_, validation, result_);
     if (std::string shared =
             shared_by_outliers(data_, linearised_.geometry().joints(), result_.outliers);
         !shared.empty())

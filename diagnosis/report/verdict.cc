@@ -160,6 +160,11 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
            beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
+  if (!diagnosis.scatter.empty())
+    return "no known effect explains the gap (" + sure(verdict.probability) +
+           "): " + diagnosis.scatter +
+           ". Either that is stated too small, or something errs from row to row: repeat some "
+           "configurations at once, which tells the noise";
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
     if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)

@@ -4,6 +4,7 @@
 
 #include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
+#include "diagnosis/report/scatter.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
 
@@ -119,11 +120,13 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
 }
 
 std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
-                                     const HoldoutValidation& validation) {
+                                     const HoldoutValidation& validation,
+                                     const Diagnosis& diagnosis) {
   std::vector<std::string> list;
   for (const std::string& each :
        {of_fits(validation), of_undecided(validation), of_gears(validation),
-        of_noise(linearised, data), of_order(data), of_masses(linearised)})
+        of_noise(linearised, data), warning_of_scatter(linearised, data, diagnosis), of_order(data),
+        of_masses(linearised)})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -11,10 +11,11 @@ namespace selfcal {
 
 struct Diagnosis;
 
-/// Fits that failed, gear ratios that were off, noise that only a data sheet tells, rows without a
-/// time.
+/// Fits that failed, gear ratios that were off, noise that only a data sheet tells or that is
+/// beyond it, rows without a time. `diagnosis` is read for its verdict alone.
 std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
-                                     const HoldoutValidation& validation);
+                                     const HoldoutValidation& validation,
+                                     const Diagnosis& diagnosis);
 
 /// That the effects of the robot's own file are not used; empty where it has none.
 std::string warning_of_own_effects(const Robot& robot);

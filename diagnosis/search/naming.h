@@ -44,6 +44,9 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named);
 
+/// The verdict becomes `unknown`, of this probability at least; the others give way in proportion.
+void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict);
+
 /// One probability for one thing: that of `none` among `causes` becomes the verdict's where that is
 /// none, the others' give way in proportion; then the verdict has that of its entry.
 void agree(std::vector<CauseResult>& causes, CauseResult& verdict);

@@ -32,7 +32,7 @@ TEST(HoldoutValidation, CallsNoRowFalseThatIsAsNoisyAsItSays) {
   EXPECT_EQ(std::ranges::count_if(diagnosis.outliers, [](const auto& row) { return row.check; }),
             0);
   EXPECT_EQ(diagnosis.gap.false_rows, 0);
-  EXPECT_EQ(diagnosis.verdict.effect, kNone);
+  EXPECT_EQ(diagnosis.verdict.effect, kNone) << diagnosis.why;
 }
 
 /// Two instruments, one a tenth as exact as the other; of `aside` of its rows every one but each
