@@ -238,10 +238,10 @@ void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnos
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
   diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom,
                          diagnosis.gap.validated_on);
+  say_unknown(kDiagnosis.report.withdrawn, diagnosis.candidates, diagnosis.verdict);
   for (CauseResult& each : diagnosis.candidates)
     if (each.effect != kUnknown)
       each.probability = std::min(each.probability, 1 - kDiagnosis.report.withdrawn);
-  say_unknown(kDiagnosis.report.withdrawn, diagnosis.candidates, diagnosis.verdict);
   diagnosis.scatter.clear();
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
                   "; look at the rows and files first" +

@@ -48,7 +48,7 @@ std::string scatter_in_words(const SetScatter& scatter, const DataSet& data) {
   };
   return "the rows of " + data.sets[static_cast<std::size_t>(scatter.set)].name + " scatter by " +
          figure(scatter.found) +
-         " once the robot is calibrated, and their files state a noise of " +
+         " around the model that explains them best, and their files state a noise of " +
          figure(scatter.declared) +
          (scatter.repeats > 0 ? ", and their repeats differ by " + figure(scatter.repeats) : "");
 }

@@ -1,4 +1,4 @@
-// Rows that scatter more than their files state once the robot is calibrated.
+// Rows that scatter more than their files state.
 //
 // Where no effect and no structure is found in them, either the stated noise is too small or
 // something unknown errs from row to row: a vibration, a slip, a beam that bends. Rows that are not
@@ -24,8 +24,8 @@ struct SetScatter {
 /// Of the sets whose files state a noise, and none of the joints' readings besides.
 std::vector<SetScatter> scatter_of_sets(const LinearisedModel& linearised, const DataSet& data);
 
-/// "the rows of table scatter by 0.2 mm once the robot is calibrated, and their files state a noise
-/// of 0.1 mm, and their repeats differ by 0.19 mm".
+/// "the rows of table scatter by 0.2 mm around the model that explains them best, and their files
+/// state a noise of 0.1 mm, and their repeats differ by 0.19 mm".
 std::string scatter_in_words(const SetScatter& scatter, const DataSet& data);
 
 /// Probability that something unknown makes the scatter, and no wrong figure of the noise, which
