@@ -53,6 +53,26 @@ TEST_F(Loop, GoesOnFromAPersonOnlyWhereTheWayHomeIsOpen) {
   EXPECT_EQ(robot.asked, std::vector{MoveKind::travel});
 }
 
+/// The edge comes before the robot says that it has arrived.
+TEST_F(Loop, BacksOffToWhereAMoveBeganThatEndedInAContact) {
+  const Config cell = config();
+  leave_session(*opened(scratch.folder()), cell, robot.counts, "full", false);
+  robot.obeys = true;
+  robot.when_asked = [&] {
+    if (robot.asked.size() != 2) return;
+    robot.obeys = false;
+    robot.touching = true;
+    robot.edges.push_back({.time = robot.time, .closed = true});
+  };
+  robot.when_stopped = [&] {
+    robot.replies.push_back({robot.last.id, MotionReply::Outcome::done, ""});
+  };
+  start(cell);
+  ASSERT_TRUE(turning([&] { return robot.asked.size() == 3; }));
+  EXPECT_EQ(robot.asked, (std::vector{MoveKind::travel, MoveKind::travel, MoveKind::retract}));
+  EXPECT_EQ(robot.last.q, std::vector<double>(cell.plan.home.begin(), cell.plan.home.end()));
+}
+
 TEST_F(Loop, KeepsAResultWaitingThatTheStoreCouldNotAcceptOrReject) {
   const Config cell = config({{"commands.allow", "[accept, reject]"}});
   leave_candidate(*opened(scratch.folder()), *cell.robot);

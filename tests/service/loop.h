@@ -31,9 +31,15 @@ struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   }
   std::uint64_t dropped() const override { return 0; }
   std::optional<bool> closed() override { return touching; }
-  Result<void> take(std::vector<Edge>&) override { return {}; }
+  Result<void> take(std::vector<Edge>& out) override {
+    out.insert(out.end(), edges.begin(), edges.end());
+    edges.clear();
+    return {};
+  }
   Result<void> request(const MotionRequest& request) override {
     asked.push_back(request.kind);
+    last = request;
+    if (when_asked) when_asked();
     if (obeys) replies.push_back({request.id, MotionReply::Outcome::done, ""});
     return {};
   }
@@ -56,9 +62,11 @@ struct BusyRobot final : Clock, EncoderSource, TouchTrigger, Motion {
   double home[6] = {0, -0.6, 0.9, 0, 1.2, 0};
   bool working = false, touching = false, obeys = false;
   int swing = 0, stops = 0;
-  std::function<void()> when_stopped;
+  std::function<void()> when_stopped, when_asked;
+  std::vector<Edge> edges;
   std::vector<MotionReply> replies;
   std::vector<MoveKind> asked;
+  MotionRequest last;
 };
 
 /// Commands as the test says them.

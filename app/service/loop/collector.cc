@@ -105,6 +105,7 @@ void Collector::announce_plan() {
   if (const std::string why = unfit(); !why.empty()) return refuse_plan(why, !stands());
   const auto here = front_end_.q();
   if (here) reached_.assign(here->begin(), here->end());
+  began_ = reached_;
   if (here && event.step < event.steps) {
     const StepRecord& step = session_.plan[event.step];
     // It was in the middle of this very touch: the way back is the way out.
@@ -116,11 +117,11 @@ void Collector::announce_plan() {
     const bool in_it = !event.release && off_path(*c_.models.active(), *here, step) < kNearPath;
     if (in_it) {
       event.via_home = false;
-      if (front_end_.closed() == true) reached_ = step.start;
+      if (front_end_.closed() == true) began_ = step.start;
     } else if (!event.release && last && off_path(*c_.models.active(), *here, *last) < kNearPath) {
       // The last touch was stored, and the robot is not out of it yet.
       event.back_off = true;
-      reached_ = last->start;
+      began_ = last->start;
     } else if (is_shut_in(*here)) {
       event.ok = false;
       event.why = kShutIn;

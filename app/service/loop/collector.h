@@ -105,10 +105,11 @@ class Collector {
   Reflex reflex_;
   SensorFrontEnd front_end_;
   std::uint64_t motion_id_ = 0;
-  bool outstanding_ = false;              ///< a move of ours may be under way
-  Nanoseconds stopped_ = 0;               ///< when it was last told to stop; 0 once it stands
-  std::vector<double> target_, reached_;  ///< readings: target of the last move, of the last that
-                                          ///< ended
+  bool outstanding_ = false;  ///< a move of ours may be under way
+  Nanoseconds stopped_ = 0;   ///< when it was last told to stop; 0 once it stands
+  /// Readings: target of the last move; of the last that ended; where the last one into the cell
+  /// began, which is free even if it ended in a contact.
+  std::vector<double> target_, reached_, began_;
   Session session_;
   Decoding decoding_;
   Nanoseconds collecting_since_ = 0;

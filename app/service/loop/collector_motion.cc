@@ -48,7 +48,7 @@ void Collector::make_move(Action::Do what) {
     case Do::visit:
       return move(MoveKind::visit, step.touch, travel / 4);
     case Do::back_off:
-      return move(MoveKind::retract, reached_, travel / 4);
+      return move(MoveKind::retract, began_, travel / 4);
     default:
       return;
   }
@@ -79,6 +79,7 @@ double Collector::touch_speed(const StepRecord& step) const {
 }
 
 void Collector::move(MoveKind kind, const std::vector<double>& q, double speed) {
+  if (kind != MoveKind::retract) began_ = reached_;
   MotionRequest request;
   request.id = ++motion_id_;
   request.kind = kind;

@@ -10,8 +10,8 @@
 namespace selfcal {
 namespace {
 
-constexpr Eigen::Index kFewestOver = 4;  // touches, over what a surface has of numbers
-constexpr double kSigmas = 4;
+constexpr Eigen::Index kFewestOver = 8;  // touches, over what a surface has of numbers
+constexpr double kSigmas = 5;
 constexpr double kLeast = 0.25;          // of the search
 constexpr double kWorth = 0.8;           // of the way: what is less saves no time
 constexpr double kSameDirection = 1e-6;  // of the spread of the places: their rank, and what lies

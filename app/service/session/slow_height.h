@@ -17,8 +17,8 @@ struct FeltContact {
 };
 
 /// How far before the contact expected at `p` (m, world) the robot slows down: `slow` where what
-/// was felt does not tell of that place (fewer than four contacts more than a plane has numbers, or
-/// none around it); else as far as a plane through what the others were off by leaves it open (four
+/// was felt does not tell of that place (fewer than eight contacts more than a plane has numbers, or
+/// none around it); else as far as a plane through what the others were off by leaves it open (five
 /// sigmas of a prediction), or a quadric where that leaves less; a quarter of `search` at least,
 /// and what `slow` is more than `search`, for the robot's own way to stop.
 double slow_height(const std::vector<FeltContact>& felt, const Eigen::Vector3d& p, double slow,
