@@ -223,9 +223,9 @@ struct DiagnosisConstants {
     /// Where nothing is found in rows that scatter more than their files state: how wrong a stated
     /// noise is, in its logarithm (1 sigma, of a Student variable of five freedoms); how probable
     /// it is, over none, that something unknown scatters them, of any size from a quarter of the
-    /// noise to sixteen times; what repeats show of it confirms it as noise; 0.1 to 0.4, 0.03 to
-    /// 0.3, 0.6 to 0.95 [physics]
-    double sheet_is_off = 0.15, scattered = 0.1, surely_confirmed = 0.8;
+    /// noise to sixteen times; log evidence of repeats by which it is noise all the same; 0.1 to
+    /// 0.4, 0.03 to 0.3, 1 to 5 [physics]
+    double sheet_is_off = 0.15, scattered = 0.1, surely_confirmed = 2.3;
     double worth_a_word = 1.3;  ///< of the stated noise; 1.1 to 2 [habit]
     /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
     /// farther are no noise, if there are as many as told; 1.4 to 2, 5 to 30 [trials]

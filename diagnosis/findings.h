@@ -108,7 +108,8 @@ struct Diagnosis {
   /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
   std::vector<CauseResult> named;
   std::optional<KernelDomain> unknown = {};  ///< how the rows err that `unknown` explains
-  std::string scatter;  ///< in words, where `unknown` is what makes rows scatter more than stated
+  std::string scatter;  ///< in words, of rows that scatter more than stated, where `unknown` makes
+                        ///< them or repeats say that it is noise
   std::string why;      ///< the verdict in words
   double p_value = 1;   ///< of the verdict, or of what it was refused for; (1 + k) / (1 + B)
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them

@@ -65,7 +65,8 @@ std::vector<double> spreads_of_repeats(const Equations& equations, const Fit& fi
   const std::vector<RowResidual> residuals = equations.residuals(fitted.state);
   for (size_t s = 0; s < spreads.size(); ++s)
     if (!equations.plan(static_cast<int>(s)).items.empty())
-      spreads[s] = repeat_sigma(data, static_cast<int>(s), residuals, fitted.noise.outlier);
+      spreads[s] =
+          repeat_spread(data, static_cast<int>(s), residuals, fitted.noise.outlier).sigma();
   return spreads;
 }
 

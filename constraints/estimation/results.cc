@@ -141,7 +141,7 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
       if (set.method->has_lengths()) each.noise_sigma = noise.length;
       if (set.method->has_angles()) each.noise_angle_sigma = noise.angle;
       each.repeat_sigma =
-          repeat_sigma(data, s, identifies ? after.fit : after.check, fit.noise.outlier);
+          repeat_spread(data, s, identifies ? after.fit : after.check, fit.noise.outlier).sigma();
     }
     if (identifies) {
       const Eigen::VectorXd* reference =

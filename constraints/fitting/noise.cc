@@ -186,14 +186,14 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
   return noise;
 }
 
-double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
-                    const std::vector<char>& outlier) {
-  if (data.rows.repeat.empty()) return -1;
+RepeatSpread repeat_spread(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
+                           const std::vector<char>& outlier) {
+  RepeatSpread spread;
+  if (data.rows.repeat.empty()) return spread;
   std::map<int, std::vector<const RowResidual*>> repeats;
   for (const RowResidual& r : residuals)
     if (r.set == set && data.rows.repeat[r.row] >= 0 && !outlier[r.row])
       repeats[data.rows.repeat[r.row]].push_back(&r);
-  double sum = 0, freedom = 0;
   for (const auto& [id, rows] : repeats)
     for (int a = 0; a < rows.front()->lengths; ++a) {
       double mean = 0, weight = 0;
@@ -202,10 +202,11 @@ double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>
         weight += 1 / (r->factor * r->factor);
       }
       mean /= weight;
-      for (const RowResidual* r : rows) sum += std::pow((r->scalars[a] - mean) / r->factor, 2);
-      freedom += static_cast<double>(rows.size()) - 1;
+      for (const RowResidual* r : rows)
+        spread.squares += std::pow((r->scalars[a] - mean) / r->factor, 2);
+      spread.freedom += static_cast<double>(rows.size()) - 1;
     }
-  return freedom > 0 ? std::sqrt(sum / freedom) : -1;
+  return spread;
 }
 
 }  // namespace selfcal

@@ -1,6 +1,7 @@
 // The noise of each set from its residuals, and the rows that are none of it.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "constraints/equations/equations.h"
@@ -40,11 +41,17 @@ Scale least_noise(const Robot& robot);
 Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,
                      const NoiseRule& rule);
 
-/// 1 sigma of one length residual of `set` from the spread of immediate repeats alone; negative
-/// without repeats. The pure error of a regression with replicates: the residuals of one
-/// configuration and approach differ by the measurement's own noise only. `outlier` rows are left
-/// out.
-double repeat_sigma(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
-                    const std::vector<char>& outlier);
+/// What the spread of immediate repeats says of the noise of length residuals.
+struct RepeatSpread {
+  double squares = 0;  ///< m^2
+  double freedom = 0;
+  /// 1 sigma of one residual (m); negative without repeats.
+  double sigma() const { return freedom > 0 ? std::sqrt(squares / freedom) : -1; }
+};
+/// Of `set`, from immediate repeats alone. The pure error of a regression with replicates: the
+/// residuals of one configuration and approach differ by the measurement's own noise only.
+/// `outlier` rows are left out.
+RepeatSpread repeat_spread(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
+                           const std::vector<char>& outlier);
 
 }  // namespace selfcal

@@ -66,9 +66,9 @@ std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis
 }
 
 std::string beyond_sheet(const LinearisedModel& linearised, const DataSet& data) {
-  for (const SetScatter& each : scatter_of_sets(linearised, data))
+  for (const Scatter& each : scatter_of_sets(linearised, data))
     if (each.found > kDiagnosis.report.beyond_sheet * each.declared &&
-        each.repeats <= kDiagnosis.report.confirmed * each.found)
+        each.repeats.sigma() <= kDiagnosis.report.confirmed * each.found)
       return scatter_in_words(each, data);
   return {};
 }

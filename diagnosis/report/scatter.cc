@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/fitting/noise.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/tails.h"
 #include "diagnosis/search/naming.h"
@@ -18,80 +17,111 @@ double student_of_five(double value, double scale) {
   return 8 / (3 * M_PI * std::sqrt(5.0)) * std::pow(1 + t * t / 5, -3) / scale;
 }
 
-bool is_confirmed(const SetScatter& scatter) {
-  return scatter.repeats > kDiagnosis.report.surely_confirmed * scatter.found;
+/// "table", "table and wall", "table, wall and side".
+std::string names_of(const std::vector<int>& sets, const DataSet& data) {
+  std::string names;
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    names += (i == 0                 ? ""
+              : i + 1 == sets.size() ? " and "
+                                     : ", ") +
+             data.sets[static_cast<std::size_t>(sets[i])].name;
+  return names;
+}
+
+bool is_worth_a_word(const Scatter& scatter) {
+  return scatter.found > kDiagnosis.report.worth_a_word * scatter.declared;
 }
 
 }  // namespace
 
-std::vector<SetScatter> scatter_of_sets(const LinearisedModel& linearised, const DataSet& data) {
+std::vector<Scatter> scatter_of_sets(const LinearisedModel& linearised, const DataSet& data) {
   const std::vector<Scale> noise = linearised.noise_of_sets();
-  std::vector<SetScatter> list;
+  const std::vector<RowResidual> residuals = linearised.residuals_of_rows();
+  std::vector<Scatter> list;
   for (std::size_t s = 0; s < data.sets.size(); ++s) {
     const Set& set = data.sets[s];
     const bool lengths = set.method->has_lengths();
-    SetScatter each{.set = static_cast<int>(s),
-                    .lengths = lengths,
-                    .declared = lengths ? set.noise : set.noise_angle,
-                    .found = lengths ? noise[s].length : noise[s].angle};
-    if (each.declared <= 0 || set.noise_joints > 0) continue;
-    each.repeats = std::max(
-        0.0, repeat_sigma(data, each.set, linearised.residuals_of_rows(), linearised.outlier()));
-    list.push_back(each);
+    const double declared = lengths ? set.noise : set.noise_angle;
+    const double found = lengths ? noise[s].length : noise[s].angle;
+    if (declared <= 0 || set.noise_joints > 0) continue;
+    auto alike = std::ranges::find_if(list, [&](const Scatter& each) {
+      return each.lengths == lengths && each.declared == declared && each.found == found;
+    });
+    if (alike == list.end())
+      alike = list.insert(alike,
+                          {.sets = {}, .lengths = lengths, .declared = declared, .found = found});
+    alike->sets.push_back(static_cast<int>(s));
+    const RepeatSpread repeats =
+        repeat_spread(data, static_cast<int>(s), residuals, linearised.outlier());
+    alike->repeats.squares += repeats.squares;
+    alike->repeats.freedom += repeats.freedom;
   }
   return list;
 }
 
-std::string scatter_in_words(const SetScatter& scatter, const DataSet& data) {
+std::string scatter_in_words(const Scatter& scatter, const DataSet& data) {
   const auto figure = [&](double value) {
     return scatter.lengths ? plain_figure(1e3 * value) + " mm" : in_readable_unit(value, "rad");
   };
-  return "the rows of " + data.sets[static_cast<std::size_t>(scatter.set)].name + " scatter by " +
-         figure(scatter.found) +
+  return "the rows of " + names_of(scatter.sets, data) + " scatter by " + figure(scatter.found) +
          " around the model that explains them best, and their files state a noise of " +
          figure(scatter.declared) +
-         (scatter.repeats > 0 ? ", and their repeats differ by " + figure(scatter.repeats) : "");
+         (scatter.repeats.freedom > 0
+              ? ", and their repeats differ by " + figure(scatter.repeats.sigma())
+              : "");
 }
 
-double unknown_by_scatter(const SetScatter& scatter, double freedom) {
+double log_confirmed(const Scatter& scatter) {
+  const double found = scatter.found * scatter.found,
+               declared = scatter.declared * scatter.declared;
+  return scatter.repeats.squares / 2 * (1 / declared - 1 / found) -
+         scatter.repeats.freedom / 2 * std::log(found / declared);
+}
+
+double unknown_by_scatter(const Scatter& scatter, double freedom) {
   const double ratio = scatter.found / scatter.declared;
   const auto& sizes = kDiagnosis.evidence.sizes;
-  const double size =
-      std::sqrt(std::max(0.0, ratio * ratio - 1));  // of the unknown, over the noise
-  if (size < sizes.front() || is_confirmed(scatter)) return 0;
+  const double size = std::sqrt(std::max(0.0, ratio * ratio - 1));  // of it, over the noise
+  if (size < sizes.front()) return 0;
   const double of_unknown = ratio * ratio / (size * size) / std::log(sizes.back() / sizes.front());
   const double off = std::hypot(kDiagnosis.report.sheet_is_off, 1 / std::sqrt(2 * freedom));
-  const double odds =
-      kDiagnosis.report.scattered * of_unknown / student_of_five(std::log(ratio), off);
-  return odds / (1 + odds);
+  const double log_odds =
+      std::log(kDiagnosis.report.scattered * of_unknown / student_of_five(std::log(ratio), off)) -
+      log_confirmed(scatter);
+  return 1 / (1 + std::exp(-log_odds));
 }
 
 void doubt_noise(const LinearisedModel& linearised, const DataSet& data, double freedom,
                  Diagnosis& diagnosis) {
   if (diagnosis.verdict.effect != kNone) return;
-  if (std::ranges::any_of(diagnosis.candidates, [](const CauseResult& each) {
-        return names_effect(each.effect) && each.probability > kDiagnosis.naming.worth_telling;
-      }))
-    return;
-  for (const SetScatter& each : scatter_of_sets(linearised, data)) {
-    const double probability = unknown_by_scatter(each, freedom);
-    if (probability <= kDiagnosis.naming.probable) continue;
-    if (!diagnosis.scatter.empty() && probability <= diagnosis.verdict.probability) continue;
+  double probability = kDiagnosis.naming.probable;
+  for (const Scatter& each : scatter_of_sets(linearised, data)) {
+    const double unknown = unknown_by_scatter(each, freedom);
+    if (diagnosis.scatter.empty() && is_worth_a_word(each) &&
+        log_confirmed(each) > kDiagnosis.report.surely_confirmed)
+      diagnosis.scatter = scatter_in_words(each, data);
+    if (unknown <= probability) continue;
+    probability = unknown;
     const double squares = freedom * std::pow(each.found / each.declared, 2);
     diagnosis.p_value =
         std::max(kDiagnosis.naming.least_p, -std::expm1(NoiseTail(freedom).log_below(squares)));
     diagnosis.scatter = scatter_in_words(each, data);
-    say_unknown(probability, diagnosis.candidates, diagnosis.verdict);
+    diagnosis.verdict = {.effect = kUnknown, .probability = probability};
   }
+  if (diagnosis.verdict.effect != kUnknown) return;
+  for (CauseResult& each : diagnosis.candidates) {
+    if (each.effect == kUnknown) each.probability = std::max(each.probability, probability);
+    if (each.effect == kNone) each.probability = std::min(each.probability, 1 - probability);
+  }
+  agree(diagnosis.candidates, diagnosis.verdict);
 }
 
 std::string warning_of_scatter(const LinearisedModel& linearised, const DataSet& data,
                                const Diagnosis& diagnosis) {
   if (!diagnosis.scatter.empty()) return {};
   std::string words;
-  for (const SetScatter& each : scatter_of_sets(linearised, data))
-    if (each.found > kDiagnosis.report.worth_a_word * each.declared)
-      words += (words.empty() ? "" : "; ") + scatter_in_words(each, data);
+  for (const Scatter& each : scatter_of_sets(linearised, data))
+    if (is_worth_a_word(each)) words += (words.empty() ? "" : "; ") + scatter_in_words(each, data);
   return words;
 }
 

@@ -135,6 +135,13 @@ std::string advice_on_unknown(std::optional<KernelDomain> domain) {
              : ". Look at the machine, or repeat some configurations to be sure of the noise";
 }
 
+/// ". It is more than …", where repeats say so.
+std::string louder_than_stated(const Diagnosis& diagnosis) {
+  if (diagnosis.scatter.empty()) return {};
+  return ". It is more than is stated, and noise all the same: " + diagnosis.scatter +
+         ". Something shakes or slips, or the figure that is stated is too small";
+}
+
 std::string no_cause(const Diagnosis& diagnosis) {
   if (const std::string likelier = likelier_than_none(diagnosis); !likelier.empty())
     return "no cause is named: these rows do not settle whether it is " + likelier +
@@ -142,9 +149,10 @@ std::string no_cause(const Diagnosis& diagnosis) {
            phrase("; as much is found in %.2g of resampled rows)", diagnosis.p_value);
   if (diagnosis.p_value > DiagnosisOptions{}.name_below_p)
     return phrase(
-        "no cause is named: noise alone explains what calibration leaves (as much is found in %.2g "
-        "of resampled rows)",
-        diagnosis.p_value);
+               "no cause is named: noise alone explains what calibration leaves (as much is found "
+               "in %.2g of resampled rows)",
+               diagnosis.p_value) +
+           louder_than_stated(diagnosis);
   return phrase(
       "no cause is named: what calibration leaves may be noise (probability %.2g), though "
       "resampled "
@@ -160,15 +168,15 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
            beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
-  if (!diagnosis.scatter.empty())
-    return "no known effect explains the gap (" + sure(verdict.probability) +
-           "): " + diagnosis.scatter +
-           ". Either that is stated too small, or something errs from row to row: repeat some "
-           "configurations at once, which tells the noise";
   std::string beside;
   for (const CauseResult& each : diagnosis.candidates)
     if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)
       beside += (beside.empty() ? ". Probable besides: " : ", ") + with_places(each);
+  if (!diagnosis.scatter.empty())
+    return "no known effect explains the gap (" + sure(verdict.probability) +
+           "): " + diagnosis.scatter + beside +
+           ". Either that is stated too small, or something errs from row to row: repeat some "
+           "configurations at once, which tells the noise";
   return "no known effect explains the gap (" + sure(verdict.probability) +
          phrase("; noise alone does in %.2g of cases)", diagnosis.p_value) +
          how_it_errs(diagnosis.unknown) + beside + advice_on_unknown(diagnosis.unknown) +

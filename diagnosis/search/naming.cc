@@ -142,10 +142,7 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
 
 void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict) {
   const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
-  if (unknown == causes.end()) {
-    for (CauseResult& each : causes) each.probability *= 1 - probability;
-    causes.push_back({.effect = kUnknown, .probability = probability});
-  } else if (unknown->probability < probability) {
+  if (unknown != causes.end() && unknown->probability < probability) {
     const double others = (1 - probability) / std::max(1 - unknown->probability, 1e-12);
     for (CauseResult& each : causes) each.probability *= std::min(others, 1.0);
     unknown->probability = probability;

@@ -84,7 +84,8 @@ TEST(NoiseFactor, IsTakenOffWhatRepeatsDifferBy) {
     r.scalars.set(0, kSigma * r.factor * normal(random));
   }
   // 120 freedoms tell a sigma to 6 %, three times which is allowed.
-  EXPECT_NEAR(repeat_sigma(data, 0, residuals, std::vector<char>(rows, 0)), kSigma, 0.19 * kSigma);
+  EXPECT_NEAR(repeat_spread(data, 0, residuals, std::vector<char>(rows, 0)).sigma(), kSigma,
+              0.19 * kSigma);
 }
 
 TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {

@@ -26,9 +26,14 @@ TEST(Scatter, IsTheUnknownsByHowFarAStatedNoiseMayBeOff) {
     EXPECT_LT(unknown_by_scatter({.declared = 1e-4, .found = found}, many), 0.2) << found;
   EXPECT_GT(unknown_by_scatter({.declared = 1e-4, .found = 4e-4}, many), 0.95);
   EXPECT_LT(unknown_by_scatter({.declared = 1e-4, .found = 2e-4}, 10), 0.4) << "of few rows";
-  EXPECT_EQ(unknown_by_scatter({.declared = 1e-4, .found = 4e-4, .repeats = 3.8e-4}, many), 0)
-      << "the repeats say that it is noise";
-  EXPECT_GT(unknown_by_scatter({.declared = 1e-4, .found = 4e-4, .repeats = 1e-4}, many), 0.95);
+  // Ten freedoms of repeats, by 0.38 mm: 10 / 2 ((3.8^2 - 3.8^2 / 16) - ln 16) = 53.8; by 0.1 mm:
+  // 10 / 2 ((1 - 1 / 16) - ln 16) = -9.18.
+  Scatter repeated{.declared = 1e-4, .found = 4e-4, .repeats = {10 * 3.8e-4 * 3.8e-4, 10}};
+  EXPECT_NEAR(log_confirmed(repeated), 53.82, 0.01);
+  EXPECT_LT(unknown_by_scatter(repeated, many), 1e-9) << "the repeats say that it is noise";
+  repeated.repeats.squares = 10 * 1e-4 * 1e-4;
+  EXPECT_NEAR(log_confirmed(repeated), -9.18, 0.01);
+  EXPECT_GT(unknown_by_scatter(repeated, many), 0.999);
 }
 
 /// Position rows whose noise is so many times what their file states.
