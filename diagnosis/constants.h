@@ -100,6 +100,9 @@ struct DiagnosisConstants {
     /// What the presence of structure that no listed cause explains takes of the probability of
     /// those that are: of what 0.9 and more was said beside it, half was there; 0.2 to 0.7 [trials]
     double beside_unknown = 0.4;
+    /// Of the gap, that what is named leaves: structure beside it is as little a doubt, in
+    /// proportion, as it leaves less; 0.02 to 0.2 [habit]
+    double hardly_left = 0.1;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of
     /// them; 0.05 to 0.5 [trials]
@@ -233,6 +236,8 @@ struct DiagnosisConstants {
     int fewest_beyond_noise = 10;
     /// Of what calibration leaves is still there: little gain; 0.5 to 0.95 [habit]
     double hardly_closes = 0.8;
+    /// Of the gap, that what is named closes at most by 95 %: nothing is named; 0.1 to 0.4 [habit]
+    double closes_little = 0.3;
     /// Of what is left with the forces: less without them is a slip; 0.8 to 1 [habit]
     double forces_cost = 0.97;
     double withdrawn = 0.95;  ///< probability of `unknown` that is left then; 0.5 to 1 [habit]

@@ -49,11 +49,14 @@ class Diagnostician {
     result_.where = attribution(linearised_, *evaluator_, data_);
     result_.untestable = linearised_.candidates().untestable;
     list_detectable(linearised_, *evaluator_, data_, options_, result_);
+    tell("closing the gap", 0.85);
+    validate_correction(linearised_, freedom_alone(), posterior_, data_, options_, result_);
+    const std::optional<double>& closed = result_.gap.closed.fraction;
+    allow_for_the_unknown(result_.candidates, result_.verdict, result_.named,
+                          closed ? 1 - *closed : 1);
     NextSteps next = next_steps(linearised_, data_, result_, options_);
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);
-    tell("closing the gap", 0.85);
-    validate_correction(linearised_, freedom_alone(), posterior_, data_, options_, result_);
     if (!left_out_.empty()) result_.warnings.push_back(left_out_);
     result_.why = verdict_in_words(result_);
     if (const std::string doubt = doubt_of(linearised_, data_, result_); !doubt.empty())
@@ -105,18 +108,20 @@ class Diagnostician {
     result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;
     tell("practising on simulated sessions", 0.8);
     result_.simulation = calibrate_by_simulation(linearised_, *evaluator_, null, options_);
-    for (CauseResult& each : result_.candidates) {
-      each.p_value = each.effect != kUnknown ? p.known : structure ? p.unknown : NAN;
-      each.probability = calibrated(each.probability, result_.simulation);
-      each.together = calibrated(each.together, result_.simulation);
-    }
+    std::vector<CauseResult> together =
+        with_look_alikes(linearised_, posterior_, result_.candidates);
+    for (std::vector<CauseResult>* list : {&result_.candidates, &together})
+      for (CauseResult& each : *list) {
+        each.p_value = each.effect != kUnknown ? p.known : structure ? p.unknown : NAN;
+        each.probability = calibrated(each.probability, result_.simulation);
+        each.together = calibrated(each.together, result_.simulation);
+      }
     result_.verdict.probability = calibrated(result_.verdict.probability, result_.simulation);
     result_.verdict.together = calibrated(result_.verdict.together, result_.simulation);
     result_.verdict = unless_none(std::move(result_.verdict), result_.candidates, options_);
     agree(result_.candidates, result_.verdict);
-    result_.named = sure_causes(result_.candidates, result_.verdict, p, options_);
+    result_.named = sure_causes(together, result_.verdict, p, options_);
     left_out_ = leave_out_impossible(result_.named, result_.verdict);
-    allow_for_the_unknown(result_.candidates, result_.verdict, result_.named);
     doubt_noise(linearised_, data_, evaluator_->marginal_likelihood(0).freedom(), result_);
   }
 
@@ -272,7 +277,11 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   if (std::string nuisance = warning_of_own_effects(*robot); !nuisance.empty())
     diagnosis.warnings.push_back(std::move(nuisance));
   const bool kept_aside = std::ranges::count(data.rows.check, char{1}) > 0;
-  if (!kept_aside) cross_validate(robot, data, options, progress, diagnosis);
+  if (!kept_aside) {
+    cross_validate(robot, data, options, progress, diagnosis);
+    if (const std::string doubt = closes_nothing(diagnosis); !doubt.empty())
+      withdraw(doubt, options, diagnosis);
+  }
   if (diagnosis.validation_rows.empty())
     diagnosis.gap_unjudged =
         std::ranges::none_of(data.sets, [](const Set& set) { return set.method->has_lengths(); })

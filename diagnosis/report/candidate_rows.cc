@@ -116,8 +116,8 @@ class CandidateSet {
       rows.wrench.row(row).head<3>() +=
           payload *
           (endpoint(rows.q.row(row).transpose()).at.R.transpose() * mechanics.gravity).transpose();
-    add("with a payload of " + format_number(payload) + " kg", std::move(loaded),
-        "what gives way to a load");
+    add("with a payload of " + format_number(payload) + " kg within the robot's rating",
+        std::move(loaded), "what gives way to a load");
   }
 
   /// The ball that the touches of a set so far lie in: the surface may end there.

@@ -89,19 +89,6 @@ bool drifts_too_far(const std::vector<CauseResult>& named) {
   });
 }
 
-/// What is named is worth nothing on rows that no choice has seen.
-std::string closes_nothing(const Diagnosis& diagnosis) {
-  const Gap& gap = diagnosis.gap;
-  if (diagnosis.named.empty() || gap.rows == 0 || gap.rms_after < gap.rms_before) return {};
-  std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
-                    " of the rows that no choice has seen, and calibration alone " +
-                    millimetres(gap.rms_before);
-  if (gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before)
-    why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
-           ": is it in metres, and 1 sigma?";
-  return why;
-}
-
 /// Noise is said to be all, and the rows that nothing was chosen by say otherwise: they err by it
 /// and by what the geometry is in doubt, which for rows alike is the others' leverage.
 std::string beyond_noise(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
@@ -201,6 +188,22 @@ std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& r
 }
 
 }  // namespace
+
+std::string closes_nothing(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (diagnosis.named.empty() || gap.rows == 0) return {};
+  const bool told = std::isfinite(gap.closed.most);
+  if (told ? gap.closed.most >= kDiagnosis.report.closes_little
+           : gap.rms_after < gap.rms_before || gap.validated_on != "check")
+    return {};
+  std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
+                    " of the rows that no choice has seen, and calibration alone " +
+                    millimetres(gap.rms_before);
+  if (gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before)
+    why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
+           ": is it in metres, and 1 sigma?";
+  return why;
+}
 
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis) {

@@ -24,6 +24,11 @@ namespace selfcal {
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis);
 
+/// That what is named is worth nothing on rows that no choice has seen: it surely closes less than
+/// a share of what calibration leaves or, where these rows are too few to tell an interval, leaves
+/// no less of them. Empty where it is worth more.
+std::string closes_nothing(const Diagnosis& diagnosis);
+
 /// Of what is named beside the verdict, springs of the wrong sign are left out: the shape of the
 /// verdict's own law makes such. Says which and why; nothing where the verdict is one itself.
 std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict);

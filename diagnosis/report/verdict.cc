@@ -129,10 +129,28 @@ std::string how_it_errs(std::optional<KernelDomain> domain) {
 }
 
 std::string advice_on_unknown(std::optional<KernelDomain> domain) {
-  return domain == KernelDomain::same
-             ? ". Look at the machine, or go to some of these configurations again from elsewhere: "
-               "what a robot does not repeat looks like this"
-             : ". Look at the machine, or repeat some configurations to be sure of the noise";
+  return domain == KernelDomain::same ? ". Look at the machine and at what measures it, or go to "
+                                        "some of these configurations again from elsewhere: "
+                                        "what a robot does not repeat looks like this"
+                                      : ". Look at the machine and at what measures it, or repeat "
+                                        "some configurations to be sure of the noise";
+}
+
+/// ". Named besides: backlash at j1 (93 % sure). Probable besides: …", of a verdict that is
+/// unknown.
+std::string besides(const Diagnosis& diagnosis) {
+  std::string named, probable;
+  for (const CauseResult& each : diagnosis.named)
+    named += (named.empty() ? ". Named besides: " : ", ") + with_places(each) + " (" +
+             sure(each.probability) + ")";
+  for (const CauseResult& each : diagnosis.candidates) {
+    const bool is_named = std::ranges::any_of(diagnosis.named, [&](const CauseResult& other) {
+      return other.effect == each.effect && other.where == each.where;
+    });
+    if (names_effect(each.effect) && !is_named && each.of_its_kind() > kDiagnosis.report.beside)
+      probable += (probable.empty() ? ". Probable besides: " : ", ") + with_places(each);
+  }
+  return named + probable;
 }
 
 /// ". It is more than …", where repeats say so.
@@ -168,10 +186,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
            beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
-  std::string beside;
-  for (const CauseResult& each : diagnosis.candidates)
-    if (names_effect(each.effect) && each.of_its_kind() > kDiagnosis.report.beside)
-      beside += (beside.empty() ? ". Probable besides: " : ", ") + with_places(each);
+  const std::string beside = besides(diagnosis);
   if (!diagnosis.scatter.empty())
     return "no known effect explains the gap (" + sure(verdict.probability) +
            "): " + diagnosis.scatter + beside +

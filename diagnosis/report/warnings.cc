@@ -105,8 +105,9 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
     return std::string(
                "the rows kept aside do not confirm it: they are met no better with it "
                "than without") +
-           (gap.rms_all < gap.rms_before ? ", though better with everything found"
-                                         : "; do not use the corrected model");
+           (gap.rms_all * kDiagnosis.report.rest_worse < gap.rms_before
+                ? ", though better with everything found"
+                : "; do not use the corrected model");
   if (!gap.closed.fraction)
     return "the gap is hardly larger than the noise: the rows kept aside cannot tell how far it "
            "closes";

@@ -12,18 +12,31 @@
 namespace selfcal {
 namespace {
 
-/// Probability of the cause or of known ones that look the same on these rows.
-double with_look_alikes(const LinearisedModel& linearised, const Posterior& posterior,
-                        const CauseResult& cause) {
-  const auto answers = [&](int c) {
-    const Candidate& candidate = linearised.candidates().list[c];
-    return candidate.effect == cause.effect ||
-           std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
-  };
+/// Probability that one of the candidates is there that `answers` says yes to.
+double probability_of_any(const LinearisedModel& linearised, const Posterior& posterior,
+                          const std::function<bool(const Candidate&)>& answers) {
   double sum = 0;
   for (const Hypothesis& h : posterior.hypotheses)
-    if (std::ranges::any_of(h.candidates, answers)) sum += std::exp(h.log_weight);
+    if (std::ranges::any_of(h.candidates,
+                            [&](int c) { return answers(linearised.candidates().list[c]); }))
+      sum += std::exp(h.log_weight);
   return std::min(sum, 1.0);
+}
+
+/// Probability of the cause or of known ones that look the same on these rows.
+double with_look_alikes_of(const LinearisedModel& linearised, const Posterior& posterior,
+                           const CauseResult& cause) {
+  return probability_of_any(linearised, posterior, [&](const Candidate& candidate) {
+    return candidate.effect == cause.effect ||
+           std::ranges::count(cause.confounded_with, label(candidate.effect, candidate.at)) > 0;
+  });
+}
+
+/// `one` is among those that `other` cannot be told from.
+bool is_look_alike(const CauseResult& one, const CauseResult& other) {
+  return std::ranges::any_of(one.where, [&](const std::string& at) {
+    return std::ranges::count(other.confounded_with, label(one.effect, at)) > 0;
+  });
 }
 
 /// What the most probable causes and all that makes them more probable explain of the squares, and
@@ -71,7 +84,7 @@ CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluat
     if (names_effect(each.effect) && (!best || rank(each) > rank(*best))) best = &each;
   if (!best) return unknown;
   CauseResult known = *best;
-  known.together = with_look_alikes(linearised, posterior, known);
+  known.together = with_look_alikes_of(linearised, posterior, known);
   if (posterior.unknown < kDiagnosis.naming.probable)
     return posterior.unknown > known.together ? unknown : known;
   // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
@@ -101,6 +114,30 @@ CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& cau
   return {.effect = kNone, .probability = none->probability};
 }
 
+std::vector<CauseResult> with_look_alikes(const LinearisedModel& linearised,
+                                          const Posterior& posterior,
+                                          std::vector<CauseResult> causes) {
+  std::vector<std::string> sure;  // these are there beside it, not in its place
+  for (const CauseResult& each : causes)
+    for (const std::string& at : each.where)
+      if (each.of_its_kind() >= kDiagnosis.naming.sure) sure.push_back(label(each.effect, at));
+  for (CauseResult& each : causes) {
+    if (!names_effect(each.effect) || each.probability <= kDiagnosis.naming.probable ||
+        each.of_its_kind() >= kDiagnosis.naming.sure)
+      continue;
+    std::vector<std::string> alike;
+    for (const std::string& at : each.where) alike.push_back(label(each.effect, at));
+    std::ranges::copy_if(
+        each.confounded_with, std::back_inserter(alike),
+        [&](const std::string& other) { return !std::ranges::count(sure, other); });
+    const double together = probability_of_any(linearised, posterior, [&](const Candidate& c) {
+      return std::ranges::count(alike, label(c.effect, c.at)) > 0;
+    });
+    each.together = std::max(each.together, together);
+  }
+  return causes;
+}
+
 std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
                                      const CauseResult& verdict, const ByNoise& p,
                                      const DiagnosisOptions& options) {
@@ -113,11 +150,19 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
     });
   std::ranges::stable_sort(list, std::ranges::greater{}, &CauseResult::visible);
   if (names_effect(verdict.effect)) list.insert(list.begin(), verdict);
-  return list;
+  // Of look-alikes that are sure together alone the first stands for all.
+  std::vector<CauseResult> named;
+  for (CauseResult& each : list)
+    if (each.probability >= kDiagnosis.naming.sure ||
+        std::ranges::none_of(named, [&](const CauseResult& other) {
+          return is_look_alike(each, other) && other.probability < kDiagnosis.naming.sure;
+        }))
+      named.push_back(std::move(each));
+  return named;
 }
 
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
-                           std::vector<CauseResult>& named) {
+                           std::vector<CauseResult>& named, double left) {
   const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
   if (unknown == causes.end()) return;
   // What may be a drift or go along with the rows' order is half unknown for that alone.
@@ -127,8 +172,9 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   double by_order = 0;
   for (const CauseResult& each : causes)
     if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
-  const double kept =
-      1 - kDiagnosis.naming.beside_unknown * std::max(unknown->probability - by_order, 0.0);
+  const double kept = 1 - kDiagnosis.naming.beside_unknown *
+                              std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) *
+                              std::max(unknown->probability - by_order, 0.0);
   const auto lower = [&](CauseResult& each) {
     if (!names_effect(each.effect) || may_be_order(each)) return;
     each.probability *= kept;

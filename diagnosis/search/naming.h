@@ -33,16 +33,24 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
 CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 
-/// What is named beside a verdict, which comes first: each known cause that is sure; the largest
+/// The causes; each that is probable and not sure is `together` what it and those of its
+/// look-alikes are that are not sure themselves.
+std::vector<CauseResult> with_look_alikes(const LinearisedModel& linearised,
+                                          const Posterior& posterior,
+                                          std::vector<CauseResult> causes);
+
+/// What is named beside a verdict, which comes first: each known cause that is sure, or that is
+/// probable and sure with its look-alikes (`together`), none of which is named before; the largest
 /// first. None where the verdict is `none`.
 std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
                                      const CauseResult& verdict, const ByNoise& p,
                                      const DiagnosisOptions& options);
 
 /// Where structure of no known cause is probable, the list of causes lacks one, and those on it are
-/// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it.
+/// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it, by the less
+/// the less of the gap what is named leaves (`left`, a share; 1 where nothing tells).
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
-                           std::vector<CauseResult>& named);
+                           std::vector<CauseResult>& named, double left);
 
 /// The verdict becomes `unknown`, of this probability at least; the others give way in proportion.
 void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict);

@@ -61,6 +61,27 @@ TEST(SureCauses, AreNamedTogetherWhicheverIsTheLargest) {
   EXPECT_TRUE(sure_causes(causes, {.effect = kNone}, {0.2, 1}, options).empty());
 }
 
+// Each may be the other, and one of them is there for sure.
+TEST(SureCauses, NamesTheLargerOfTwoLookAlikesThatAreSureTogether) {
+  const std::vector<CauseResult> causes = {
+      {.effect = "backlash", .where = {"j1"}, .probability = 0.97, .visible = 3},
+      {.effect = "joint_compliance",
+       .where = {"j2"},
+       .probability = 0.7,
+       .together = 0.98,
+       .visible = 2,
+       .confounded_with = {"link_compliance@j1"}},
+      {.effect = "link_compliance",
+       .where = {"j1"},
+       .probability = 0.55,
+       .together = 0.98,
+       .visible = 1.9,
+       .confounded_with = {"joint_compliance@j2"}}};
+  const auto named = sure_causes(causes, causes[0], {0.005, 1}, DiagnosisOptions{});
+  ASSERT_EQ(named.size(), 2u);
+  EXPECT_EQ(named[1].effect, "joint_compliance");
+}
+
 TEST(UnlessNone, NamesNothingWhereNoneIsTooProbableOnceCalibrated) {
   const DiagnosisOptions options;
   std::vector<CauseResult> causes = some_causes();
@@ -146,10 +167,11 @@ TEST(VerdictInWords, TellsWhatIsLeftBesideWhatIsNamed) {
 }
 
 TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
-  EXPECT_EQ(verdict_in_words(with({.effect = kUnknown, .probability = 0.99})),
-            "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases). "
-            "Probable besides: joint_compliance at j2 and j3, base_drift at base. Look at the "
-            "machine, or repeat some configurations to be sure of the noise");
+  EXPECT_EQ(
+      verdict_in_words(with({.effect = kUnknown, .probability = 0.99})),
+      "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases). "
+      "Probable besides: joint_compliance at j2 and j3, base_drift at base. Look at the "
+      "machine and at what measures it, or repeat some configurations to be sure of the noise");
 }
 
 TEST(VerdictInWords, TellsHowTheUnknownErrsAndWhatWouldShow) {
@@ -159,15 +181,16 @@ TEST(VerdictInWords, TellsHowTheUnknownErrsAndWhatWouldShow) {
   EXPECT_EQ(
       verdict_in_words(diagnosis),
       "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): rows "
-      "near each other in the cell err alike. Look at the machine, or repeat some "
+      "near each other in the cell err alike. Look at the machine and at what measures it, or "
+      "repeat some "
       "configurations to be sure of the noise");
   diagnosis.unknown = KernelDomain::same;
-  EXPECT_EQ(
-      verdict_in_words(diagnosis),
-      "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): the "
-      "repeats of a configuration err alike, and no other rows with them. Look at the "
-      "machine, or go to some of these configurations again from elsewhere: what a robot does "
-      "not repeat looks like this");
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): the "
+            "repeats of a configuration err alike, and no other rows with them. Look at the "
+            "machine and at what measures it, or go to some of these configurations again from "
+            "elsewhere: what a robot does "
+            "not repeat looks like this");
 }
 
 TEST(VerdictInWords, SaysThatTheRowsDoNotSettleItWhereACauseIsLikelierThanNone) {
@@ -204,7 +227,7 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
       {.effect = kNone, .probability = 0.01}};
   CauseResult verdict = causes.front();
   std::vector<CauseResult> named = {causes[0], causes[2]};
-  allow_for_the_unknown(causes, verdict, named);
+  allow_for_the_unknown(causes, verdict, named, 1);
   // 0.45 of the 0.8 are the drift's other half.
   const double kept = 1 - kDiagnosis.naming.beside_unknown * (0.8 - 0.45);
   EXPECT_EQ(causes[0].effect, kUnknown) << "the most probable first";
@@ -214,6 +237,21 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   EXPECT_NEAR(named[0].together, 0.9 * kept, 1e-12);
   EXPECT_EQ(named[1].probability, 0.5);
   EXPECT_EQ(causes[3].probability, 0.01);
+}
+
+TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
+  const auto kept = [](double left) {
+    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 0.9},
+                                       {.effect = kUnknown, .probability = 1}};
+    CauseResult verdict = causes.front();
+    std::vector<CauseResult> named = {causes[0]};
+    allow_for_the_unknown(causes, verdict, named, left);
+    return verdict.probability / 0.9;
+  };
+  const double most = kDiagnosis.naming.beside_unknown;
+  EXPECT_NEAR(kept(0.5), 1 - most, 1e-12);
+  EXPECT_NEAR(kept(kDiagnosis.naming.hardly_left / 2), 1 - most / 2, 1e-12);
+  EXPECT_NEAR(kept(-0.01), 1, 1e-12) << "all is closed";
 }
 
 TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {
