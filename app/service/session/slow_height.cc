@@ -88,7 +88,11 @@ std::vector<double> slow_from(const Robot& robot, const Session& session, const 
   const double slow = outward.dot(endpoint(robot, start) - p);
   const double height = slow_height(felt, p, slow, std::min(search, slow));
   if (height > kWorth * slow) return step.start;
-  const Eigen::VectorXd from = touch + height / slow * (start - touch);
+  // On the way of the touch itself, which so meets the surface at the same readings.
+  const Eigen::VectorXd end = vector_of(step.end);
+  const double all = slow - outward.dot(endpoint(robot, end) - p);
+  if (all <= slow - height) return step.start;
+  const Eigen::VectorXd from = start + (slow - height) / all * (end - start);
   return {from.begin(), from.end()};
 }
 
