@@ -98,6 +98,13 @@ bool has_control(std::string_view text) {
   return false;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
 std::string shown(std::string_view text) {
   std::string harmless;
   while (!text.empty()) {

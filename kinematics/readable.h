@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace selfcal {
 
@@ -26,6 +27,9 @@ ReadableUnit readable_unit(const std::string& unit, double size);
 
 /// "0.0458 mrad": a value of that unit (SI).
 std::string in_readable_unit(double value, const std::string& unit);
+
+/// "j1", "j1 and j2", "j1, j2 and j3"; empty of none.
+std::string listed(const std::vector<std::string>& names);
 
 /// True where `text` (UTF-8) has a character that a terminal obeys rather than shows: a line's end,
 /// an escape. No name has one.

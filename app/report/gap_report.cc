@@ -38,10 +38,7 @@ std::string effect_in_words(std::string effect) {
 }
 
 std::string places_in_words(const std::vector<std::string>& where) {
-  std::string text;
-  for (size_t i = 0; i < where.size(); ++i)
-    text += (i == 0 ? " at " : i + 1 == where.size() ? " and " : ", ") + where[i];
-  return text;
+  return where.empty() ? "" : " at " + listed(where);
 }
 
 std::string named_in_words(const Diagnosis& diagnosis) {

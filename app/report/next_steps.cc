@@ -27,10 +27,7 @@ std::string rows_to_add(const std::vector<Note>& unexcited) {
     if (!each.joint.empty() && std::ranges::find(joints, each.joint) == joints.end())
       joints.push_back(each.joint);
   if (joints.empty()) return "Add rows in other postures";
-  std::string text = "Add rows that move ";
-  for (size_t i = 0; i < joints.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == joints.size() ? " and " : ", ") + joints[i];
-  return text + " further";
+  return "Add rows that move " + listed(joints) + " further";
 }
 
 /// Against the largest part of the end position's doubt.

@@ -17,17 +17,6 @@ double student_of_five(double value, double scale) {
   return 8 / (3 * M_PI * std::sqrt(5.0)) * std::pow(1 + t * t / 5, -3) / scale;
 }
 
-/// "table", "table and wall", "table, wall and side".
-std::string names_of(const std::vector<int>& sets, const DataSet& data) {
-  std::string names;
-  for (std::size_t i = 0; i < sets.size(); ++i)
-    names += (i == 0                 ? ""
-              : i + 1 == sets.size() ? " and "
-                                     : ", ") +
-             data.sets[static_cast<std::size_t>(sets[i])].name;
-  return names;
-}
-
 bool is_worth_a_word(const Scatter& scatter) {
   return scatter.found > kDiagnosis.report.worth_a_word * scatter.declared;
 }
@@ -63,7 +52,9 @@ std::string scatter_in_words(const Scatter& scatter, const DataSet& data) {
   const auto figure = [&](double value) {
     return scatter.lengths ? plain_figure(1e3 * value) + " mm" : in_readable_unit(value, "rad");
   };
-  return "the rows of " + names_of(scatter.sets, data) + " scatter by " + figure(scatter.found) +
+  std::vector<std::string> names;
+  for (const int s : scatter.sets) names.push_back(data.sets[static_cast<std::size_t>(s)].name);
+  return "the rows of " + listed(names) + " scatter by " + figure(scatter.found) +
          " around the model that explains them best, and their files state a noise of " +
          figure(scatter.declared) +
          (scatter.repeats.freedom > 0

@@ -23,10 +23,7 @@ namespace {
 
 /// "backlash at j1, j2 and j3".
 std::string with_places(const CauseResult& cause) {
-  std::string words = cause.effect;
-  for (size_t i = 0; i < cause.where.size(); ++i)
-    words += (i == 0 ? " at " : i + 1 == cause.where.size() ? " and " : ", ") + cause.where[i];
-  return words;
+  return cause.effect + (cause.where.empty() ? "" : " at " + listed(cause.where));
 }
 
 /// "58 % sure"; what rounds to all of it is not.
@@ -199,10 +196,9 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
 }
 
 std::string names_in_words(const std::vector<CauseResult>& causes) {
-  std::string words;
-  for (size_t i = 0; i < causes.size(); ++i)
-    words += (i == 0 ? "" : i + 1 == causes.size() ? " and " : ", ") + with_places(causes[i]);
-  return words;
+  std::vector<std::string> names;
+  for (const CauseResult& each : causes) names.push_back(with_places(each));
+  return listed(names);
 }
 
 }  // namespace selfcal

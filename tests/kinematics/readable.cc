@@ -30,6 +30,13 @@ TEST(Readable, GivesUnitsThatAPersonReads) {
   EXPECT_EQ(in_readable_unit(20, "s"), "20 s");
 }
 
+TEST(Readable, ListsNamesAsAPersonWould) {
+  EXPECT_EQ(listed({}), "");
+  EXPECT_EQ(listed({"j1"}), "j1");
+  EXPECT_EQ(listed({"j1", "j2"}), "j1 and j2");
+  EXPECT_EQ(listed({"j1", "j2", "j3"}), "j1, j2 and j3");
+}
+
 TEST(Readable, HidesWhatATerminalWouldObey) {
   for (const std::string_view text : {"\x1b[31m", "a\nb", "\r", "\x7f",
                                       "\xC2\x9B"
