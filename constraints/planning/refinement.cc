@@ -118,7 +118,7 @@ class PlanMoves {
     std::vector<char> there(kLanes, 0);
     Locations X;
     if (method.constrains() && !(method.paired() && first)) {
-      NewtonStep newton(robot_, data, equations_.state(), row, before, plan_.held);
+      NewtonStep newton(robot_, data, equations_.state(), {row}, before, plan_.held);
       const auto wanted =
           Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
       for (const int lane : newton.reach(wanted, std::max(1, block.count * 3 / 4), block))

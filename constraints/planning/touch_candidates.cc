@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "constraints/methods/shared/shared_point.h"
 #include "constraints/methods/shared/unit_normal.h"
@@ -77,8 +78,9 @@ std::optional<PlannedTouch> TouchCandidates::at(const TouchTarget& target,
   truth.groups = {shared_point()->start_group({locate(robot_, xi_, q)})};
   PlannedTouch there = touch;
   there.touch = q;
-  if (!enter(target, data, truth, 0, there)) return std::nullopt;
-  return there;
+  const std::vector<PlannedTouch> made = entered(target, data, truth, {0}, {there});
+  if (made.empty()) return std::nullopt;
+  return made.front();
 }
 
 std::vector<PlannedTouch> TouchCandidates::of(const TouchTarget& target, Random& random,
@@ -161,6 +163,8 @@ void TouchCandidates::take(const TouchTarget& target, const std::shared_ptr<cons
   data.sets[0].method = method;
   data.sets[0].reference = -1;
   const Sampled sampled = sample_rows(robot_, xi_, {request}, random, data);
+  std::vector<int> rows;
+  std::vector<PlannedTouch> touches;
   for (int row = 0; row < data.rows.rows(); ++row) {
     const int group = data.rows.group[row];
     if (group >= static_cast<int>(request.places.size()) && !request.places.empty()) continue;
@@ -168,29 +172,69 @@ void TouchCandidates::take(const TouchTarget& target, const std::shared_ptr<cons
     touch.set = target.set;
     touch.group = target.places.empty() ? -1 : group;
     touch.touch = data.rows.q.row(row).transpose();
-    if (enter(target, data, sampled.truth, row, touch)) usable.push_back(touch);
+    rows.push_back(row);
+    touches.push_back(touch);
   }
+  std::ranges::move(entered(target, data, sampled.truth, rows, touches),
+                    std::back_inserter(usable));
 }
 
-/// Fills in where the touch begins and where it is given up.
-bool TouchCandidates::enter(const TouchTarget& target, const DataSet& data, const State& truth,
-                            int row, PlannedTouch& touch) const {
+std::vector<PlannedTouch> TouchCandidates::entered(const TouchTarget& target, const DataSet& data,
+                                                   const State& truth, const std::vector<int>& rows,
+                                                   const std::vector<PlannedTouch>& touches) const {
+  std::vector<PlannedTouch> made;
+  // How far along the way out, the endpoint's orientation as it comes: outside, start and end.
+  std::vector<double> distances = {options_.clearance};
+  if (target.places.empty()) distances.insert(distances.end(), {options_.slow, -options_.search});
+  const std::size_t ends = distances.size();
+  std::vector<int> from;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    PlannedTouch touch = touches[i];
+    touch.outside = touch.start = touch.end = touch.touch;
+    if (locks(target.set)) {
+      if (free_to_enter(target, touch)) made.push_back(touch);
+      continue;
+    }
+    const Location X = locate(robot_, xi_, touch.touch);
+    if ((X.R * robot_.tool_axis()).dot(-target.outward) < std::cos(options_.tilt)) continue;
+    made.push_back(touch);
+    from.insert(from.end(), ends, rows[i]);
+  }
+  if (from.empty()) return made;
+  const auto moves = static_cast<Eigen::Index>(from.size());
+  const auto equations = static_cast<Eigen::Index>(data.sets[0].method->equations().size());
+  Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(moves, equations),
+                  q(moves, touches.front().touch.size());
+  for (Eigen::Index i = 0; i < moves; ++i) {
+    const std::size_t move = static_cast<std::size_t>(i);
+    wanted.row(i).head<3>() = distances[move % ends] * target.outward.transpose();
+    q.row(i) = made[move / ends].touch.transpose();
+  }
+  const auto out = moved_to_residuals(robot_, data, truth, from, wanted, q);
+  std::vector<PlannedTouch> entered;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const auto end = out.begin() + static_cast<std::ptrdiff_t>(ends * i);
+    if (!std::all_of(end, end + static_cast<std::ptrdiff_t>(ends),
+                     [](const auto& each) { return each.has_value(); }))
+      continue;
+    PlannedTouch& touch = made[i];
+    touch.outside = touch.start = **end;
+    if (ends > 1) {
+      touch.start = *end[1];
+      touch.end = *end[2];
+    }
+    if (free_to_enter(target, touch)) entered.push_back(touch);
+  }
+  return entered;
+}
+
+bool TouchCandidates::free_to_enter(const TouchTarget& target, const PlannedTouch& touch) const {
   const auto is_free = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, int touched) {
     return path_is_free(robot_, xi_, from, to, obstacles_, options_.apart, touched, options_.fence);
   };
-  touch.outside = touch.start = touch.end = touch.touch;
   if (locks(target.set))
     return within_limits(robot_, touch.touch, options_.limit_margin) &&
            is_free(options_.home, touch.touch, -1);
-  const Location X = locate(robot_, xi_, touch.touch);
-  if ((X.R * robot_.tool_axis()).dot(-target.outward) < std::cos(options_.tilt)) return false;
-  if (!move_out(target, data, truth, row, options_.clearance, touch.outside)) return false;
-  touch.start = touch.outside;
-  if (target.places.empty()) {
-    touch.start = touch.touch;
-    if (!move_out(target, data, truth, row, options_.slow, touch.start)) return false;
-    if (!move_out(target, data, truth, row, -options_.search, touch.end)) return false;
-  }
   return within_limits(robot_, touch.outside, options_.limit_margin) &&
          within_limits(robot_, touch.start, options_.limit_margin) &&
          within_limits(robot_, touch.end, options_.limit_margin) &&
@@ -207,16 +251,6 @@ bool TouchCandidates::straight_from_home(const PlannedTouch& touch, int obstacle
          (obstacle < 0 ||
           path_is_free(robot_, xi_, options_.home, touch.start,
                        {obstacles_[static_cast<std::size_t>(obstacle)]}, kHeld * options_.slow));
-}
-
-/// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
-bool TouchCandidates::move_out(const TouchTarget& target, const DataSet& data, const State& truth,
-                               int row, double distance, Eigen::VectorXd& q) const {
-  const Method& method = *data.sets[0].method;
-  Eigen::VectorXd wanted =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(method.equations().size()));
-  wanted.head<3>() = distance * target.outward;
-  return move_to_residual(robot_, data, truth, row, wanted, q);
 }
 
 }  // namespace selfcal

@@ -48,14 +48,15 @@ class TouchCandidates {
   /// Those of the sampled configurations that are usable.
   void take(const TouchTarget& target, const std::shared_ptr<const Method>& method,
             const SampleRequest& request, Random& random, std::vector<PlannedTouch>& usable) const;
-  /// Fills in where the touch begins and where it is given up.
-  bool enter(const TouchTarget& target, const DataSet& data, const State& truth, int row,
-             PlannedTouch& touch) const;
+  /// Those of `touches`, of rows `rows` of `data`, that can be made, with where they begin and
+  /// where they are given up.
+  std::vector<PlannedTouch> entered(const TouchTarget& target, const DataSet& data,
+                                    const State& truth, const std::vector<int>& rows,
+                                    const std::vector<PlannedTouch>& touches) const;
+  /// Nothing in the way of a touch whose ends are known.
+  bool free_to_enter(const TouchTarget& target, const PlannedTouch& touch) const;
   /// Through home the robot comes to where it becomes slow, and goes back from there, at once.
   bool straight_from_home(const PlannedTouch& touch, int obstacle) const;
-  /// Moves `q` by `distance` along the way out, the endpoint's orientation as it comes.
-  bool move_out(const TouchTarget& target, const DataSet& data, const State& truth, int row,
-                double distance, Eigen::VectorXd& q) const;
   bool locks(int set) const { return sets_[set].method->planned() == Planned::lock; }
 
   const Robot& robot_;

@@ -177,9 +177,9 @@ class Sampler {
       return true;
     }
     for (int attempt = 0; attempt < request.tries; ++attempt) {
+      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
       ConfigurationBlock block = starts();
       Locations X;
-      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
       const std::vector<int> found =
           must ? newton(method, wanted, row, last_of_group, request.held, block, X)
                : everywhere(method, block, X);
@@ -234,7 +234,7 @@ class Sampler {
       before.rotation.rowwise() = there.R.reshaped().transpose().array();
       before.position.rowwise() = there.p.transpose().array();
     }
-    NewtonStep newton(robot_, data_, sampled_.truth, row, before, held);
+    NewtonStep newton(robot_, data_, sampled_.truth, {row}, before, held);
     std::vector<int> reached = newton.reach(wanted, kEnough, block);
     X = newton.X();
     return reached;

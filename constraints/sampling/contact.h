@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
+#include <vector>
 
 #include "constraints/equations/equations.h"
 #include "constraints/methods/data_set.h"
@@ -16,5 +18,10 @@ namespace selfcal {
 bool move_to_residual(const Robot& robot, const DataSet& data, const State& truth, int row,
                       const Eigen::VectorXd& wanted, Eigen::VectorXd& q,
                       const std::vector<int>& held = {});
+
+/// The same for many rows of one set at once: row `rows[i]` from `q.row(i)` to `wanted.row(i)`.
+std::vector<std::optional<Eigen::VectorXd>> moved_to_residuals(
+    const Robot& robot, const DataSet& data, const State& truth, const std::vector<int>& rows,
+    const Eigen::MatrixXd& wanted, const Eigen::MatrixXd& q, const std::vector<int>& held = {});
 
 }  // namespace selfcal

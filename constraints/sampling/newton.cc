@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "kinematics/linear_algebra.h"
 #include "kinematics/size.h"
@@ -18,48 +18,58 @@ constexpr double kExact = 1e-13;      // size of a miss that is none
 // Least diagonal of the factor of products of rows of length one: less is left to the slower way.
 constexpr double kIndependent = 1e-3;
 
-/// x of least length with A x = b, by the products of A's few rows; nothing where these are nearly
-/// dependent. `products`: by lane, (a, b) of the lower triangle in column a (a + 1) / 2 + b.
-template <int rows>
-std::optional<Eigen::VectorXd> by_products(const Eigen::MatrixXd& A,
-                                           const Eigen::ArrayXXd& products, int lane,
-                                           const Eigen::VectorXd& b) {
-  constexpr int most = rows == Eigen::Dynamic ? kMostEquations : rows;
-  using Square = Eigen::Matrix<double, rows, rows, 0, most, most>;
-  using Column = Eigen::Matrix<double, rows, 1, 0, most, 1>;
-  Square P(b.size(), b.size());
-  for (Eigen::Index r = 0, at = 0; r < b.size(); ++r)
-    for (Eigen::Index c = 0; c <= r; ++c, ++at) P(r, c) = P(c, r) = products(lane, at);
-  const Column length = A.rowwise().norm();
-  if (!(length.minCoeff() > 0)) return std::nullopt;
-  const Column per = length.cwiseInverse();
-  P = (per.asDiagonal() * P * per.asDiagonal()).eval();
-  const Eigen::LLT<Square> factor(P);
-  if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() > kIndependent))
-    return std::nullopt;
-  Column x = per.cwiseProduct(b);
-  const Square& L = factor.matrixLLT();
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    x[i] /= L(i, i);
-    for (Eigen::Index r = i + 1; r < x.size(); ++r) x[r] -= x[i] * L(r, i);
+/// Where (a, b) of a lower triangle stands among its columns.
+Eigen::Index place(Eigen::Index a, Eigen::Index b) { return a * (a + 1) / 2 + b; }
+
+/// The multipliers y with A A' y = b in every lane, A's few rows made of length one on the way, by
+/// the products of these rows with each other (lower triangle, see place()); false in `independent`
+/// where the rows are nearly dependent. A row of zeros has a multiplier of zero.
+Eigen::ArrayXXd multipliers(const Eigen::ArrayXXd& products, const Eigen::ArrayXXd& b,
+                            Eigen::Array<bool, Eigen::Dynamic, 1>& independent) {
+  const Eigen::Index lanes = b.rows(), k = b.cols();
+  Eigen::ArrayXXd per(lanes, k), L(lanes, products.cols()), y(lanes, k);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    const auto square = products.col(place(a, a));
+    per.col(a) = (square > 0).select(square.rsqrt(), 0);
   }
-  factor.matrixU().solveInPlace(x);
-  return A.transpose() * per.cwiseProduct(x);
+  independent.setConstant(lanes, true);
+  for (Eigen::Index c = 0; c < k; ++c) {
+    for (Eigen::Index r = c; r < k; ++r) {
+      auto entry = L.col(place(r, c));
+      entry = products.col(place(r, c)) * per.col(r) * per.col(c);
+      for (Eigen::Index j = 0; j < c; ++j) entry -= L.col(place(r, j)) * L.col(place(c, j));
+      if (r > c)
+        entry /= L.col(place(c, c));
+      else
+        entry = (per.col(c) > 0).select(entry, 1).sqrt();
+    }
+    independent = independent && L.col(place(c, c)) > kIndependent;
+    y.col(c) = b.col(c) * per.col(c);
+    for (Eigen::Index j = 0; j < c; ++j) y.col(c) -= L.col(place(c, j)) * y.col(j);
+    y.col(c) /= L.col(place(c, c));
+  }
+  for (Eigen::Index a = k - 1; a >= 0; --a) {
+    for (Eigen::Index r = a + 1; r < k; ++r) y.col(a) -= L.col(place(r, a)) * y.col(r);
+    y.col(a) /= L.col(place(a, a));
+  }
+  return y * per;
 }
 
 }  // namespace
 
-NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
-                       const Locations& before, const std::vector<int>& held)
+NewtonStep::NewtonStep(const Robot& robot, const DataSet& data, const State& truth,
+                       std::vector<int> rows, const Locations& before, const std::vector<int>& held)
     : robot_(robot),
       data_(data),
       truth_(truth),
       before_(before),
       held_(held),
-      set_(data.rows.set[row]),
+      set_(data.rows.set[rows.front()]),
       quantities_(data.sets[set_].method->equations()),
       size_(size_of(robot)),
-      rows_(kLanes, row) {}
+      rows_(std::move(rows)) {
+  rows_.resize(kLanes, rows_.back());
+}
 
 void NewtonStep::evaluate(const ConfigurationBlock& block) {
   const Method& method = *data_.sets[set_].method;
@@ -90,60 +100,74 @@ void NewtonStep::evaluate(const ConfigurationBlock& block) {
   method.evaluate(in, out_);
   for (const int j : held_) J_.col(j).setZero();
   const bool lengths_alone = method.constrains() && !method.measures().empty();
-  const Eigen::Index lanes = J_.rows() / 6;
-  GJ_.setZero(static_cast<Eigen::Index>(quantities_.size()) * lanes, J_.cols());
-  for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(quantities_.size()); ++a) {
+  const Eigen::Index lanes = J_.rows() / 6, joints = J_.cols();
+  const auto k = static_cast<Eigen::Index>(quantities_.size());
+  GJ_.setZero(lanes, k * joints);
+  for (Eigen::Index a = 0; a < k; ++a) {
     if (lengths_alone && quantities_[static_cast<std::size_t>(a)] != Quantity::length) {
       out_.r.col(a).setZero();
       continue;
     }
     for (Eigen::Index c = 0; c < 6; ++c) {
-      const auto g = out_.G_now.col(6 * a + c).head(lanes);
+      const Lanes g = out_.G_now.col(6 * a + c).head(lanes);
       if ((g == 0).all()) continue;
-      for (Eigen::Index j = 0; j < J_.cols(); ++j)
-        GJ_.col(j).segment(a * lanes, lanes).array() +=
-            g * J_.col(j).segment(c * lanes, lanes).array();
+      for (Eigen::Index j = 0; j < joints; ++j)
+        GJ_.col(a * joints + j) += g * J_.col(j).segment(c * lanes, lanes).array();
     }
   }
-  const auto k = static_cast<Eigen::Index>(quantities_.size());
   products_.setZero(lanes, k * (k + 1) / 2);
-  for (Eigen::Index j = 0; j < GJ_.cols(); ++j)
-    for (Eigen::Index a = 0, at = 0; a < k; ++a)
-      for (Eigen::Index b = 0; b <= a; ++b, ++at)
-        products_.col(at) += GJ_.col(j).segment(a * lanes, lanes).array() *
-                             GJ_.col(j).segment(b * lanes, lanes).array();
+  for (Eigen::Index a = 0; a < k; ++a)
+    for (Eigen::Index b = 0; b <= a; ++b)
+      for (Eigen::Index j = 0; j < joints; ++j)
+        products_.col(place(a, b)) += GJ_.col(a * joints + j) * GJ_.col(b * joints + j);
 }
 
-Eigen::VectorXd NewtonStep::miss(int lane, const Eigen::VectorXd& wanted) const {
-  return wanted - out_.r.row(lane).matrix().transpose();
+Eigen::ArrayXXd NewtonStep::misses(const Eigen::ArrayXXd& wanted) const {
+  const Eigen::Index lanes = J_.rows() / 6;
+  return wanted.topRows(lanes) - out_.r.topRows(lanes);
 }
 
-double NewtonStep::size_of_miss(int lane, const Eigen::VectorXd& miss) const {
-  const double length = std::max(size_, X_.p(lane).norm());
-  double squares = 0;
-  for (Eigen::Index a = 0; a < miss.size(); ++a) {
+Lanes NewtonStep::sizes_of(const Eigen::ArrayXXd& misses) const {
+  const Lanes length = X_.position.matrix().rowwise().norm().array().max(size_);
+  Lanes squares = Lanes::Zero(misses.rows());
+  for (Eigen::Index a = 0; a < misses.cols(); ++a) {
     const bool angle = quantities_[static_cast<std::size_t>(a)] == Quantity::angle;
-    squares += std::pow(angle ? miss[a] : miss[a] / length, 2);
+    const Lanes part = angle ? Lanes(misses.col(a)) : Lanes(misses.col(a) / length);
+    squares += part.square();
   }
-  return std::sqrt(squares);
+  return squares.sqrt();
 }
 
-Eigen::VectorXd NewtonStep::step(int lane, const Eigen::VectorXd& miss) const {
-  const Eigen::MatrixXd GJ = GJ_(Eigen::seqN(lane, miss.size(), J_.rows() / 6), Eigen::all);
-  const std::optional<Eigen::VectorXd> by =
-      miss.size() == 3   ? by_products<3>(GJ, products_, lane, miss)
-      : miss.size() == 1 ? by_products<1>(GJ, products_, lane, miss)
-                         : by_products<Eigen::Dynamic>(GJ, products_, lane, miss);
-  return by ? *by : least_squares(GJ, miss);
+Eigen::ArrayXXd NewtonStep::steps(const Eigen::ArrayXXd& misses) const {
+  Eigen::Array<bool, Eigen::Dynamic, 1> independent;
+  const Eigen::ArrayXXd y = multipliers(products_, misses, independent);
+  const Eigen::Index joints = J_.cols(), k = misses.cols();
+  Eigen::ArrayXXd dq = Eigen::ArrayXXd::Zero(misses.rows(), joints);
+  for (Eigen::Index a = 0; a < k; ++a)
+    for (Eigen::Index j = 0; j < joints; ++j) dq.col(j) += GJ_.col(a * joints + j) * y.col(a);
+  for (int lane = 0; lane < static_cast<int>(misses.rows()); ++lane)
+    if (closes(lane) && !independent[lane]) {
+      Eigen::MatrixXd GJ(k, joints);
+      for (Eigen::Index a = 0; a < k; ++a) GJ.row(a) = GJ_.row(lane).segment(a * joints, joints);
+      dq.row(lane) = least_squares(GJ, misses.row(lane).matrix().transpose()).transpose().array();
+    }
+  return dq;
 }
 
 std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
                                    ConfigurationBlock& block) {
   const Eigen::ArrayXd units = units_of_readings(robot_);
+  const Eigen::ArrayXXd everywhere = wanted.transpose().replicate(kLanes, 1).array();
   Lanes left = Lanes::Constant(kLanes, HUGE_VAL), least = left;
   std::vector<char> lost(kLanes, 0);
   for (int at = 0, gained = 0; at < kNewtonSteps && at - gained <= kPatience; ++at) {
     evaluate(block);
+    const Eigen::ArrayXXd off = misses(everywhere);
+    const Lanes far = sizes_of(off);
+    Eigen::ArrayXXd dq = steps(off);
+    const Lanes length =
+        (dq.rowwise() / units.transpose()).matrix().rowwise().norm().array().max(kLongestStep);
+    dq.colwise() *= kLongestStep / length;
     int going = -1;
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto l = static_cast<std::size_t>(lane);
@@ -155,17 +179,13 @@ std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
         continue;
       }
       going = lane;
-      const Eigen::VectorXd off = miss(lane, wanted);
-      left[lane] = size_of_miss(lane, off);
+      left[lane] = far[lane];
       if (left[lane] < least[lane] / 2) {
         least[lane] = left[lane];
         gained = at;
       }
       if (left[lane] < kExact / 10) continue;
-      Eigen::VectorXd dq = step(lane, off);
-      const double length = (dq.array() / units).matrix().norm();
-      if (length > kLongestStep) dq *= kLongestStep / length;
-      block.q.row(lane) += dq.transpose().array();
+      block.q.row(lane) += dq.row(lane);
     }
     if (going < 0 || (left < kExact / 10).count() >= enough) break;
   }
@@ -174,8 +194,8 @@ std::vector<int> NewtonStep::reach(const Eigen::VectorXd& wanted, int enough,
     if (left[lane] < kExact) reached.push_back(lane);
   // Once more: down to rounding, by which a structural rank is judged.
   evaluate(block);
-  for (const int lane : reached)
-    block.q.row(lane) += step(lane, miss(lane, wanted)).transpose().array();
+  const Eigen::ArrayXXd last = steps(misses(everywhere));
+  for (const int lane : reached) block.q.row(lane) += last.row(lane);
   robot_.locate(block, truth_.xi, data_.sets[set_].method->body(), X_, nullptr);
   return reached;
 }

@@ -1,4 +1,4 @@
-// Newton's step on the residual of one row, at up to kLanes configurations at once:
+// Newton's step on the residual of a row of one set, at up to kLanes configurations at once:
 //   dq = (G J)^+ (wanted - r),   J the joint Jacobian of the method's body,
 // the least change of the readings that makes the residual what is wanted as far as it is linear.
 #pragma once
@@ -14,9 +14,10 @@ namespace selfcal {
 /// its angles are what the instrument then reads.
 class NewtonStep {
  public:
-  /// Of `row` of `data`, with parameters, own and group values `truth`; the residual of a paired
-  /// method is counted against `before`. All must outlive this.
-  NewtonStep(const Robot& robot, const DataSet& data, const State& truth, int row,
+  /// Of `rows` of `data`, all of one set, a lane each and the last in the lanes after them, with
+  /// parameters, own and group values `truth`; the residual of a paired method is counted against
+  /// `before`. All must outlive this.
+  NewtonStep(const Robot& robot, const DataSet& data, const State& truth, std::vector<int> rows,
              const Locations& before, const std::vector<int>& held = {});
 
   /// Takes residuals and derivatives at `block`.
@@ -24,13 +25,13 @@ class NewtonStep {
 
   const Locations& X() const { return X_; }  ///< of the method's body
   bool closes(int lane) const { return closure_.closes(lane); }
-  /// wanted - r of a lane (one entry for each equation; m, rad).
-  Eigen::VectorXd miss(int lane, const Eigen::VectorXd& wanted) const;
-  /// How large a miss of a lane is: lengths as parts of the robot's size, or of how far from the
+  /// wanted - r (lanes x equations; m, rad); `wanted` has a row for each lane.
+  Eigen::ArrayXXd misses(const Eigen::ArrayXXd& wanted) const;
+  /// How large each lane's miss is: lengths as parts of the robot's size, or of how far from the
   /// world's origin the body is where that is more; rad.
-  double size_of_miss(int lane, const Eigen::VectorXd& miss) const;
-  /// dq of a lane (rad or m).
-  Eigen::VectorXd step(int lane, const Eigen::VectorXd& miss) const;
+  Lanes sizes_of(const Eigen::ArrayXXd& misses) const;
+  /// dq (lanes x joints; rad or m) of the lanes that close.
+  Eigen::ArrayXXd steps(const Eigen::ArrayXXd& misses) const;
 
   /// Moves the lanes of `block` to where the residual is `wanted`, down to rounding, until `enough`
   /// of them are there; returns those, ascending, with X() where they then are.
@@ -50,7 +51,8 @@ class NewtonStep {
   bool evaluated_ = false;
   Closure closure_;
   PsiBlock psi_;
-  Eigen::MatrixXd J_, GJ_;    ///< GJ_: as J_, a block of lanes for each equation
+  Eigen::MatrixXd J_;
+  Eigen::ArrayXXd GJ_;        ///< by lane, the joints of the first equation, then of the next
   Eigen::ArrayXXd products_;  ///< by lane, of GJ's rows with each other
   MethodOutput out_;
 };
