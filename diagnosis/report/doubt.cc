@@ -42,12 +42,10 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
 
 bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
 
-/// What a joint or a link that pushes back more than it is pushed would need. A tool may bend
-/// elsewhere than at its flange, which the law of tool_compliance has some numbers below zero for.
+/// What a joint, a link or a tool that pushes back more than it is pushed would need.
 std::string impossible_sign(const CauseResult& cause) {
   for (const NamedValue& v : cause.parameters)
-    if (gives_way(cause) && cause.effect != "tool_compliance" && v.positive &&
-        v.value + kDiagnosis.report.other_sign * v.sigma < 0)
+    if (gives_way(cause) && v.positive && v.value + kDiagnosis.report.other_sign * v.sigma < 0)
       return "no machine has " + v.name + " below zero, and the rows would need " +
              in_readable_unit(v.value, v.unit) + ": something else pulls where its weight would";
   return {};
