@@ -35,12 +35,17 @@ struct EffectPlace {
   bool whole() const { return joint < 0 && set < 0; }
 };
 
-/// An effect in one shape; those `beside` it take up its errors.
+/// A shape that takes up what another has wrong.
+struct Slack {
+  EffectShape shape = {};
+  double doubt = 0.25;  ///< its size over the other's
+};
+
+/// An effect in one shape, with what is wrong with it.
 struct Supposition {
   std::string effect, at;
   EffectShape shape = {};
-  std::vector<EffectShape> beside = {};
-  double doubt = 0.25;   ///< size of what is beside over its own
+  std::vector<Slack> slack = {};
   int together = 0;      ///< not 0: the first so many of the same effect and place as one
   bool profile = false;  ///< asked for only once it is known to be there
   double share = 1;      ///< how likely beside the effect's other shapes at its place
@@ -55,8 +60,8 @@ struct Untestable {
 /// What the effects suppose, in the order of effects.def.
 class Suppositions {
  public:
-  void add(std::string at, EffectShape shape = {}, std::vector<EffectShape> beside = {}) {
-    list_.push_back({std::string(effect_), std::move(at), std::move(shape), std::move(beside)});
+  void add(std::string at, EffectShape shape = {}, std::vector<Slack> slack = {}) {
+    list_.push_back({std::string(effect_), std::move(at), std::move(shape), std::move(slack)});
   }
   void cannot(std::string at, std::string why) {
     untestable_.push_back({std::string(effect_), std::move(at), std::move(why)});

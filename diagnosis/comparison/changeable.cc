@@ -100,7 +100,7 @@ class Builder {
 
   void add(const std::string& effect, const std::string& at, const std::vector<int>& columns,
            std::vector<EffectParameter> parameters) {
-    Candidate candidate{.effect = effect, .at = at, .doubt = 0};
+    Candidate candidate{.effect = effect, .at = at};
     for (size_t k = 0; k < columns.size(); ++k) {
       candidate.main.push_back(static_cast<int>(all_.columns.size()));
       all_.columns.push_back(columns[k]);

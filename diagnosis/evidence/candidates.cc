@@ -70,8 +70,10 @@ class Maker {
     const int parameters = parameters_;
     Problems problems;
     candidate.needs = take(candidate, supposed.shape, candidate.main, problems);
-    for (const EffectShape& each : supposed.beside)
-      take(candidate, each, candidate.slack, problems);
+    for (const Slack& each : supposed.slack) {
+      candidate.slack.push_back({.doubt = each.doubt});
+      take(candidate, each.shape, candidate.slack.back().list, problems);
+    }
     if (problems.any() || candidate.main.empty()) {
       all_.made.erase(all_.made.begin() + made, all_.made.end());
       parameters_ = parameters;
@@ -85,8 +87,6 @@ class Maker {
       return;
     }
     candidate.shape = supposed.shape;
-    candidate.beside = supposed.beside;
-    candidate.doubt = supposed.doubt;
     candidate.share = share * supposed.share;
     if (supposed.shape.moment) candidate.between = around(*supposed.shape.moment, place.set);
     if (supposed.drifts && data_.order_is_time) candidate.meant = kDiagnosis.shapes.order_as_time;

@@ -18,17 +18,21 @@
 
 namespace selfcal {
 
+/// Parameters that only take up what a candidate's own have wrong.
+struct SlackParameters {
+  std::vector<int> list = {};  ///< counted over all candidates' effects
+  double doubt = 0;            ///< size of these, together, over its own
+};
+
 struct Candidate {
   std::string effect, at;  ///< at is empty for the whole robot
   EffectShape shape = {};
-  std::vector<EffectShape> beside = {};  ///< of the same effect, that take up what it has wrong
-  std::vector<int> main = {};            ///< its parameters, counted over all candidates' effects
-  std::vector<int> slack = {};  ///< parameters that only take up what the main ones have wrong
-  double doubt = 0.25;          ///< size of those, together, over the main ones
-  int joint = -1;               ///< at which it acts; -1 elsewhere
-  std::string needs = {};       ///< what rows must have so that it can be seen
-  double share = 1;             ///< of its shape among the shapes at its place
-  double log_prior = 0;         ///< of the place and the shape within the family
+  std::vector<int> main = {};  ///< its parameters, counted over all candidates' effects
+  std::vector<SlackParameters> slack = {};  ///< a shape of the same effect each
+  int joint = -1;                           ///< at which it acts; -1 elsewhere
+  std::string needs = {};                   ///< what rows must have so that it can be seen
+  double share = 1;                         ///< of its shape among the shapes at its place
+  double log_prior = 0;                     ///< of the place and the shape within the family
   /// Of a step: the last row before it, the first one behind (s).
   std::optional<std::pair<double, double>> between = {};
   /// Probability that it is meant where it explains; else it is what no candidate has.

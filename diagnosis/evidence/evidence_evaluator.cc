@@ -21,7 +21,8 @@ EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovar
   Groups groups;
   for (const Candidate& candidate : all.list) {
     groups.push_back(candidate.main);
-    groups.back().insert(groups.back().end(), candidate.slack.begin(), candidate.slack.end());
+    for (const SlackParameters& slack : candidate.slack)
+      groups.back().insert(groups.back().end(), slack.list.begin(), slack.list.end());
   }
   rows_ = std::make_shared<const EvidenceRows>(std::make_shared<const Whitened>(std::move(rows)),
                                                groups);
@@ -82,11 +83,13 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
       if (parameters[static_cast<size_t>(k)].positive)
         block.positive.push_back(static_cast<int>(unit.size()) - 1);
     }
-    double slack = 0;
-    for (const int k : candidate.slack) slack += rows.C.col(k).squaredNorm();
-    for (const int k : candidate.slack) {
-      block.columns.push_back(k);
-      unit.push_back(slack > 0 ? candidate.doubt * scale * std::sqrt(whole / slack) : 0);
+    for (const SlackParameters& slack : candidate.slack) {
+      double squares = 0;
+      for (const int k : slack.list) squares += rows.C.col(k).squaredNorm();
+      for (const int k : slack.list) {
+        block.columns.push_back(k);
+        unit.push_back(squares > 0 ? slack.doubt * scale * std::sqrt(whole / squares) : 0);
+      }
     }
     block.unit =
         Eigen::Map<const Eigen::VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));

@@ -53,7 +53,7 @@ ChosenEffects best_shapes(const LinearisedModel& linearised, const DataSet& data
     std::map<std::string, std::pair<double, int>> best;  // by place
     for (int c = 0; c < static_cast<int>(all.list.size()); ++c) {
       const Candidate& candidate = all.list[c];
-      if (!is_asked(candidate, each) || !candidate.beside.empty()) continue;
+      if (!is_asked(candidate, each) || !candidate.slack.empty()) continue;
       const double evidence = evaluator.evidence(c);
       const auto [slot, made] =
           best.try_emplace(candidate.at, -std::numeric_limits<double>::infinity(), -1);

@@ -1,12 +1,17 @@
 // Compliance of a joint: it gives way to the torque that it carries,
 //   delta q_j = c tau_j(q, load)
 // (Kamali et al., equations 6 to 16, with one stiffness 1 / c a joint), in a machine with loops by
-// virtual work. Without masses, or with `lumps: true`, free first moments of carried links make it,
-//   delta q_j = z_j . (sum over links k that turn of x_k X_k + y_k Y_k
+// virtual work. Gears of flexible splines stiffen under load: `by: square` is
+//   delta q_j = c2 tau_j |tau_j|,   c2 below zero. Without masses, or with `lumps: true`, free
+//   first moments of carried links make it, delta q_j = z_j . (sum over links k that turn of x_k
+//   X_k + y_k Y_k
 //                      + sum over slides k of z_k l_k Z_k) x g / |g|
 // X_k Y_k Z_k the link's axes, l_k how far a slide is out: the least set that gives any chain its
 // torque. The force on a slide is its weight alone, delta q_j = z_j Z_j . g / |g|.
-// c: rad/(N m), m/N prismatic; x_k, y_k: rad; z_k: rad/m, of a slide itself m.
+// c: rad/(N m), m/N prismatic; c2: the same per N m or N; x_k, y_k: rad; z_k: rad/m, of a slide
+// itself m.
+#include <cmath>
+
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
 #include "kinematics/statics.h"
@@ -22,6 +27,14 @@ class JointCompliance final : public Effect {
     const bool turns = plan.robot.joints()[static_cast<size_t>(joint)].quantity == Quantity::angle;
     silent_ = chain && !chain->masses_known();
     if (chain) lumps_ = plan.fields.flag("lumps", silent_ && !plan.context.loads);
+    const std::string by = plan.fields.text("by", "torque");
+    square_ = by == "square";
+    if (!square_ && by != "torque") plan.fields.fail("by", "torque or square");
+    if (square_ && lumps_) plan.fields.fail("by", "torque: there are no masses to square it of");
+    if (square_) {
+      parameters_ = {{"c2", turns ? "rad/(N m)^2" : "m/N^2", 1e-10, 2e-6}};
+      return;
+    }
     if (!lumps_) {
       parameters_ = {{"c", turns ? "rad/(N m)" : "m/N", 1.5e-7, 1e-4, true}};
       return;
@@ -44,7 +57,8 @@ class JointCompliance final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (!lumps_) {
-      into.joints(joint_, 0) = at.torque[joint_];
+      const double torque = at.torque[joint_];
+      into.joints(joint_, 0) = square_ ? torque * std::abs(torque) : torque;
       return;
     }
     const Link& own = at.mechanics->links[at.mechanics->link_of(joint_)];
@@ -81,12 +95,14 @@ class JointCompliance final : public Effect {
   }
 
   void describe_shape(Node& node) const override {
+    if (square_) node.set("by", Node::of(std::string("square")));
     // Which of the two a file without masses means depends on where it is read: it says so.
     if (lumps_ || silent_) node.set("lumps", Node::of(std::string(lumps_ ? "true" : "false")));
   }
 
   int joint_;
   bool lumps_ = false, silent_ = false;  ///< silent_: the maker gives no masses
+  bool square_ = false;                  ///< by: square
   std::vector<Lump> lumps_at_;
 };
 
@@ -115,8 +131,9 @@ void suppose_joint_compliance(const Supposed& rows, const EffectPlace& place, Su
   if (!(mechanics.gravity.norm() > 0) && !rows.context.loads) return;
   if (!mechanics.masses_known() && !rows.context.loads) return to.add(place.name, {.lumps = true});
   to.add(place.name);
-  to.add(place.name, {}, {{.lumps = true}});
-  if (mechanics.masses_assumed) to.last().doubt = rows.assumed;
+  Slack masses{.shape = {.lumps = true}};
+  if (mechanics.masses_assumed) masses.doubt = rows.assumed;
+  to.add(place.name, {}, {masses, {.shape = {.by = "square"}}});
 }
 
 }  // namespace selfcal

@@ -75,6 +75,19 @@ TEST(JointComplianceByHand, HasLumpsThatAreTheFirstMomentsTimesTheCompliance) {
   expect_near(beside.turn, 0, -50e-6, 0);
 }
 
+TEST(JointComplianceByHand, OfASpringThatStiffensGrowsWithTheSquareOfTheTorque) {
+  // At q = (30, 30) degrees tau_1 = 44.739 N m (see above), and tau_1^2 = 2001.6 (N m)^2; on the
+  // other side, q = (150, -30), tau_1 = 43.164 cos 150 + 14.715 cos 120 = -44.739 N m.
+  for (const double side : {1.0, -1.0}) {
+    const double first = side > 0 ? 30 : 150, second = side > 0 ? 30 : -30;
+    const Moved by = moved(two_links(true),
+                           "[{effect: joint_compliance, at: j1, c: 1.0e-6},"
+                           " {effect: joint_compliance, at: j1, by: square, c2: -5.0e-9}]",
+                           Held{numbers({first * kDegree, second * kDegree})});
+    expect_near(by.turn, 0, side * (44.739e-6 - 10.008e-6), 0);
+  }
+}
+
 TEST(JointComplianceByHand, HasForASlideOneLumpThatItsAxisTakesDown) {
   // An axis 60 degrees off the vertical, (0, -sin 60, cos 60): gravity pulls along it by -cos 60 of
   // what hangs there, 100 um for all of it: 50 um back, whatever turns behind it.

@@ -29,6 +29,7 @@ inline std::vector<EffectCase> effect_cases() {
   return {
       {"JointCompliance", "effect: joint_compliance, at: JOINT"},
       {"JointComplianceByLumps", "effect: joint_compliance, at: JOINT, lumps: true"},
+      {"JointComplianceOfASpringThatStiffens", "effect: joint_compliance, at: JOINT, by: square"},
       {"LinkCompliance", "effect: link_compliance, at: JOINT"},
       {"TransmissionError", "effect: transmission_error, at: JOINT"},
       {"TransmissionErrorOfManyWaves",

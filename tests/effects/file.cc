@@ -171,6 +171,8 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: joint_compliance, at: base}", "j1, j2, j3"},
       {"{effect: joint_compliance, at: j2, c: soft}", "'c'"},
       {"{effect: joint_compliance, at: j2, lumps: maybe}", "lumps"},
+      {"{effect: joint_compliance, at: j2, by: cube}", "torque or square"},
+      {"{effect: joint_compliance, at: j2, by: square, lumps: true}", "no masses"},
       {"{effect: joint_compliance, at: j2, named: perhaps}", "named"},
       {"{effect: link_compliance, at: j2, bend_z: 1}", "bend_z"},
       {"{effect: transmission_error, at: j1, waves: [1, 0]}", "waves"},
