@@ -54,7 +54,7 @@ struct DiagnosisConstants {
     std::array<double, 3> of_visits = {1, 0.5, 0};  ///< shares of a visit's noise [trials]
   };
   struct Evidence {
-    double right_sign = 0.95;  ///< prior, of the sign that physics allows; 0.5 to 1 [trials]
+    double right_sign = 0.99;  ///< prior, of the sign that physics allows; 0.9 to 1 [physics]
     /// Share beyond the nuisance parameters below which a candidate says nothing; 1e-6 to 0.02
     /// [habit]
     double least_seen = 1e-3;

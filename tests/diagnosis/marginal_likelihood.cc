@@ -115,7 +115,7 @@ TEST(MarginalLikelihood, TakesNoNoiseForLessThanItsDataSheetSays) {
 }
 
 /// log of the integral over s and v = s u of one column's likelihood times its prior, which has
-/// 0.95 of its mass where v is positive, over the same with a prior that is even: by sums.
+/// 0.99 of its mass where v is positive, over the same with a prior that is even: by sums.
 double worth_of_sign(double yy, double g, double G, double nu, double prior) {
   double signed_sum = 0, even_sum = 0;
   constexpr double kStep = 0.01;
@@ -125,7 +125,7 @@ double worth_of_sign(double yy, double g, double G, double nu, double prior) {
       const double each = std::exp(-nu * log_s - (yy / (s * s) - 2 * g * u / s + G * u * u) / 2 -
                                    in_priors * in_priors / 2);
       even_sum += each;
-      signed_sum += 2 * (u > 0 ? 0.95 : 0.05) * each;
+      signed_sum += 2 * (u > 0 ? 0.99 : 0.01) * each;
     }
   return std::log(signed_sum / even_sum);
 }
@@ -144,8 +144,8 @@ TEST(MarginalLikelihood, BelievesTheSignThatPhysicsAllows) {
                 worth_of_sign(likelihood.total(), likelihood.right()[3], likelihood.gram({3})(0, 0),
                               likelihood.freedom(), even.unit[0]),
                 1e-3);
-    EXPECT_LE(worth, std::log(1.9));
-    EXPECT_GE(worth, std::log(0.1));
+    EXPECT_LE(worth, std::log(1.98));
+    EXPECT_GE(worth, std::log(0.02));
     EXPECT_NEAR(likelihood.given(with).log_evidence({}), likelihood.log_evidence(with),
                 kEvidenceRounding);
     EXPECT_NEAR(likelihood.log_evidence(with, likelihood.gram({3})), likelihood.log_evidence(with),
