@@ -211,7 +211,7 @@ std::vector<PlannedTouch> TouchCandidates::entered(const TouchTarget& target, co
     q.row(i) = made[move / ends].touch.transpose();
   }
   const auto out = moved_to_residuals(robot_, data, truth, from, wanted, q);
-  std::vector<PlannedTouch> entered;
+  std::vector<PlannedTouch> free;
   for (std::size_t i = 0; i < made.size(); ++i) {
     const auto end = out.begin() + static_cast<std::ptrdiff_t>(ends * i);
     if (!std::all_of(end, end + static_cast<std::ptrdiff_t>(ends),
@@ -223,9 +223,9 @@ std::vector<PlannedTouch> TouchCandidates::entered(const TouchTarget& target, co
       touch.start = *end[1];
       touch.end = *end[2];
     }
-    if (free_to_enter(target, touch)) entered.push_back(touch);
+    if (free_to_enter(target, touch)) free.push_back(touch);
   }
-  return entered;
+  return free;
 }
 
 bool TouchCandidates::free_to_enter(const TouchTarget& target, const PlannedTouch& touch) const {

@@ -177,9 +177,9 @@ class Sampler {
       return true;
     }
     for (int attempt = 0; attempt < request.tries; ++attempt) {
-      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
       ConfigurationBlock block = starts();
       Locations X;
+      const bool must = method.constrains() && !(method.paired() && last_of_group < 0);
       const std::vector<int> found =
           must ? newton(method, wanted, row, last_of_group, request.held, block, X)
                : everywhere(method, block, X);

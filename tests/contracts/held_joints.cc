@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "constraints/identifiability/excitation.h"
-#include "tests/contracts/arm.h"
-#include "tests/contracts/method_case.h"
+#include "tests/contracts/constrained_positions.h"
 
 namespace selfcal {
 namespace {
@@ -17,13 +16,7 @@ StructuralRank told_with(const std::string& sets, const std::vector<int>& held) 
 
 TEST(HeldJoint, StaysAtOneReadingWhileTheConstraintIsMet) {
   const auto arm = six_axis_arm();
-  DataSet data;
-  data.sets = make_sets("s: {method: position-constraint}");
-  SampleRequest request;
-  request.rows = 24;
-  request.held = {3};
-  Random random(4);
-  const Sampled sampled = sample_rows(*arm, values(*arm), {request}, random, data);
+  const auto [data, sampled] = at_constrained_positions(*arm, 24, {3});
   ASSERT_EQ(sampled.unreached, "");
   const Eigen::VectorXd q = data.rows.q.col(3);
   EXPECT_TRUE((q.array() == q[0]).all());

@@ -1,23 +1,17 @@
 // Rows that are moved to a wanted residual, more at once than there are lanes.
 #include <gtest/gtest.h>
 
-#include "constraints/sampling/configurations.h"
 #include "constraints/sampling/contact.h"
-#include "tests/contracts/arm.h"
-#include "tests/contracts/method_case.h"
+#include "tests/contracts/constrained_positions.h"
 
 namespace selfcal {
 namespace {
 
 TEST(MovedRows, AreWhereEachAloneComesAndHaveTheWantedResidual) {
   const auto arm = six_axis_arm();
-  DataSet data;
-  data.sets = make_sets("s: {method: position-constraint}");
-  SampleRequest request;
-  request.rows = 40;
-  Random random(4);
-  const Sampled sampled = sample_rows(*arm, values(*arm), {request}, random, data);
+  const auto [data, sampled] = at_constrained_positions(*arm, 40);
   ASSERT_EQ(sampled.unreached, "");
+  Random random(5);
   std::vector<int> rows;
   Eigen::MatrixXd wanted(40, 3);
   std::uniform_real_distribution<double> metres(-2e-3, 2e-3);
@@ -45,12 +39,7 @@ TEST(MovedRows, AreWhereEachAloneComesAndHaveTheWantedResidual) {
 /// Farther than a machine gives way the place is another one.
 TEST(MovedRows, ThatWouldHaveToGoFarAreNotMoved) {
   const auto arm = six_axis_arm();
-  DataSet data;
-  data.sets = make_sets("s: {method: position-constraint}");
-  SampleRequest request;
-  request.rows = 4;
-  Random random(4);
-  const Sampled sampled = sample_rows(*arm, values(*arm), {request}, random, data);
+  const auto [data, sampled] = at_constrained_positions(*arm, 4);
   Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(4, 3);
   wanted(1, 0) = 50;
   const auto moved =
