@@ -224,12 +224,31 @@ EvidenceEvaluator::Single EvidenceEvaluator::weigh_alone(int structure, int cand
   return over_sizes(candidate, logs);
 }
 
+double EvidenceEvaluator::sized(Hypothesis& h) const {
+  const MarginalLikelihood& own = marginal_likelihoods_[h.structure];
+  const Eigen::MatrixXd G = own.gram(MarginalLikelihood::unfold(terms(h)).first);
+  double log_evidence = -INFINITY;
+  for (std::size_t i = 0; i < h.candidates.size(); ++i) {
+    std::array<double, kSizes.size()> logs{};
+    for (std::size_t k = 0; k < kSizes.size(); ++k) {
+      h.sizes[i] = kSizes[k];
+      logs[k] = own.log_evidence(terms(h), G);
+    }
+    const Single single = over_sizes(h.candidates[i], logs);
+    h.sizes[i] = single.size;
+    log_evidence = single.log_sum + held(h) - held(h.candidates[i], h.sizes[i]);
+  }
+  return log_evidence;
+}
+
+double EvidenceEvaluator::held(int candidate, double size) const {
+  // It stays at the best of the grid, about two of which matter.
+  return plausibility(candidate, size) - std::log(static_cast<double>(kSizes.size()) / 2);
+}
+
 double EvidenceEvaluator::held(const Hypothesis& h) const {
-  // The sizes of candidates at hand stay at their best: one of the grid, about two of which matter.
   double sum = 0;
-  for (size_t i = 0; i < h.candidates.size(); ++i)
-    sum += plausibility(h.candidates[i], h.sizes[i]) -
-           std::log(static_cast<double>(kSizes.size()) / 2);
+  for (size_t i = 0; i < h.candidates.size(); ++i) sum += held(h.candidates[i], h.sizes[i]);
   return sum;
 }
 

@@ -101,7 +101,12 @@ class EvidenceEvaluator {
   Hypothesis best_alone(int structure) const;
   /// Of `one` and it with the best candidate beside it, `rest` being what `one` leaves.
   Found better(const Hypothesis& one, const MarginalLikelihood& rest) const;
+  /// Priors of sizes that stay as they are.
   double held(const Hypothesis& h) const;
+  double held(int candidate, double size) const;
+  /// Gives each cause the size that is most probable beside the others, one after the other. Its
+  /// log evidence, without the prior of the set.
+  double sized(Hypothesis& h) const;
   Hypothesis with(Hypothesis h, int candidate, const MarginalLikelihood& rest) const;
   Hypothesis with_best(const Hypothesis& h, const MarginalLikelihood& rest) const;
   Hypothesis pruned(Hypothesis h) const;

@@ -24,7 +24,11 @@ class Search {
     visit_singles();
     extend(best_of(1, singles));
     keep_best();
-    extend(best_of(2, pairs));
+    const std::vector<Visit> best_pairs = best_of(2, pairs);
+    visit_elsewhere(best_pairs);
+    extend(best_pairs);
+    keep_best();
+    visit_elsewhere(best_of(3, pairs));
     keep_best();
     return posterior();
   }
@@ -150,6 +154,22 @@ class Search {
         note(more, single.log_sum + held);
       }
     }
+  }
+
+  /// Sets of causes in all other structures that are kept. Where one cause is missing its share
+  /// looks like structure, so that a set may have been reached in a structure that it makes
+  /// needless.
+  void visit_elsewhere(const std::vector<Visit>& sets) {
+    for (const Visit& each : sets)
+      for (int s = 0; s < evaluator_.structures(); ++s) {
+        if (!kept_[s] || s == each.structure) continue;
+        Visit other = each;
+        other.structure = s;
+        Hypothesis h = other.hypothesis();
+        const double log_evidence = evaluator_.sized(h);
+        for (int i = 0; i < other.count; ++i) other.sizes[i] = h.sizes[i];
+        note(other, log_evidence);
+      }
   }
 
   Posterior posterior() {
