@@ -109,6 +109,22 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   return words;
 }
 
+/// ". zero_shift at j4 steps 3 times: …", of what is named and found at several moments.
+std::string repeated_steps(const Diagnosis& diagnosis) {
+  std::string words;
+  for (const CauseResult& each : diagnosis.named) {
+    for (const std::string& at : each.where) {
+      const auto steps = std::ranges::count_if(diagnosis.found, [&](const FoundEffect& found) {
+        return found.what.effect == each.effect && found.what.at == at && found.what.shape.moment;
+      });
+      if (steps > 1)
+        words += ". " + each.effect + " at " + at + phrase(" steps %td times: something ", steps) +
+                 "there slips again and again, or wanders";
+    }
+  }
+  return words;
+}
+
 /// Causes that are more probable than none, though noise may have made them: "backlash at j1 (41 %
 /// sure)".
 std::string likelier_than_none(const Diagnosis& diagnosis) {
@@ -182,7 +198,8 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect == kNone) return no_cause(diagnosis);
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
-           beside_the_unknown(diagnosis) + unusual_sizes(diagnosis.named);
+           repeated_steps(diagnosis) + beside_the_unknown(diagnosis) +
+           unusual_sizes(diagnosis.named);
   const std::string beside = besides(diagnosis);
   if (!diagnosis.scatter.empty())
     return "no known effect explains the gap (" + sure(verdict.probability) +
@@ -191,8 +208,8 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            "configurations at once, which tells the noise";
   return "no known effect explains the gap (" + sure(verdict.probability) +
          phrase("; noise alone does in %.2g of cases)", diagnosis.p_value) +
-         how_it_errs(diagnosis.unknown) + beside + advice_on_unknown(diagnosis.unknown) +
-         unusual_sizes(diagnosis.named);
+         how_it_errs(diagnosis.unknown) + beside + repeated_steps(diagnosis) +
+         advice_on_unknown(diagnosis.unknown) + unusual_sizes(diagnosis.named);
 }
 
 std::string names_in_words(const std::vector<CauseResult>& causes) {

@@ -20,9 +20,11 @@ std::string time_in_words(double seconds, bool order_is_time) {
   return text;
 }
 
-/// What the linear parameters do not say of it; a step lies `between` two rows.
+/// What the linear parameters do not say of it; a step lies `between` two rows, and others of the
+/// same cause are at `further` moments.
 std::string in_words(const EffectShape& shape,
-                     const std::optional<std::pair<double, double>>& between, bool order_is_time) {
+                     const std::optional<std::pair<double, double>>& between,
+                     const std::vector<double>& further, bool order_is_time) {
   const auto time = [&](double seconds) { return time_in_words(seconds, order_is_time); };
   const auto lasting = [&](double seconds) {
     char text[32];
@@ -36,6 +38,8 @@ std::string in_words(const EffectShape& shape,
   if (between)
     parts.push_back("between " + rows + time(between->first) + " and " + time(between->second) +
                     unit);
+  for (const double moment : further)
+    parts.push_back("again from " + row + time(moment) + unit + " on");
   if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
   if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
   if (shape.by == "temperature") parts.emplace_back("following the temperature");
@@ -115,7 +119,7 @@ class Teller {
         const Eigen::VectorXd v = estimate.mean.segment(first, size);
         squares += v.dot(evaluator_.marginal_likelihood(0).gram(block.columns) * v);
         cause.beyond_nuisance = std::max(cause.beyond_nuisance, evaluator_.beyond_nuisance(c));
-        add_parameters(c, estimate, first, cause);
+        add_parameters(c, estimate, first, further_moments(*found, c), cause);
         evaluator_.add_sigma(c, found->sizes[i], cause.correction.back().sigma);
       }
       first += size;
@@ -125,13 +129,24 @@ class Teller {
                               evaluator_.noise_variance(0) / noise);
   }
 
+  /// The moments of the hypothesis' steps of one cause, but for the first of them.
+  std::vector<double> further_moments(const Hypothesis& h, int first) const {
+    std::vector<double> moments;
+    for (const int c : h.candidates)
+      if (c != first && candidate(c).effect == candidate(first).effect &&
+          candidate(c).at == candidate(first).at && candidate(c).shape.moment)
+        moments.push_back(*candidate(c).shape.moment);
+    std::ranges::sort(moments);
+    return moments;
+  }
+
   void add_parameters(int c, const MarginalLikelihood::Estimate& estimate, Eigen::Index first,
-                      CauseResult& cause) const {
+                      const std::vector<double>& further, CauseResult& cause) const {
     const Candidate& found = candidate(c);
     FoundEffect effect{.what = {found.effect, found.at, found.shape}};
     if (cause.shape.empty()) {
       if (found.between) cause.between = when(found);
-      cause.shape = in_words(found.shape, cause.between, linearised_.order_is_time());
+      cause.shape = in_words(found.shape, cause.between, further, linearised_.order_is_time());
     }
     for (size_t k = 0; k < candidate(c).main.size(); ++k) {
       const EffectParameter& p = linearised_.parameters()[candidate(c).main[k]];

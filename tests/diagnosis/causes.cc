@@ -219,6 +219,28 @@ TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
             "others, 60 % alone). Noise alone explains as much in 0.005 of cases");
 }
 
+TEST(VerdictInWords, TellsOfStepsThatComeAgain) {
+  Diagnosis diagnosis = with({.effect = "zero_shift", .where = {"j4"}, .probability = 0.97});
+  diagnosis.candidates.clear();
+  const auto step = [&](const char* at, double moment) {
+    FoundEffect found;
+    found.what = {"zero_shift", at, {}};
+    found.what.shape.moment = moment;
+    diagnosis.found.push_back(found);
+  };
+  step("j4", 1126);
+  step("j3", 900);
+  const std::string once =
+      "zero_shift at j4 causes the gap (97 % sure). Noise alone explains as "
+      "much in 0.005 of cases";
+  EXPECT_EQ(verdict_in_words(diagnosis), once);
+  step("j4", 3758);
+  EXPECT_EQ(verdict_in_words(diagnosis),
+            once +
+                ". zero_shift at j4 steps 2 times: something there slips again and again, or "
+                "wanders");
+}
+
 TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   std::vector<CauseResult> causes = {
       {.effect = "backlash", .probability = 0.9, .together = 0.9},
