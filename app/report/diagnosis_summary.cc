@@ -12,7 +12,6 @@ namespace selfcal {
 namespace {
 
 constexpr size_t kMostListedCauses = 6;
-constexpr double kNothing = 0.01;  ///< of its sigma, below which a value's digits say nothing
 
 std::string millimetres(double metres) { return plain_figure(1e3 * metres, 4); }
 
@@ -37,6 +36,27 @@ std::string gap_lines(const Diagnosis& diagnosis) {
   return text;
 }
 
+/// A line each of those that stand out from zero, and one of all others.
+std::string parameter_lines(const std::vector<NamedValue>& parameters) {
+  const std::string indent(17, ' ');
+  std::string text;
+  std::vector<std::string> near_zero;
+  for (size_t p = 0; p < parameters.size() && p < kMostListedCauses; ++p) {
+    const NamedValue& v = parameters[p];
+    const ReadableUnit unit = readable_unit(v.unit, std::max(std::abs(v.value), v.sigma));
+    const std::string doubt = "± " + plain_figure(unit.factor * v.sigma, 2) + " " + unit.name;
+    if (std::abs(v.value) < v.sigma) {
+      near_zero.push_back(v.name + " (" + doubt + ")");
+      continue;
+    }
+    text += indent + v.name + " = " + plain_figure(unit.factor * v.value) + " " + doubt +
+            " (usual " + plain_figure(unit.factor * v.usual_least, 1) + " to " +
+            plain_figure(unit.factor * v.usual_most, 1) + ")\n";
+  }
+  if (!near_zero.empty()) text += indent + "not told from zero: " + listed(near_zero) + "\n";
+  return text;
+}
+
 std::string cause_lines(const std::vector<CauseResult>& causes) {
   std::string text = "\n  probability  cause\n";
   for (size_t i = 0; i < causes.size() && i < kMostListedCauses; ++i) {
@@ -47,16 +67,7 @@ std::string cause_lines(const std::vector<CauseResult>& causes) {
     if (!each.shape.empty()) text += " " + each.shape;
     if (each.visible > 0) text += printed(", visible %.2g times the noise", each.visible);
     text += "\n";
-    for (size_t p = 0;
-         p < each.parameters.size() && each.of_its_kind() > 0.5 && p < kMostListedCauses; ++p) {
-      const NamedValue& v = each.parameters[p];
-      const ReadableUnit unit = readable_unit(v.unit, std::max(std::abs(v.value), v.sigma));
-      const double value = std::abs(v.value) < kNothing * v.sigma ? 0 : v.value;
-      text += "                 " + v.name + " = " + plain_figure(unit.factor * value) + " ± " +
-              plain_figure(unit.factor * v.sigma, 2) + " " + unit.name + " (usual " +
-              plain_figure(unit.factor * v.usual_least, 1) + " to " +
-              plain_figure(unit.factor * v.usual_most, 1) + ")\n";
-    }
+    if (each.of_its_kind() > 0.5) text += parameter_lines(each.parameters);
   }
   return text;
 }

@@ -123,7 +123,7 @@ TEST(DiagnosisSummary, GivesNoDigitsOfWhatIsNothingBesideItsSigma) {
   diagnosis.candidates = {
       {.effect = "link_compliance", .where = {"j1"}, .probability = 0.9, .p_value = 0.01}};
   diagnosis.candidates[0].parameters = {{"j1.twist", "rad/(N m)", -6e-12, 2.3e-6, 1e-8, 2e-5}};
-  EXPECT_THAT(summary(diagnosis), HasSubstr("j1.twist = 0 ± 2.3 urad/(N m)"));
+  EXPECT_THAT(summary(diagnosis), HasSubstr("not told from zero: j1.twist (± 2.3 urad/(N m))\n"));
 }
 
 TEST(DiagnosisSummary, SaysWhatToMeasureNextOrWhyNothing) {
