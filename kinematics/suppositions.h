@@ -49,6 +49,7 @@ struct Supposition {
   int together = 0;      ///< not 0: the first so many of the same effect and place as one
   bool profile = false;  ///< asked for only once it is known to be there
   double share = 1;      ///< how likely beside the effect's other shapes at its place
+  double odds = 1;       ///< of its effect, over those of another one: as machines have them
   bool drifts = false;   ///< smooth in time, as all is that goes with the places in their order
 };
 

@@ -88,6 +88,7 @@ class Maker {
     }
     candidate.shape = supposed.shape;
     candidate.share = share * supposed.share;
+    candidate.odds = supposed.odds;
     if (supposed.shape.moment) candidate.between = around(*supposed.shape.moment, place.set);
     if (supposed.drifts && data_.order_is_time) candidate.meant = kDiagnosis.shapes.order_as_time;
     all_.list.push_back(std::move(candidate));
@@ -195,7 +196,8 @@ class Maker {
         places.insert(other.at);
         if (other.at == each.at) shapes += other.share;
       }
-      each.log_prior = std::log(each.share / shapes) - std::log(static_cast<double>(places.size()));
+      each.log_prior =
+          std::log(each.odds * each.share / (shapes * static_cast<double>(places.size())));
     }
     // As probable as one of the shapes that it holds.
     for (Candidate& profile : all_.profiles)

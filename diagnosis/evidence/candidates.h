@@ -32,7 +32,8 @@ struct Candidate {
   int joint = -1;                           ///< at which it acts; -1 elsewhere
   std::string needs = {};                   ///< what rows must have so that it can be seen
   double share = 1;                         ///< of its shape among the shapes at its place
-  double log_prior = 0;                     ///< of the place and the shape within the family
+  double odds = 1;                          ///< of the family, over those of another one
+  double log_prior = 0;                     ///< with the place and the shape within the family
   /// Of a step: the last row before it, the first one behind (s).
   std::optional<std::pair<double, double>> between = {};
   /// Probability that it is meant where it explains; else it is what no candidate has.

@@ -15,6 +15,9 @@ namespace selfcal {
 namespace {
 
 constexpr double kGauss = 0.5 * std::numbers::inv_sqrt3;  ///< from the middle
+/// Of a bending link over other causes. A joint's spring looks much like it, and links are quite
+/// stiffer than joints, so that many leave them rigid (Dumas et al., Robotica 2011, as above).
+constexpr double kOverOthers = 0.3;
 
 class LinkCompliance final : public Effect {
  public:
@@ -64,7 +67,8 @@ void suppose_link_compliance(const Supposed& rows, const EffectPlace& place, Sup
   if (mechanics.masses_known() || rows.context.loads)
     to.add(place.name);
   else
-    to.cannot(place.name, "the robot file gives no masses and the rows no loads");
+    return to.cannot(place.name, "the robot file gives no masses and the rows no loads");
+  to.last().odds = kOverOthers;
 }
 
 }  // namespace selfcal
