@@ -3,10 +3,13 @@
 #include <algorithm>
 
 #include "constraints/estimation/check_comparison.h"
+#include "constraints/statistics.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
+
+constexpr double kMetBetter = 0.8;  ///< of what half the rows were met to before
 
 double doubt_from(const Solution& solution, std::string_view source) {
   const std::vector<BudgetLine>& budget = solution.uncertainty.budget;
@@ -44,6 +47,16 @@ std::string what_helps(const Solution& solution) {
 
 }  // namespace
 
+bool seem_met_better(const Residuals& residual) {
+  std::vector<double> before, after;
+  for (const RowFigure& row : residual.rows)
+    if (row.check) {
+      before.push_back(row.before);
+      after.push_back(row.after);
+    }
+  return !before.empty() && median(after) < kMetBetter * median(before);
+}
+
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
   for (const std::string& warning : solution.warnings)
     if (warning.starts_with(kFilesFirst)) return {warning};
@@ -76,6 +89,13 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         with_figures("The end position is known to %.3g mm only. ", 1e3 * solution.workspace.rms) +
         what_helps(solution));
+  else if (solution.verdict.answer == Answer::not_improved && seem_met_better(solution.residual))
+    steps.push_back(
+        with_figures("Keep more configurations aside than %.0f (column part)",
+                     solution.residual.check.configurations) +
+        (solution.residual.check.rms_without_outliers < solution.residual.check.rms_after
+             ? ", and look at those beyond the noise: they hide how the others are met."
+             : ": of so few a gain may be chance."));
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
   else if (solution.verdict.answer == Answer::not_determined &&

@@ -14,6 +14,9 @@ namespace selfcal {
 /// said of what to do next, for other advice presumes that they belong together.
 inline constexpr std::string_view kFilesFirst = "Look at the files first: ";
 
+/// The rows that judge are met better in their middle, whatever a test says of so many.
+bool seem_met_better(const Residuals& residual);
+
 /// What to do next, a sentence each.
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution);
 

@@ -180,7 +180,10 @@ std::string headline(const Solution& solution) {
     case Answer::improved:
       return "Improved: " + figures + ".";
     case Answer::not_improved:
-      return "Not improved: the maker's figures explain the rows as well" +
+      return std::string("Not improved: ") +
+             (seem_met_better(solution.residual)
+                  ? "that these rows are met better may be chance, for all that they can tell"
+                  : "the maker's figures explain the rows as well") +
              (figures.empty() ? std::string() : " (" + figures + ")") + ".";
     case Answer::not_determined:
       break;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "constraints/equations/equations.h"
 
@@ -30,6 +31,22 @@ std::vector<Item> all_items(const DataSet& data, int set) {
 
 bool is_check(const DataSet& data, const Item& item) {
   return data.rows.check[item.row] || (item.previous >= 0 && data.rows.check[item.previous]);
+}
+
+/// The rows that identify give at least as many equations as the set has unknowns of its own,
+/// repeats of a configuration counted once: fewer leave it anywhere, and say nothing of other rows.
+bool is_placed(const DataSet& data, int set, const std::vector<Item>& items) {
+  const Method& method = *data.sets[set].method;
+  const auto equations = static_cast<int>(method.equations().size());
+  std::set<int> repeats;
+  int configurations = 0;
+  for (const Item& item : items) {
+    if (is_check(data, item)) continue;
+    const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[item.row];
+    if (repeat >= 0 && !repeats.insert(repeat).second) continue;
+    if (++configurations * equations >= method.tangent_dimension()) return true;
+  }
+  return false;
 }
 
 /// Groups of the set that have at least one `fit` item.
@@ -134,13 +151,12 @@ void Equations::make_plan(int set, Use use) {
   std::vector<Item> items = all_items(data_, set);
   const std::vector<OpenItem> open = take_open(set, items);
   const std::vector<char> fitted = fitted_groups(data_, set, items);
-  const bool any_fit = std::any_of(items.begin(), items.end(),
-                                   [&](const Item& item) { return !is_check(data_, item); });
+  const bool placed = is_placed(data_, set, items);
   const bool grouped = method.group_freedom() > 0;
   const auto takes_part = [&](const Item& item) {
     const bool check = is_check(data_, item);
     if (use == Use::align)
-      return check && (grouped ? !fitted[data_.rows.group[item.row]] : !any_fit);
+      return check && (grouped ? !fitted[data_.rows.group[item.row]] : !placed);
     return use == Use::fit ? !check : check;
   };
   for (const OpenItem& each : open)

@@ -94,6 +94,21 @@ bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, con
   return f_exceeds(gain / extra / (after / left), extra, left) > 0.01;
 }
 
+/// Most `poses` (a row each) have a joint beyond its least or its most reading of the rows that
+/// identify.
+bool lie_beyond(const Observations& rows, const Eigen::MatrixXd& poses) {
+  Eigen::RowVectorXd least = Eigen::RowVectorXd::Constant(poses.cols(), INFINITY), most = -least;
+  for (Eigen::Index row = 0; row < rows.q.rows(); ++row)
+    if (rows.check[static_cast<std::size_t>(row)] == 0) {
+      least = least.cwiseMin(rows.q.row(row));
+      most = most.cwiseMax(rows.q.row(row));
+    }
+  Eigen::Index within = 0;
+  for (const auto& pose : poses.rowwise())
+    within += (pose.array() >= least.array()).all() && (pose.array() <= most.array()).all();
+  return 2 * within < poses.rows();
+}
+
 bool nothing_free(const Adjusted& adjusted) {
   const std::vector<char>& free = adjusted.prior.free;
   return std::find(free.begin(), free.end(), char{1}) == free.end();
@@ -207,6 +222,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
                   solution.orientation_seen,
                   fitted.converged,
                   nominal_explains(adjusted, rank, solution.residual.fit),
+                  lie_beyond(data.rows, question.poses),
                   turned};
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || !known_to(solution.workspace, data.target))

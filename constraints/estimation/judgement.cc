@@ -144,7 +144,8 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
     if (align.plan(static_cast<int>(s)).items.empty()) continue;
     const Method& method = *data.sets[s].method;
     judged.aligned[s] = method.tangent_dimension() + method.group_freedom() > 0;
-    if (fit_equations.plan(static_cast<int>(s)).items.empty())
+    // Too few rows to place a set leave hardly any noise.
+    if (fit_equations.plan(static_cast<int>(s)).items.empty() || method.group_freedom() == 0)
       judged.check_scale[s] = aligned.noise.used[s];
   }
   const Equations check(robot, data, Use::check);
@@ -206,9 +207,10 @@ std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
                                   const std::vector<char>& outlier) {
   std::vector<Outlier> list;
   const auto add = [&](const RowResidual& r, bool check) {
-    list.push_back({r.row + 1, data.sets[r.set].name, r.size(), check,
-                    check ? "outlier among the check rows: counted all the same" : "outlier",
-                    r.lengths == 0});
+    list.push_back(
+        {r.row + 1, data.sets[r.set].name, r.size(), check,
+         check ? "beyond the noise among the check rows: counted all the same" : "outlier",
+         r.lengths == 0});
   };
   for (const RowResidual& r : after.fit)
     if (outlier[r.row]) add(r, false);

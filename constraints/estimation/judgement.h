@@ -54,6 +54,8 @@ struct Grounds {
   bool converged = false;
   /// The moves of the parameters stay within what the maker's tolerances allow.
   bool nominal_explains = false;
+  /// Most of the joints' range lies beyond the rows that identify.
+  bool beyond_rows = false;
   /// What the data contradict themselves in, in words: with any of it nothing is determined.
   std::vector<std::string> contradictions = {};
 };

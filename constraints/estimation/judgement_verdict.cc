@@ -21,8 +21,9 @@ std::string certainty(const Grounds& grounds) {
       with_figures("end position in the workspace known to %.3g mm", 1e3 * grounds.workspace.rms);
   if (grounds.orientation_seen)
     text += with_figures(" and %.3g mrad", 1e3 * grounds.workspace.angle);
-  return text +
-         with_figures(" (over the whole range of the joints %.3g mm)", 1e3 * grounds.endpoint.rms);
+  return text + " (over the whole range of the joints" +
+         (grounds.beyond_rows ? ", most of it beyond these rows," : "") +
+         with_figures(" %.3g mm)", 1e3 * grounds.endpoint.rms);
 }
 
 /// What became of the check rows.

@@ -52,7 +52,12 @@ void report_groups(const Equations& equations, int set, const Fit& fit, const Ei
 }
 
 constexpr double kRedundant = 3;  // equations an unknown: fewer are met whatever the noise
-constexpr double kMisstated = 3;  // times the data sheet's noise, or a part of it
+constexpr double kMisstated = 3;  // of the data sheet's noise that rows scatter by less
+/// Of the data sheet's noise, of that of immediate repeats.
+constexpr double kMoreThanSheet = 1.5, kMoreThanRepeats = 2;
+constexpr int kFewestFar = 3;     // rows kept aside beyond the noise, and their share,
+constexpr double kOften = 0.1;    // that are no false rows
+constexpr double kChance = 0.01;  // of as much, where the data sheet is right
 
 double unknowns(const Fit& fit, const Solution& solution) {
   double count = static_cast<double>(
@@ -62,6 +67,44 @@ double unknowns(const Fit& fit, const Solution& solution) {
 }
 
 std::string ratio(double a, double b) { return format_number(std::round(a / b * 10) / 10); }
+
+/// Rows kept aside that lie beyond the noise: so many that they are no false ones.
+std::string often_beyond(const SetResult& set, const Solution& solution) {
+  const auto far = std::ranges::count_if(
+      solution.outliers, [&](const Outlier& each) { return each.check && each.set == set.name; });
+  const auto own = std::ranges::find(solution.residual.check_by_set, set.name, &SetFigures::name);
+  if (own == solution.residual.check_by_set.end() || far < kFewestFar ||
+      static_cast<double>(far) < kOften * own->figures.rows)
+    return {};
+  return "set " + set.name + ": " + std::to_string(far) + " of " +
+         std::to_string(own->figures.rows) +
+         " rows kept aside lie beyond the noise of those that identify: the robot strays from its "
+         "geometry where they were taken, and what is known of it holds for the others";
+}
+
+/// Residuals of one unit, of a set's rows.
+struct Scatter {
+  const char* what;  ///< "rows"
+  double found;      ///< 1 sigma
+  const char* unit;  ///< of a thousandth of it
+};
+
+bool beyond_sheet(const Scatter& scatter, double stated, int rows) {
+  return stated > 0 && scatter.found > kMoreThanSheet * stated &&
+         chi_square_exceeds(rows * std::pow(scatter.found / stated, 2), rows) < kChance;
+}
+
+/// What the rows have beside the noise that was expected is the robot's, and in no figure of it.
+std::string unexplained(const SetResult& set, const Scatter& scatter, double expected,
+                        const char* than) {
+  return "set " + set.name + ": the " + scatter.what + " scatter " +
+         ratio(scatter.found, expected) + " times as much as " + than +
+         ": the geometry does not explain them all; beside what is known of it the robot strays "
+         "by " +
+         with_figures("%.2g ",
+                      1e3 * std::sqrt(std::pow(scatter.found, 2) - std::pow(expected, 2))) +
+         scatter.unit + " in each direction measured";
+}
 
 }  // namespace
 
@@ -161,7 +204,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
   const bool redundant = fit.at.equations > kRedundant * unknowns(fit, solution);
   for (size_t s = 0; s < data.sets.size(); ++s) {
     SetResult& set = solution.sets[s];
-    const double stated = equations.stated(static_cast<int>(s)).length;
+    const Scale& stated = equations.stated(static_cast<int>(s));
     if (!set.identifies) continue;
     if (fit.noise.at_bound[s])
       solution.warnings.push_back("set " + set.name +
@@ -171,21 +214,30 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
       solution.warnings.push_back("set " + set.name +
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
-    const bool beyond_sheet = stated > 0 && set.noise_sigma > kMisstated * stated;
-    const bool beyond_repeats = set.repeat_sigma > 0 && set.noise_sigma > 2 * set.repeat_sigma;
-    set.unexplained = beyond_sheet || beyond_repeats;
-    if (beyond_sheet)
+    for (const auto& [scatter, noise] :
+         {std::pair(Scatter{"rows", set.noise_sigma, "mm"}, stated.length),
+          std::pair(Scatter{"angles", set.noise_angle_sigma, "mrad"}, stated.angle)})
+      if (beyond_sheet(scatter, noise, set.used)) {
+        set.unexplained = true;
+        solution.warnings.push_back(unexplained(set, scatter, noise, "its data sheet says"));
+      }
+    if (redundant && stated.length > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
-          "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, stated) +
-          " times as much as its data sheet says: the geometry does not " + "explain them all");
-    if (redundant && stated > kMisstated * set.noise_sigma && set.noise_sigma > 0)
-      solution.warnings.push_back(
-          "set " + set.name + ": its data sheet's noise is " + ratio(stated, set.noise_sigma) +
+          "set " + set.name + ": its data sheet's noise is " +
+          ratio(stated.length, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
-    if (beyond_repeats)
+    const bool placed = !set.aligned || data.sets[s].method->group_freedom() > 0;
+    if (placed && set.repeat_sigma > 0 && set.noise_sigma > kMoreThanRepeats * set.repeat_sigma) {
+      set.unexplained = true;
       solution.warnings.push_back(
-          "set " + set.name + ": the rows scatter " + ratio(set.noise_sigma, set.repeat_sigma) +
-          " times as much as immediate repeats: the geometry does not " + "explain them all");
+          unexplained(set, {"rows", set.noise_sigma, "mm"}, set.repeat_sigma, "immediate repeats"));
+    }
+    if (std::string often = often_beyond(set, solution); !often.empty())
+      solution.warnings.push_back(std::move(often));
+    if (!placed)
+      solution.warnings.push_back(
+          "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +
+          "judge the robot alone, where they place it best");
   }
 }
 

@@ -104,5 +104,24 @@ TEST(Summary, CountsOneRowAndGivesANoiseOfAnglesAlone) {
   EXPECT_THAT(summary({}, solution), HasSubstr("one (bearing): 80 of 80 rows used, noise 20 urad"));
 }
 
+TEST(NextSteps, DoNotKeepTheMakersFiguresForWantOfRowsThatJudge) {
+  Solution solution = known_to(0.5e-3, 0.4e-3, 0);
+  solution.verdict.answer = Answer::not_improved;
+  solution.residual.check.configurations = 5;
+  for (const double after : {8e-5, 9e-5, 7e-5, 8e-5, 5.2e-3})  // the last one is a false reading
+    solution.residual.rows.push_back(
+        {.check = true, .before = after > 1e-3 ? 5e-3 : 5e-4, .after = after});
+  solution.residual.check.rms_after = 2.3e-3;
+  solution.residual.check.rms_without_outliers = 8e-5;
+  EXPECT_THAT(steps_of(solution),
+              Contains(HasSubstr("Keep more configurations aside than 5 (column part), and look at "
+                                 "those beyond the noise")));
+  EXPECT_THAT(headline(solution), HasSubstr("Not improved: that these rows are met better may be "
+                                            "chance"));
+  for (RowFigure& row : solution.residual.rows) row.before = row.after * 1.1;
+  EXPECT_THAT(steps_of(solution), Contains(HasSubstr("keep them")));
+  EXPECT_THAT(headline(solution), HasSubstr("the maker's figures explain the rows as well"));
+}
+
 }  // namespace
 }  // namespace selfcal

@@ -96,12 +96,15 @@ TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
     return identify(rx90(), data, {}, {});
   };
   const auto told_with = [&](double stated) { return found_with(stated).warnings; };
+  using testing::AllOf, testing::HasSubstr;
   using testing::Contains;
-  using testing::HasSubstr;
   EXPECT_THAT(told_with(2e-5), testing::Not(Contains(HasSubstr("data sheet"))));
   EXPECT_THAT(told_with(2e-3),
               Contains(HasSubstr("times what its rows scatter by: is `noise` in metres")));
   EXPECT_THAT(told_with(2e-6), Contains(HasSubstr("times as much as its data sheet says")));
+  EXPECT_THAT(told_with(1.1e-5),
+              Contains(AllOf(HasSubstr("2.1 times as much as its data sheet says"),
+                             HasSubstr("the robot strays by 0.02 mm in each direction"))));
   EXPECT_TRUE(found_with(2e-6).sets[0].unexplained);
   EXPECT_FALSE(found_with(2e-5).sets[0].unexplained);
 }
