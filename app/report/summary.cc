@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t kMostListedItems = 12;
 constexpr double kToldShare = 0.1;  ///< of the end position's doubt: less is not told
+constexpr double kHardly = 0.9;     ///< of its tolerance: a parameter that is known no better
 constexpr double kAlone = 0.9;      ///< share of the scale that one length carries alone
 
 /// "touch" when every row that identifies is one, else "row".
@@ -87,13 +88,15 @@ std::string parameter_line(const ParameterResult& p, int width) {
 }
 
 std::string parameter_table(const Solution& solution) {
-  std::vector<const ParameterResult*> moved, still;
+  std::vector<const ParameterResult*> moved, still, hardly;
   int grouped = 0, without_effect = 0, width = 9;
   for (const ParameterResult& p : solution.parameters) {
     grouped += p.status == Status::grouped;
     without_effect += p.status == Status::no_effect;
     if (p.status != Status::identified) continue;
-    (std::abs(p.value - p.parameter.nominal) > p.sigma ? moved : still).push_back(&p);
+    const bool moves = std::abs(p.value - p.parameter.nominal) > p.sigma;
+    const bool known = !(p.parameter.tolerance > 0) || p.sigma < kHardly * p.parameter.tolerance;
+    (moves ? moved : known ? still : hardly).push_back(&p);
     width = std::max(width, characters(full_name(p.parameter)));
   }
   std::string text = "\n  " + padded("parameter", width) +
@@ -101,6 +104,9 @@ std::string parameter_table(const Solution& solution) {
   for (const ParameterResult* p : moved) text += parameter_line(*p, width);
   if (!still.empty()) text += "  changed by less than their sigma, so perhaps not at all:\n";
   for (const ParameterResult* p : still) text += parameter_line(*p, width);
+  if (!hardly.empty())
+    text += "  hardly told by these rows, known no better than the maker's tolerance:\n";
+  for (const ParameterResult* p : hardly) text += parameter_line(*p, width);
   if (grouped + without_effect > 0)
     text += printed(
         "  and %d grouped with these, %d without effect on these rows (result.json says "
