@@ -185,6 +185,7 @@ struct RobotScale {
 /// which no geometry explains.
 inline constexpr std::string_view kNoiseOfRows = "noise of the rows";
 inline constexpr std::string_view kSharedErrors = "rows that share errors";
+inline constexpr std::string_view kWhatWasGiven = "what was given";
 
 /// A part of the end position's doubt in the workspace, 1 sigma (m); the squares add up.
 struct BudgetLine {

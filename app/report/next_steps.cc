@@ -9,6 +9,7 @@
 namespace selfcal {
 namespace {
 
+constexpr double kMost = 0.71;      ///< of a sigma: half the squares
 constexpr double kMetBetter = 0.8;  ///< of what half the rows were met to before
 
 double doubt_from(const Solution& solution, std::string_view source) {
@@ -21,6 +22,15 @@ double doubt_from(const Solution& solution, std::string_view source) {
 bool structured(const Solution& solution) {
   return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows) ||
          std::ranges::any_of(solution.sets, &SetResult::unexplained);
+}
+
+/// Most of what is not known of the end position is the doubt of what the sets give, and it is a
+/// usual one: no set says its own.
+bool given_without_tolerance(const DataSet& data, const Solution& solution) {
+  return doubt_from(solution, kWhatWasGiven) > kMost * solution.workspace.rms &&
+         std::ranges::all_of(data.sets, [](const Set& set) {
+           return set.given.place < 0 && set.given.turn < 0 && set.given.length < 0;
+         });
 }
 
 /// "Add rows that move j1, j2 and j4 further", of all whose further movement would help.
@@ -111,6 +121,12 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
     steps.push_back(
         "The result is a candidate: look at the changes, then use "
         "calibrated.robot.yaml.");
+  if (given_without_tolerance(data, solution))
+    steps.push_back(
+        "Say how well the surfaces and lengths are known that the sets give (`tolerance: {place: "
+        "m, "
+        "turn: rad, length: m}` of a set): taken as good to 0.1 mrad and 0.01 %, they make most of "
+        "the end position's doubt.");
   if (solution.converged && structured(solution))
     steps.push_back(
         "What the geometry leaves of these rows is more than noise: see what causes it (selfcal "

@@ -157,7 +157,7 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                             over_stated(equations, adjusted.fitted, spreads)};
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
-  sources.push_back({"what was given", posterior(equations, adjusted, R, true, structure) - exact});
+  sources.push_back({kWhatWasGiven, posterior(equations, adjusted, R, true, structure) - exact});
   sources.push_back({kSharedErrors, std::move(shared)});
   return sources;
 }

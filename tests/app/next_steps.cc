@@ -123,5 +123,20 @@ TEST(NextSteps, DoNotKeepTheMakersFiguresForWantOfRowsThatJudge) {
   EXPECT_THAT(headline(solution), HasSubstr("the maker's figures explain the rows as well"));
 }
 
+TEST(NextSteps, AskHowWellIsKnownWhatIsGivenWhereThatIsMostOfTheDoubt) {
+  Solution solution = known_to(0.5e-3, 0.2e-3, 0);
+  solution.verdict.answer = Answer::improved;
+  const auto asks = Contains(HasSubstr("Say how well the surfaces and lengths are known"));
+  solution.uncertainty.budget.push_back({std::string(kWhatWasGiven), 0.3e-3});
+  EXPECT_THAT(steps_of(solution), Not(asks));
+  solution.uncertainty.budget.back().sigma = 0.45e-3;
+  EXPECT_THAT(steps_of(solution), asks);
+  DataSet data;
+  data.target = kTarget;
+  data.sets.resize(1);
+  data.sets[0].given.place = 1e-5;
+  EXPECT_THAT(next_steps(data, solution), Not(asks)) << "it is said already";
+}
+
 }  // namespace
 }  // namespace selfcal
