@@ -24,11 +24,19 @@ bool structured(const Solution& solution) {
          std::ranges::any_of(solution.sets, &SetResult::unexplained);
 }
 
+/// A surface that is not identified, or a length that the scale stands on.
+bool sets_give_any(const DataSet& data, const Solution& solution) {
+  return !solution.scale.stands_on.empty() || std::ranges::any_of(data.sets, [](const Set& set) {
+    return set.method && set.method->touches() != TouchedSurface::none &&
+           set.method->tangent_dimension() == 0;
+  });
+}
+
 /// Most of what is not known of the end position is the doubt of what the sets give, and it is a
 /// usual one: no set says its own.
 bool given_without_tolerance(const DataSet& data, const Solution& solution) {
   return doubt_from(solution, kWhatWasGiven) > kMost * solution.workspace.rms &&
-         std::ranges::all_of(data.sets, [](const Set& set) {
+         sets_give_any(data, solution) && std::ranges::all_of(data.sets, [](const Set& set) {
            return set.given.place < 0 && set.given.turn < 0 && set.given.length < 0;
          });
 }
@@ -124,9 +132,8 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
   if (given_without_tolerance(data, solution))
     steps.push_back(
         "Say how well the surfaces and lengths are known that the sets give (`tolerance: {place: "
-        "m, "
-        "turn: rad, length: m}` of a set): taken as good to 0.1 mrad and 0.01 %, they make most of "
-        "the end position's doubt.");
+        "m, turn: rad, length: m}` of a set): taken as good to 0.1 mrad and 0.01 %, they make most "
+        "of the end position's doubt.");
   if (solution.converged && structured(solution))
     steps.push_back(
         "What the geometry leaves of these rows is more than noise: see what causes it (selfcal "

@@ -130,6 +130,8 @@ TEST(NextSteps, AskHowWellIsKnownWhatIsGivenWhereThatIsMostOfTheDoubt) {
   solution.uncertainty.budget.push_back({std::string(kWhatWasGiven), 0.3e-3});
   EXPECT_THAT(steps_of(solution), Not(asks));
   solution.uncertainty.budget.back().sigma = 0.45e-3;
+  EXPECT_THAT(steps_of(solution), Not(asks)) << "a gear's ratio is given, and no set gives any";
+  solution.scale.stands_on.resize(1);
   EXPECT_THAT(steps_of(solution), asks);
   DataSet data;
   data.target = kTarget;
