@@ -79,7 +79,8 @@ std::string often_beyond(const SetResult& set, const Solution& solution) {
   return "set " + set.name + ": " + std::to_string(far) + " of " +
          std::to_string(own->figures.rows) +
          " rows kept aside lie beyond the noise of those that identify: the robot strays from its "
-         "geometry where they were taken, and what is known of it holds for the others";
+         "geometry where they were taken, or so many readings are false; what is known of it "
+         "holds for the others";
 }
 
 /// Residuals of one unit, of a set's rows.
@@ -96,14 +97,14 @@ bool beyond_sheet(const Scatter& scatter, double stated, int rows) {
 
 /// What the rows have beside the noise that was expected is the robot's, and in no figure of it.
 std::string unexplained(const SetResult& set, const Scatter& scatter, double expected,
-                        const char* than) {
+                        const char* than, const char* unless) {
   return "set " + set.name + ": the " + scatter.what + " scatter " +
          ratio(scatter.found, expected) + " times as much as " + than +
          ": the geometry does not explain them all; beside what is known of it the robot strays "
          "by " +
          with_figures("%.2g ",
                       1e3 * std::sqrt(std::pow(scatter.found, 2) - std::pow(expected, 2))) +
-         scatter.unit + " in each direction measured";
+         scatter.unit + " in each direction measured" + unless;
 }
 
 }  // namespace
@@ -219,7 +220,8 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           std::pair(Scatter{"angles", set.noise_angle_sigma, "mrad"}, stated.angle)})
       if (beyond_sheet(scatter, noise, set.used)) {
         set.unexplained = true;
-        solution.warnings.push_back(unexplained(set, scatter, noise, "its data sheet says"));
+        solution.warnings.push_back(unexplained(set, scatter, noise, "its data sheet says",
+                                                ", unless the sheet states too little"));
       }
     if (redundant && stated.length > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
@@ -229,8 +231,8 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
     const bool placed = !set.aligned || data.sets[s].method->group_freedom() > 0;
     if (placed && set.repeat_sigma > 0 && set.noise_sigma > kMoreThanRepeats * set.repeat_sigma) {
       set.unexplained = true;
-      solution.warnings.push_back(
-          unexplained(set, {"rows", set.noise_sigma, "mm"}, set.repeat_sigma, "immediate repeats"));
+      solution.warnings.push_back(unexplained(set, {"rows", set.noise_sigma, "mm"},
+                                              set.repeat_sigma, "immediate repeats", ""));
     }
     if (std::string often = often_beyond(set, solution); !often.empty())
       solution.warnings.push_back(std::move(often));
