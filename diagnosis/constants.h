@@ -163,6 +163,7 @@ struct DiagnosisConstants {
     int most_new = 12;  ///< that a step asks for; 4 to 40 [cost]
     int fewest = 3;     ///< that are worth a step; 1 to 6 [habit]
     int postures = 6;   ///< found for one place, the farthest is taken; 2 to 20 [cost]
+    int tries = 8;      ///< blocks of random starts before a place is given up; 2 to 60 [cost]
     /// Units of readings that a joint moves at least in another posture; 0.2 to 1 [habit]
     double another = 0.5;
     double faster = 3;      ///< over the speed of the row; 1.5 to 5 [physics]

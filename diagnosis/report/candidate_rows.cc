@@ -153,6 +153,8 @@ class CandidateSet {
       request.rows = static_cast<int>(rows_of[s].size());
       request.nuisance = linearised_.adjusted().fitted.state.nuisance[s];
       if (method.constrains()) request.patch = seen_of(s);
+      request.together = true;
+      request.tries = kDiagnosis.further_rows.tries;
       requests.push_back(std::move(request));
     }
     Random random(1);
@@ -187,8 +189,9 @@ class CandidateSet {
     SampleRequest request;
     request.rows = request.rows_per_group = kDiagnosis.further_rows.postures;
     request.places = {place};
+    request.together = true;
     // Of closed loops a place determines the readings: the first starts find them, or none do.
-    if (robot_.has_loops()) request.tries = 1;
+    request.tries = robot_.has_loops() ? 1 : kDiagnosis.further_rows.tries;
     Random random(1);
     sample_rows(robot_, xi_, {request}, random, found);
     std::optional<Eigen::VectorXd> best;
