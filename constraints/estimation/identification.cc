@@ -12,6 +12,7 @@
 #include "constraints/estimation/frame_step.h"
 #include "constraints/estimation/judgement.h"
 #include "constraints/estimation/lock_slip.h"
+#include "constraints/estimation/prediction.h"
 #include "constraints/estimation/results.h"
 #include "constraints/estimation/robot_scale.h"
 #include "constraints/estimation/uncertainty.h"
@@ -189,7 +190,8 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   const Identifiability rank = add_posterior(equations, adjusted, R, C, solution);
 
   const Judged before = judge(robot, data, equations, adjusted.before, true);
-  const Judged after = judge(robot, data, equations, fitted);
+  Judged after = judge(robot, data, equations, fitted);
+  after.foreseen = foreseen(data, equations, C, after);
   solution.residual = residual_figures(data, before, after, fitted.noise.outlier);
   solution.outliers = outlier_rows(data, after, fitted.noise.outlier);
   solution.sets = set_results(equations, fitted, C, after);

@@ -19,7 +19,10 @@ struct Judged {
   std::vector<OpenRow> open, open_check;  ///< rows that gave no equation
   std::vector<Scale> check_scale;         ///< by set: the noise that a check row is compared with
   std::vector<char> aligned;  ///< by set: nuisance parameters were fitted to the check rows
-  State state;                ///< with the aligned unknowns filled in
+  /// By `check` row, beyond the noise: as far as what predicts it is in doubt (prediction.h).
+  /// Empty where nobody asked.
+  std::vector<char> foreseen;
+  State state;  ///< with the aligned unknowns filled in
   Noise align_noise;
 };
 
@@ -41,8 +44,8 @@ std::vector<CheckRow> check_rows(const Judged& judged);
 Residuals residual_figures(const DataSet& data, const Judged& before, const Judged& after,
                            const std::vector<char>& outlier);
 
-/// Rows beyond the noise: those put aside, and `check` rows that would have been (they still
-/// count).
+/// Rows beyond the noise: those put aside, and `check` rows that would have been and are not
+/// foreseen (they still count).
 std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
                                   const std::vector<char>& outlier);
 

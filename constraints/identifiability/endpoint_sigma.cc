@@ -20,7 +20,7 @@ struct Moves {
 };
 
 /// Of the poses from `first` on those of one block.
-ConfigurationBlock block_of(const Eigen::MatrixXd& q, Eigen::Index first) {
+ConfigurationBlock block_from(const Eigen::MatrixXd& q, Eigen::Index first) {
   ConfigurationBlock block;
   block.count = static_cast<int>(std::min<Eigen::Index>(kLanes, q.rows() - first));
   block.q.resize(kLanes, q.cols());
@@ -53,7 +53,7 @@ Moves moves_of(const EndpointQuestion& question) {
   Locations X, link;
   PsiBlock psi;
   for (Eigen::Index first = 0; first < q.rows(); first += kLanes) {
-    const ConfigurationBlock block = block_of(q, first);
+    const ConfigurationBlock block = block_from(q, first);
     // A lane that does not close with the values found has no derivative, and adds nothing.
     const Closure closure = robot.locate(block, question.xi, Body::endpoint, X, &psi);
     if (unseen > motions) robot.locate(block, question.xi, Body::last_link, link, nullptr);

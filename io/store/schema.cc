@@ -134,8 +134,8 @@ Result<int> version(sqlite3* database) {
 
 namespace {
 
-/// The columns of all tables, and which other tables they refer to, a line a table; the order and
-/// the types count.
+/// The columns of all tables, and which of other tables they refer to, a line a table; the order
+/// and the types count.
 Result<std::string> columns(sqlite3* database) {
   std::string all;
   for (const Verified& table : kVerified) {
@@ -143,8 +143,9 @@ Result<std::string> columns(sqlite3* database) {
         database,
         "SELECT (SELECT group_concat(name || ' ' || type || ' ' || \"notnull\" || ' ' || pk)"
         " FROM pragma_table_xinfo(?1)) || coalesce('; ' ||"
-        " (SELECT group_concat(\"from\" || ' ' || \"table\") FROM pragma_foreign_key_list(?1)), "
-        "'')",
+        " (SELECT group_concat(\"from\" || ' ' || \"table\" || ' ' || coalesce(\"to\", '') || ' ' "
+        "||"
+        " on_delete || ' ' || on_update) FROM pragma_foreign_key_list(?1)), '')",
         {table.table});
     if (!list) return list;
     all += table.table + (": " + *list) + "\n";

@@ -121,6 +121,14 @@ TEST_F(Program, WritesTheRowsThatTellLookAlikesApart) {
   const Ran nothing = run_selfcal("plan --separate " + file, true);
   EXPECT_EQ(nothing.status, 1);
   EXPECT_EQ(nothing.out, "nothing to measure: nothing looks like what is named\n");
+  for (const char* other : {"null", "[0.5]", "[0, 1, 2]"}) {
+    std::ofstream(file) << R"({"next": [{"what": "a", "separates": ["b"], "probability_after": 0.9,
+      "rows": [{"set": "t", "q": )"
+                        << (other == std::string("null") ? "null" : "[0, 1]")
+                        << R"(}, {"set": "t", "q": )" << other << R"(}]}], "next_why": ""})";
+    const Ran refused = run_selfcal("plan --separate " + file);
+    EXPECT_EQ(refused.status, 3) << other << refused.out;
+  }
   std::ofstream(file) << "{}";
   EXPECT_EQ(run_selfcal("plan --separate " + file).status, 3);
   EXPECT_EQ(run_selfcal("plan --separate " + (folder_ / "not_there.json").string()).status, 3);

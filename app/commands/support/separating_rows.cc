@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "app/report/format.h"
 #include "constraints/planning/tour.h"
@@ -31,8 +33,9 @@ int index_of(const std::string& name, std::vector<std::string>& names) {
   return static_cast<int>(names.size()) - 1;
 }
 
-/// Throws what nlohmann::json throws where `list` is not as diagnose writes it.
-DataSet rows_of(const Json& list) {
+/// Throws what nlohmann::json throws where `list` is not as diagnose writes it; nothing where rows
+/// have no readings, or not as many as others.
+std::optional<DataSet> rows_of(const Json& list) {
   DataSet data;
   data.order_is_time = false;
   Observations& rows = data.rows;
@@ -47,7 +50,9 @@ DataSet rows_of(const Json& list) {
   std::vector<std::string> sets, repeats;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Json& each = list.at(static_cast<std::size_t>(i));
-    rows.q.row(i) = cells(each.at("q"), joints);
+    const Json& q = each.at("q");
+    if (joints == 0 || static_cast<Eigen::Index>(q.size()) != joints) return std::nullopt;
+    rows.q.row(i) = cells(q, joints);
     if (each.contains("wrench")) rows.wrench.row(i) = cells(each.at("wrench"), 6);
     if (each.contains("dq")) rows.velocity.row(i) = cells(each.at("dq"), joints);
     if (each.contains("time") && !each.at("time").is_null()) rows.time[i] = each.at("time");
@@ -104,7 +109,11 @@ Result<SeparatingRows> read_separating_rows(const std::string& file) {
       step.separates = each.at("separates").get<std::vector<std::string>>();
       const Json& probability = each.at("probability_after");
       step.probability_after = probability.is_null() ? std::nan("") : probability.get<double>();
-      step.rows = rows_of(each.at("rows"));
+      std::optional<DataSet> rows = rows_of(each.at("rows"));
+      if (!rows)
+        return bad_input(file + ": the rows of step " + std::to_string(result.steps.size() + 1) +
+                         " have no readings q, or not as many as one another");
+      step.rows = std::move(*rows);
       order(step.rows);
       result.steps.push_back(std::move(step));
     }
