@@ -50,7 +50,7 @@ struct DiagnosisConstants {
     double joints = 1.0;  ///< rad, over which configurations are alike; 0.3 to 2 [trials]
     double turned = 2.0;  ///< rad, over which one joint's errors are smooth; 0.5 to 3 [physics]
     double place = 0.2;   ///< of the robot's size; 0.1 to 1 [physics]
-    double time = 0.1;    ///< of the whole; 0.02 to 0.5 [trials]
+    double time = 0.06;   ///< of the whole; 0.02 to 0.5 [trials]
     std::array<double, 3> of_visits = {1, 0.5, 0};  ///< shares of a visit's noise [trials]
   };
   struct Evidence {
@@ -103,6 +103,9 @@ struct DiagnosisConstants {
     /// Of the gap, that what is named leaves: structure beside it is as little a doubt, in
     /// proportion, as it leaves less; 0.02 to 0.2 [habit]
     double hardly_left = 0.1;
+    /// Share of the gap below which one of several causes closes nothing: beside the others, and
+    /// alone; 0 to 0.05 [habit]
+    double nothing_beside = 0.005, nothing_alone = 0.02;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise: a spring that stiffens or a mass that is wrong leaves less of
     /// them; 0.05 to 0.5 [trials]

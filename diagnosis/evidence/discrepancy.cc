@@ -1,6 +1,10 @@
 // Covariance of two equations: that of their configurations, a Gaussian bell of the distance, times
-// the cosine between the directions that they measure in (in time: as the tool sees them; what all
-// share in the world's axes is a drift of the base, which is known). Where a joint is off by a
+// the cosine between the directions that they measure in; lengths that no shift of the world
+// changes have one direction of their own. What comes and goes in time jumps or wanders: it is as
+// alike as exp(-|t1 - t2| / span) says, as the tool sees it, or as a motion of the base would have
+// it,
+//   d1 . d2 + (c1 x d1) . (c2 x d2),   c from the middle of all places, over the robot's size.
+// Where a joint is off by a
 // function of the readings, it is
 //   J(1) J(2) mean_ab (1 + bell_a) (1 + bell_b) / 4
 // with J what the joint moves the equation (of mean square 1 over all equations) and bell_a that of
@@ -36,13 +40,19 @@ class Kernel {
     std::ranges::copy_if(data.time, std::back_inserter(times),
                          [](double t) { return std::isfinite(t); });
     if (!times.empty()) span_ = std::ranges::max(times) - std::ranges::min(times);
-    direction_ = rows.shift;
-    for (auto each : direction_.rowwise())
-      if (each.norm() > 0) each /= each.norm();
+    direction_.setZero(rows.shift.rows(), 4);
+    for (Eigen::Index i = 0; i < direction_.rows(); ++i)
+      if (const double norm = rows.shift.row(i).norm(); norm > 0)
+        direction_.row(i).head<3>() = rows.shift.row(i) / norm;
+      else
+        direction_(i, 3) = 1;
     number();
   }
 
-  bool possible(KernelDomain domain) const { return domain != KernelDomain::time || span_ > 0; }
+  bool possible(KernelDomain domain) const {
+    if (domain == KernelDomain::base) return span_ > 0 && !direction_.leftCols<3>().isZero();
+    return domain != KernelDomain::time || span_ > 0;
+  }
 
   /// Noise of one, of so much of the visits' own, of the readings' rounding, and of variance `same`
   /// that a configuration brings along.
@@ -90,9 +100,10 @@ class Kernel {
       for (Eigen::Index j = 0; j <= i; ++j)
         near(i, j) = near(j, i) = close(domain, used_[i], used_[j]);
     Eigen::MatrixXd directions = direction_;
+    if (domain == KernelDomain::base) directions = motions_of_base();
     if (domain == KernelDomain::time)
       for (Eigen::Index i = 0; i < n; ++i)
-        if (rows_.row[i] >= 0) directions.row(i) = seen_by_tool(i).transpose();
+        if (rows_.row[i] >= 0) directions.row(i).head<3>() = seen_by_tool(i).transpose();
     Eigen::MatrixXd K = directions * directions.transpose();
     for (Eigen::Index j = 0; j < n; ++j)
       for (Eigen::Index i = 0; i < n; ++i)
@@ -122,7 +133,26 @@ class Kernel {
   /// The direction that an equation measures in, in the tool's axes.
   Eigen::Vector3d seen_by_tool(Eigen::Index equation) const {
     return ends_[static_cast<size_t>(rows_.row[equation])].linear().transpose() *
-           direction_.row(equation).transpose();
+           direction_.row(equation).head<3>().transpose();
+  }
+
+  /// What small motions of the base make of every equation, of mean square 1.
+  Eigen::MatrixXd motions_of_base() const {
+    const auto place = [&](Eigen::Index i) -> Eigen::Vector3d {
+      const int row = rows_.row[static_cast<size_t>(i)];
+      return row < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                     : Eigen::Vector3d(ends_[static_cast<size_t>(row)].translation());
+    };
+    const Eigen::Index n = direction_.rows();
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < n; ++i) middle += place(i) / static_cast<double>(n);
+    const double size = near_ / kDiagnosis.structure.place;
+    Eigen::MatrixXd motions(n, 6);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Vector3d d = direction_.row(i).head<3>().transpose();
+      motions.row(i) << d.transpose(), ((place(i) - middle) / size).cross(d).transpose();
+    }
+    return motions / std::sqrt(motions.rowwise().squaredNorm().mean());
   }
 
   static double bell(double squared) { return std::exp(-squared / 2); }
@@ -155,9 +185,10 @@ class Kernel {
       case KernelDomain::turned:
         return 0;  // these are noise(), and root_of_joint()
       case KernelDomain::time:
+      case KernelDomain::base:
         if (!std::isfinite(data_.time[a] + data_.time[b])) return 0;
-        return bell(
-            std::pow((data_.time[a] - data_.time[b]) / (kDiagnosis.structure.time * span_), 2));
+        return std::exp(-std::abs(data_.time[a] - data_.time[b]) /
+                        (kDiagnosis.structure.time * span_));
     }
     return 0;
   }
@@ -229,7 +260,8 @@ void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
                     .blocks = kernel.noise(of_visits, kappa * kappa * once)});
   const auto usual =
       kernel.noise(of_visits, kDiagnosis.structure.usual * kDiagnosis.structure.usual * once);
-  for (const KernelDomain domain : {KernelDomain::joints, KernelDomain::place, KernelDomain::time})
+  for (const KernelDomain domain :
+       {KernelDomain::joints, KernelDomain::place, KernelDomain::time, KernelDomain::base})
     if (kernel.possible(domain))
       add_kernel(domain, kDiagnosis.structure.smooth, usual,
                  basis_of_kernel(*usual, once * kernel.of(domain)), list);

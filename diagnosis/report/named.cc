@@ -1,6 +1,9 @@
 #include "diagnosis/report/named.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "diagnosis/constants.h"
 
 namespace selfcal {
 namespace {
@@ -35,6 +38,19 @@ bool names(const CauseResult& cause, const Candidate& candidate) {
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate) {
   return std::ranges::any_of(named,
                              [&](const CauseResult& each) { return names(each, candidate); });
+}
+
+std::vector<CauseResult> take_idle(std::vector<CauseResult>& named) {
+  const auto closes = [](const CauseResult& each) {
+    return !each.closes_alone || !each.closes_beside ||
+           *each.closes_alone >= kDiagnosis.naming.nothing_alone ||
+           *each.closes_beside >= kDiagnosis.naming.nothing_beside;
+  };
+  if (std::ranges::none_of(named, closes)) return {};
+  std::vector<CauseResult> idle;
+  std::ranges::remove_copy_if(named, std::back_inserter(idle), closes);
+  std::erase_if(named, [&](const CauseResult& each) { return !closes(each); });
+  return idle;
 }
 
 Hypothesis with_named(Hypothesis h, const std::vector<CauseResult>& named, const Candidates& all,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "diagnosis/constants.h"
@@ -12,6 +13,7 @@
 #include "diagnosis/report/named.h"
 #include "diagnosis/report/shared_by_outliers.h"
 #include "diagnosis/report/warnings.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -41,8 +43,10 @@ class CorrectionValidation {
     result_.values = validation.all.fitted.state.xi;
     result_.converged = validation.converged;
     share_among_named();
+    const std::vector<std::string> idle = leave_out_idle();
     validate_candidates();
     result_.warnings = warnings_of(linearised_, data_, validation, result_);
+    std::ranges::copy(idle, std::back_inserter(result_.warnings));
     if (std::string shared =
             shared_by_outliers(data_, linearised_.geometry().joints(), result_.outliers);
         !shared.empty())
@@ -187,6 +191,27 @@ class CorrectionValidation {
       const std::optional<double> without = only ? std::optional(0.0) : closed_by(others);
       if (without) each.closes_beside = all - *without;
     }
+  }
+
+  /// What of several named causes closes nothing is not named; in words.
+  std::vector<std::string> leave_out_idle() {
+    const std::vector<CauseResult> idle = take_idle(result_.named);
+    std::vector<std::string> words;
+    for (const CauseResult& each : idle) {
+      for (FoundEffect& found : result_.found)
+        if (of(each, found)) found.named = false;
+      if (each.effect == result_.verdict.effect && each.where == result_.verdict.where)
+        result_.verdict = result_.named.front();
+      words.push_back(each.effect + (each.where.empty() ? "" : " at " + listed(each.where)) +
+                      " is as probable as " + with_figures("%.2f", each.of_its_kind()) +
+                      " by the rows that identify, and closes nothing of those kept aside: it is "
+                      "not named");
+    }
+    if (idle.empty()) return words;
+    result_.validation_rows = validated(result_.found).rows;
+    result_.gap = gap_of(result_.validation_rows, options_.seed, freedom_);
+    share_among_named();
+    return words;
   }
 
   static bool of(const CauseResult& cause, const FoundEffect& found) {

@@ -172,9 +172,9 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   double by_order = 0;
   for (const CauseResult& each : causes)
     if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
+  const double lacking = std::max(unknown->probability - by_order, 0.0);
   const double kept = 1 - kDiagnosis.naming.beside_unknown *
-                              std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) *
-                              std::max(unknown->probability - by_order, 0.0);
+                              std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) * lacking;
   const auto lower = [&](CauseResult& each) {
     if (!names_effect(each.effect) || may_be_order(each)) return;
     each.probability *= kept;
@@ -183,6 +183,9 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   std::ranges::for_each(causes, lower);
   std::ranges::for_each(named, lower);
   lower(verdict);
+  if (names_effect(verdict.effect) && left > kDiagnosis.naming.most_left &&
+      verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking))
+    verdict = {.effect = kUnknown, .probability = unknown->probability};
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
 }
 

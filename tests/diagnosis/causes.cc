@@ -268,7 +268,8 @@ TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
     CauseResult verdict = causes.front();
     std::vector<CauseResult> named = {causes[0]};
     allow_for_the_unknown(causes, verdict, named, left);
-    return verdict.probability / 0.9;
+    EXPECT_EQ(verdict.effect, left > kDiagnosis.naming.most_left ? kUnknown : "backlash");
+    return named.front().probability / 0.9;
   };
   const double most = kDiagnosis.naming.beside_unknown;
   EXPECT_NEAR(kept(0.5), 1 - most, 1e-12);

@@ -122,6 +122,23 @@ TEST(Named, AreAllThatAreSureAndCloseAsFarAsFitsOfThemAlone) {
     }
 }
 
+TEST(Named, AreNotThoseThatCloseNothingOfTheRowsKeptAside) {
+  const CauseResult large{.effect = "backlash", .closes_alone = 0.6, .closes_beside = 0.55},
+      hidden{.effect = "joint_coupling", .closes_alone = -0.1, .closes_beside = 0.2},
+      idle{.effect = "tool_shift", .closes_alone = 0.01, .closes_beside = -0.002},
+      unjudged{.effect = "base_drift"};
+  std::vector<CauseResult> named = {idle, large, hidden, unjudged};
+  const std::vector<CauseResult> taken = take_idle(named);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken.front().effect, "tool_shift");
+  EXPECT_THAT(named, testing::ElementsAre(testing::Field(&CauseResult::effect, "backlash"),
+                                          testing::Field(&CauseResult::effect, "joint_coupling"),
+                                          testing::Field(&CauseResult::effect, "base_drift")));
+  named = {idle, idle};
+  EXPECT_TRUE(take_idle(named).empty()) << "nothing would be left";
+  EXPECT_EQ(named.size(), 2u);
+}
+
 TEST(Named, ClosesNothingWhereOnlyOtherThingsAreFound) {
   const TwoCauses of;
   const DiagnosisOptions options = quick();

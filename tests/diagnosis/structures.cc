@@ -100,7 +100,46 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   EXPECT_NEAR(of_time()(0, 1), 0, 1e-12) << "one world's direction, two of the tool";
   t.rows.shift.row(1) = Eigen::RowVector3d(1e5, 0, 0);
   EXPECT_GT(of_time()(0, 1), 0.1) << "both along the tool's z";
-  EXPECT_NEAR(of_time()(0, 2), 0, 1e-12) << "long after";
+  EXPECT_NEAR(of_time()(0, 2), 0, 1e-6) << "long after";
+}
+
+// A turn of the base about the world's y, through the middle of all places, moves what lies off it
+// the other way on the other side; directions across that axis' motions have nothing in common.
+TEST(Structures, LetTimeBeSharedAsTheBaseMoves) {
+  Touches t;
+  t.data.repeat.clear();
+  t.data.time.resize(3);
+  t.data.time << 0, 0, 1000;
+  for (Eigen::Index i = 0; i < 3; ++i) t.rows.shift.row(i) = Eigen::RowVector3d(0, 0, 1e5);
+  t.ends[0].translation() = Eigen::Vector3d(1, 0, 0);
+  t.ends[1].translation() = Eigen::Vector3d(-1, 0, 0);
+  t.ends[2].translation() = Eigen::Vector3d::Zero();
+  const auto of_base = [&](double size) {
+    const auto list = structures(t.data, t.rows, t.ends, size, kNoErrors, t.data.q);
+    const auto found =
+        std::ranges::find(list, static_cast<int>(KernelDomain::base), &DiscrepancyCovariance::kind);
+    return Eigen::MatrixXd(found->matrix() - Eigen::MatrixXd::Identity(3, 3));
+  };
+  // d . d + (c x d) . (c x d) over the size squared: 1 - 1 of a size of one.
+  EXPECT_NEAR(of_base(1)(0, 1), 0, 1e-12);
+  EXPECT_GT(of_base(2)(0, 1), 0);
+  EXPECT_LT(of_base(0.5)(0, 1), 0);
+  EXPECT_NEAR(of_base(2)(0, 2), 0, 1e-6) << "long after";
+}
+
+TEST(Structures, KnowDistancesThatNoShiftChanges) {
+  Touches t;
+  t.data.repeat.clear();
+  t.rows.shift.setZero();
+  t.data.time.resize(3);
+  t.data.time << 0, 0, 1000;
+  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
+  const auto of = [&](KernelDomain domain) {
+    return std::ranges::find(list, static_cast<int>(domain), &DiscrepancyCovariance::kind);
+  };
+  ASSERT_NE(of(KernelDomain::time), list.end());
+  EXPECT_GT(of(KernelDomain::time)->matrix()(0, 1), 0.1) << "an instrument that drifts";
+  EXPECT_EQ(of(KernelDomain::base), list.end()) << "no motion of the base changes them";
 }
 
 TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
