@@ -88,6 +88,9 @@ struct DiagnosisConstants {
     /// kg/m^2, of an arm's mass over the square of its reach, where no mass is known; 20 to 150
     /// [physics]
     double mass_per_reach = 60;
+    /// What that is off by at most, as a rule, a factor; and what a compliance is where a known
+    /// mass is spread in the usual way; 1.2 to 3 [physics]
+    double mass_off = 2.5, spread_off = 1.7;
     double payload = 0.1;  ///< over that mass; 0.02 to 0.3 [physics]
   };
   struct Naming {

@@ -111,7 +111,8 @@ const Mechanics* EffectPlan::mechanics() const {
 
 bool EffectPlan::torques() const {
   if (robot.statics() || weighs(robot)) return true;
-  fields.fail("effect", "an effect without load: " + std::string(kNoStatics));
+  fields.fail("effect",
+              "an effect without load: the robot's file gives no `masses:` of what it carries");
   return false;
 }
 

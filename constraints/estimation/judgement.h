@@ -61,6 +61,8 @@ struct Grounds {
   bool beyond_rows = false;
   /// What the data contradict themselves in, in words: with any of it nothing is determined.
   std::vector<std::string> contradictions = {};
+  /// m, in each direction, that the robot is elsewhere than any geometry says.
+  double strays = 0;
 };
 
 /// Improved where the rows that judge are met better (check_comparison.h) and the end position is

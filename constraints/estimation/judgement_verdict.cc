@@ -57,6 +57,12 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
   } else if (known_to(grounds.workspace, grounds.target)) {
     v.answer = compared.better() ? Answer::improved : Answer::not_improved;
     if (compared.angles_rise) v.why += "; the angles are met worse than before";
+    if (grounds.strays > grounds.target)
+      v.why += with_figures(
+          "; beside that the robot strays by %.2g mm in each direction from any geometry, more "
+          "than "
+          "the %.3g mm wanted",
+          1e3 * grounds.strays, 1e3 * grounds.target);
   } else {
     if (grounds.workspace.poses >= kFewestPoses)
       v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);

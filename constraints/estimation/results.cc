@@ -95,16 +95,28 @@ bool beyond_sheet(const Scatter& scatter, double stated, int rows) {
          chi_square_exceeds(rows * std::pow(scatter.found / stated, 2), rows) < kChance;
 }
 
-/// What the rows have beside the noise that was expected is the robot's, and in no figure of it.
+/// What the rows have beside the noise that was expected, in each direction measured.
+double beside(double found, double expected) {
+  return std::sqrt(std::pow(found, 2) - std::pow(expected, 2));
+}
+
+bool beyond_repeats(const SetResult& set) {
+  return set.repeat_sigma > 0 && set.noise_sigma > kMoreThanRepeats * set.repeat_sigma;
+}
+
+bool is_placed_by_rows(const SetResult& set, const Method& method) {
+  return !set.aligned || method.group_freedom() > 0;
+}
+
+/// It is the robot's, and in no figure of it.
 std::string unexplained(const SetResult& set, const Scatter& scatter, double expected,
                         const char* than, const char* unless) {
   return "set " + set.name + ": the " + scatter.what + " scatter " +
          ratio(scatter.found, expected) + " times as much as " + than +
          ": the geometry does not explain them all; beside what is known of it the robot strays "
          "by " +
-         with_figures("%.2g ",
-                      1e3 * std::sqrt(std::pow(scatter.found, 2) - std::pow(expected, 2))) +
-         scatter.unit + " in each direction measured" + unless;
+         with_figures("%.2g ", 1e3 * beside(scatter.found, expected)) + scatter.unit +
+         " in each direction measured" + unless;
 }
 
 }  // namespace
@@ -228,8 +240,8 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           "set " + set.name + ": its data sheet's noise is " +
           ratio(stated.length, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
-    const bool placed = !set.aligned || data.sets[s].method->group_freedom() > 0;
-    if (placed && set.repeat_sigma > 0 && set.noise_sigma > kMoreThanRepeats * set.repeat_sigma) {
+    const bool placed = is_placed_by_rows(set, *data.sets[s].method);
+    if (placed && beyond_repeats(set)) {
       set.unexplained = true;
       solution.warnings.push_back(unexplained(set, {"rows", set.noise_sigma, "mm"},
                                               set.repeat_sigma, "immediate repeats", ""));
@@ -241,6 +253,20 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +
           "judge the robot alone, where they place it best");
   }
+}
+
+double strays(const Equations& equations, const std::vector<SetResult>& sets) {
+  double most = 0;
+  for (size_t s = 0; s < sets.size(); ++s) {
+    const SetResult& set = sets[s];
+    const double stated = equations.stated(static_cast<int>(s)).length;
+    if (!set.identifies) continue;
+    if (is_placed_by_rows(set, *equations.data().sets[s].method) && beyond_repeats(set))
+      most = std::max(most, beside(set.noise_sigma, set.repeat_sigma));
+    else if (beyond_sheet({"rows", set.noise_sigma, "mm"}, stated, set.used))
+      most = std::max(most, beside(set.noise_sigma, stated));
+  }
+  return most;
 }
 
 }  // namespace selfcal

@@ -33,4 +33,9 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
 /// Noise far above the data sheet's or the repeats', rows put aside up to the bound.
 void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solution);
 
+/// By how much the robot is elsewhere than any geometry says, in each direction measured (m): what
+/// the rows of a set that identify scatter beside their repeats or their data sheet's noise, of the
+/// set with most of it; 0 where they scatter no more.
+double strays(const Equations& equations, const std::vector<SetResult>& sets);
+
 }  // namespace selfcal

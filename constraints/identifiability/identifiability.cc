@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "kinematics/size.h"
+
 namespace selfcal {
 namespace {
 
@@ -144,8 +146,12 @@ Identifiability identifiability(const Equations& equations, const Eigen::MatrixX
     if (free_mask[p]) order.push_back(p);
   RankRule of_robot = rule;
   of_robot.least.assign(equations.columns(), rule.least_sigma);
+  const double size = size_of(robot);
+  for (int c = equations.robot_columns(); c < equations.columns(); ++c)
+    of_robot.least[c] *= equations.nuisance_unit(c);
   for (size_t i = 0; i < robot.parameters().size(); ++i) {
     const Parameter& p = robot.parameters()[i];
+    if (p.quantity == Quantity::length) of_robot.least[i] *= size;
     if (p.quantity == Quantity::ratio) of_robot.least[i] = rule.least_ratio_sigma;
     if (p.part == Part::effect) of_robot.least[i] = p.tolerance;  // no better than its prior
   }

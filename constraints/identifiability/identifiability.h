@@ -18,7 +18,8 @@ namespace selfcal {
 struct RankRule {
   /// Structural question, tau = r epsilon max |R_ii| (11.28), r the count of rows; 0 for real data.
   double rows = 0;
-  /// Real data (whitened W): a parameter that the rows determine no better than this, m or rad.
+  /// Real data (whitened W): a parameter that the rows determine no better than this, rad or the
+  /// same of the robot's size (see size_of).
   double least_sigma = 2.0e-3;
   /// The same for gear ratios, which act on the whole joint angle.
   double least_ratio_sigma = 1.0e-4;

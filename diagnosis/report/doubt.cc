@@ -167,7 +167,9 @@ std::string moved_between_rows(const LinearisedModel& linearised, const DataSet&
   const Solution calibrated = identify(linearised.geometry(), data);
   std::vector<FrameStep> steps = calibrated.frame_steps;
   if (!steps.empty() && named_tells_better(linearised, data, diagnosis, calibrated)) return {};
-  if (steps.empty() && drifts_too_far(diagnosis.named))
+  const bool tool_moves = std::ranges::any_of(
+      diagnosis.named, [](const CauseResult& each) { return each.effect == "tool_shift"; });
+  if (steps.empty() && (tool_moves || drifts_too_far(diagnosis.named)))
     steps = steps_beside_what_stays(linearised, data, diagnosis.found);
   return steps.empty() ? "" : step_words(steps.front());
 }

@@ -1,6 +1,7 @@
 #include "diagnosis/report/named.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "diagnosis/constants.h"
@@ -41,8 +42,14 @@ bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate
 }
 
 std::vector<CauseResult> take_idle(std::vector<CauseResult>& named) {
+  // Of an impossible size it speaks of the rows, see doubt.h.
   const auto closes = [](const CauseResult& each) {
-    return !each.closes_alone || !each.closes_beside ||
+    return std::ranges::any_of(each.parameters,
+                               [](const NamedValue& v) {
+                                 return std::abs(v.value) >
+                                        kDiagnosis.report.impossible * v.usual_most;
+                               }) ||
+           !each.closes_alone || !each.closes_beside ||
            *each.closes_alone >= kDiagnosis.naming.nothing_alone ||
            *each.closes_beside >= kDiagnosis.naming.nothing_beside;
   };

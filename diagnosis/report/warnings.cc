@@ -67,12 +67,16 @@ std::string of_masses(const LinearisedModel& linearised) {
   if (!statics || !statics->mechanics().masses_assumed) return {};
   double mass = 0;
   for (const Link& link : statics->mechanics().links) mass += link.mass.value_or(0);
-  const std::string moving = format_number(std::round(mass)) + " kg moving";
+  const std::string moving = format_number(std::round(mass)) + " kg moving",
+                    of_size = format_number(kDiagnosis.shapes.mass_off),
+                    of_spread = format_number(kDiagnosis.shapes.spread_off);
   if (!linearised.mass_of_its_size())
     return "the masses of the links are usual ones, spread of the file's `mass:` and `payload:` (" +
-           moving + "); those of each link are better";
+           moving + "): compliances may be " + of_spread + " times off with them, beyond their " +
+           "sigma; those of each link are better";
   return "the file gives no masses of the links: usual ones are taken, " + moving +
-         "; `mass:` and `payload:` of the data sheet, or those of the links, are better";
+         ": compliances may be " + of_size + " times off with them, beyond their sigma; `mass:` " +
+         "and `payload:` of the data sheet, or those of the links, are better";
 }
 
 std::string of_order(const DataSet& data) {

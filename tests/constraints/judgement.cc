@@ -55,6 +55,7 @@ struct Rows {
     grounds.target = 1e-3;
     grounds.converged = true;
     grounds.contradictions = std::move(contradictions);
+    grounds.strays = strays;
     return verdict(nominal, figures(), grounds);
   }
   Answer answer() const { return judged().answer; }
@@ -66,6 +67,7 @@ struct Rows {
   DataSet data;
   Judged nominal, calibrated;
   int poses = kFewestPoses;  // of the workspace
+  double strays = 0;         // m
 };
 
 TEST(Verdict, IsNotDeterminedWhereTheRobotHardlyReachesTheWorkspace) {
@@ -75,6 +77,17 @@ TEST(Verdict, IsNotDeterminedWhereTheRobotHardlyReachesTheWorkspace) {
   rows.poses = 2;
   EXPECT_EQ(rows.answer(), Answer::not_determined);
   EXPECT_THAT(rows.judged().why, testing::HasSubstr("only 2 of the configurations tried reach"));
+}
+
+TEST(Verdict, SaysWhereTheRobotStraysMoreThanIsWanted) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);
+  EXPECT_THAT(rows.judged().why, testing::Not(testing::HasSubstr("strays")));
+  rows.strays = 2e-3;
+  EXPECT_EQ(rows.answer(), Answer::improved);
+  EXPECT_THAT(rows.judged().why,
+              testing::HasSubstr("the robot strays by 2 mm in each direction from any geometry, "
+                                 "more than the 1 mm wanted"));
 }
 
 TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {

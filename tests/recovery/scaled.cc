@@ -2,6 +2,7 @@
 // noise: the same answer in their own measure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/estimation/identification.h"
@@ -13,8 +14,8 @@
 namespace selfcal::recovery {
 namespace {
 
-std::vector<SetPart> sets_of_size(double scale, bool touches) {
-  const std::string noise = format_number(20e-6 * scale);
+std::vector<SetPart> sets_of_size(double scale, bool touches, double noise_of_one = 20e-6) {
+  const std::string noise = format_number(noise_of_one * scale);
   if (!touches)
     return {{"tracker",
              entry({{"method", "position"}, {"frame", "unknown"}, {"noise", noise.c_str()}}), 90}};
@@ -27,6 +28,22 @@ std::vector<SetPart> sets_of_size(double scale, bool touches) {
                                   {"noise", format_number(2e-6 * scale).c_str()}}));
   parts.push_back({"gauge", gauge, 60});
   return parts;
+}
+
+/// The same session of a robot `scale` times as large.
+DataSet of_size(DataSet data, double scale, const std::vector<SetPart>& parts) {
+  Problems problems;
+  Node entries = Node::map();
+  for (const SetPart& part : parts) entries.set(part.name, part.node);
+  const std::vector<Set> sets = read_sets(entries, problems);
+  for (size_t s = 0; s < sets.size(); ++s) {
+    const auto groups = data.sets[s].groups;
+    data.sets[s] = sets[s];
+    data.sets[s].groups = groups;
+  }
+  data.rows.position *= scale;
+  data.target *= scale;
+  return data;
 }
 
 class Scaled : public testing::TestWithParam<bool> {};
@@ -45,18 +62,7 @@ TEST_P(Scaled, RobotsOfTenCentimetresAndTenMetresGetTheAnswerOfOneOfOneMetre) {
 
   for (const double scale : {0.1, 10.0}) {
     const auto robot = arm_of_size(scale);
-    DataSet data = session.data;
-    Problems problems;
-    Node entries = Node::map();
-    for (const SetPart& part : sets_of_size(scale, GetParam())) entries.set(part.name, part.node);
-    const std::vector<Set> sets = read_sets(entries, problems);
-    for (size_t s = 0; s < sets.size(); ++s) {
-      const auto groups = data.sets[s].groups;
-      data.sets[s] = sets[s];
-      data.sets[s].groups = groups;
-    }
-    data.rows.position *= scale;
-    data.target *= scale;
+    const DataSet data = of_size(session.data, scale, sets_of_size(scale, GetParam()));
     const Solution other = identify(*robot, data);
     EXPECT_EQ(other.verdict.answer, one.verdict.answer) << other.verdict.why;
     EXPECT_EQ(other.outliers.size(), one.outliers.size());
@@ -73,6 +79,29 @@ TEST_P(Scaled, RobotsOfTenCentimetresAndTenMetresGetTheAnswerOfOneOfOneMetre) {
       EXPECT_LE(std::abs(b.value / unit - a.value), 1e-4 * std::max(a.sigma, 1e-8))
           << a.parameter.name << " times " << scale;
     }
+  }
+}
+
+// Rows so coarse that they hardly tell some lengths: which, does not hang on the robot's size.
+TEST(ScaledRank, CoarseRowsTellTheSameParameters) {
+  const auto usual = arm_of_size(1);
+  constexpr double kCoarse = 3e-3;  // m
+  Random random(7);
+  const Session session = make_session(*usual, nominal_values(*usual),
+                                       sets_of_size(1, false, kCoarse), kCoarse, random);
+  const Solution one = identify(*usual, session.data);
+  const auto told = [](const Solution& solution) {
+    return std::ranges::count(solution.parameters, Status::identified, &ParameterResult::status);
+  };
+  const Session fine =
+      make_session(*usual, nominal_values(*usual), sets_of_size(1, false), 20e-6, random);
+  ASSERT_LT(told(one), told(identify(*usual, fine.data)));
+  for (const double scale : {0.1, 10.0}) {
+    const Solution other = identify(
+        *arm_of_size(scale), of_size(session.data, scale, sets_of_size(scale, false, kCoarse)));
+    for (std::size_t i = 0; i < one.parameters.size(); ++i)
+      EXPECT_EQ(other.parameters[i].status, one.parameters[i].status)
+          << one.parameters[i].parameter.name << " times " << scale;
   }
 }
 

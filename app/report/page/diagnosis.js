@@ -36,7 +36,7 @@ function gap_of(data) {
     ({label: step.label, tile: step.tile || step.label[0], value: 1e3 * step.value, colour: step.colour}));
   const parts = [tiles(items.map(item => [figure(item.value, 4) + " mm", item.tile])),
     chart(bars(items, "rms, mm"), "On " + gap.rows + (gap.judged_on === "folds"
-      ? " rows, each part judged by the others in turn." : " rows that neither the fit nor the choice has seen."),
+      ? " rows, each part judged by the others in turn." : " rows that neither the fit nor the search has seen."),
       "", 3 + 3 * items.length)];
   const intervals = gap.closed_interval || gap.closed_all_interval;
   if (words.closed) parts.push(paragraph(words.closed[0].toUpperCase() + words.closed.slice(1) +
