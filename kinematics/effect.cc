@@ -111,8 +111,7 @@ const Mechanics* EffectPlan::mechanics() const {
 
 bool EffectPlan::torques() const {
   if (robot.statics() || weighs(robot)) return true;
-  fields.fail("effect",
-              "an effect without load: the robot's file gives no `masses:` of what it carries");
+  fields.fail("effect", "an effect without load: " + std::string(kNoMasses));
   return false;
 }
 

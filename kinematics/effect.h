@@ -135,6 +135,9 @@ class Effect {
 
 /// Why an effect of load or of links says nothing of a robot without either.
 inline constexpr std::string_view kNoStatics = "this kind of robot has no statics model";
+/// Why an effect of load says nothing of a robot that can have masses, and whose file has none.
+inline constexpr std::string_view kNoMasses =
+    "the robot's file gives no `masses:` of what it carries";
 /// Why an effect of legs says nothing of other robots.
 inline constexpr std::string_view kNoLegs = "no legs carry this kind of robot";
 

@@ -114,8 +114,10 @@ std::vector<RowFigure> row_figures(const DataSet& data, const Judged& before, co
   return rows;
 }
 
-bool is_foreseen(const Judged& judged, size_t check_row) {
-  return check_row < judged.foreseen.size() && judged.foreseen[check_row] != 0;
+/// Beyond the noise, and not for what predicts it being in doubt.
+bool is_to_look_at(const Judged& judged, size_t check_row) {
+  return is_outlier(judged.check[check_row], judged) &&
+         (judged.foreseen.empty() || judged.foreseen[check_row] == 0);
 }
 
 }  // namespace
@@ -189,7 +191,7 @@ Residuals residual_figures(const DataSet& data, const Judged& before, const Judg
   for (size_t i = 0; i < after.check.size(); ++i) {
     const RowResidual& row = after.check[i];
     result.check_rows[i].configuration = configuration[row.row];
-    const bool is_far = result.check_rows[i].outlier && !is_foreseen(after, i);
+    const bool is_far = is_to_look_at(after, i);
     check_outlier[row.row] = is_far;
     check.add(norm_of_row(before.check[i]), row, is_far);
     of_set[row.set].add(norm_of_row(before.check[i]), row, is_far);
@@ -219,7 +221,7 @@ std::vector<Outlier> outlier_rows(const DataSet& data, const Judged& after,
   for (const RowResidual& r : after.fit)
     if (outlier[r.row]) add(r, false);
   for (size_t i = 0; i < after.check.size(); ++i)
-    if (is_outlier(after.check[i], after) && !is_foreseen(after, i)) add(after.check[i], true);
+    if (is_to_look_at(after, i)) add(after.check[i], true);
   for (const std::vector<OpenRow>* rows : {&after.open, &after.open_check})
     for (const OpenRow& open : *rows)
       list.push_back(

@@ -60,8 +60,7 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
     if (grounds.strays > grounds.target)
       v.why += with_figures(
           "; beside that the robot strays by %.2g mm in each direction from any geometry, more "
-          "than "
-          "the %.3g mm wanted",
+          "than the %.3g mm wanted",
           1e3 * grounds.strays, 1e3 * grounds.target);
   } else {
     if (grounds.workspace.poses >= kFewestPoses)

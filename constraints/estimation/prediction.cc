@@ -2,7 +2,8 @@
 // whitened, its residuals have the covariance I + W C W^T, W its derivatives over its noise.
 #include "constraints/estimation/prediction.h"
 
-#include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "constraints/statistics.h"
 

@@ -100,12 +100,16 @@ double beside(double found, double expected) {
   return std::sqrt(std::pow(found, 2) - std::pow(expected, 2));
 }
 
-bool beyond_repeats(const SetResult& set) {
-  return set.repeat_sigma > 0 && set.noise_sigma > kMoreThanRepeats * set.repeat_sigma;
-}
+Scatter rows_of(const SetResult& set) { return {"rows", set.noise_sigma, "mm"}; }
 
+/// The rows that identify placed all of the set.
 bool is_placed_by_rows(const SetResult& set, const Method& method) {
   return !set.aligned || method.group_freedom() > 0;
+}
+
+bool beyond_repeats(const SetResult& set, const Method& method) {
+  return is_placed_by_rows(set, method) && set.repeat_sigma > 0 &&
+         set.noise_sigma > kMoreThanRepeats * set.repeat_sigma;
 }
 
 /// It is the robot's, and in no figure of it.
@@ -228,7 +232,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
     for (const auto& [scatter, noise] :
-         {std::pair(Scatter{"rows", set.noise_sigma, "mm"}, stated.length),
+         {std::pair(rows_of(set), stated.length),
           std::pair(Scatter{"angles", set.noise_angle_sigma, "mrad"}, stated.angle)})
       if (beyond_sheet(scatter, noise, set.used)) {
         set.unexplained = true;
@@ -240,15 +244,15 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           "set " + set.name + ": its data sheet's noise is " +
           ratio(stated.length, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
-    const bool placed = is_placed_by_rows(set, *data.sets[s].method);
-    if (placed && beyond_repeats(set)) {
+    const Method& method = *data.sets[s].method;
+    if (beyond_repeats(set, method)) {
       set.unexplained = true;
-      solution.warnings.push_back(unexplained(set, {"rows", set.noise_sigma, "mm"},
-                                              set.repeat_sigma, "immediate repeats", ""));
+      solution.warnings.push_back(
+          unexplained(set, rows_of(set), set.repeat_sigma, "immediate repeats", ""));
     }
     if (std::string often = often_beyond(set, solution); !often.empty())
       solution.warnings.push_back(std::move(often));
-    if (!placed)
+    if (!is_placed_by_rows(set, method))
       solution.warnings.push_back(
           "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +
           "judge the robot alone, where they place it best");
@@ -261,9 +265,9 @@ double strays(const Equations& equations, const std::vector<SetResult>& sets) {
     const SetResult& set = sets[s];
     const double stated = equations.stated(static_cast<int>(s)).length;
     if (!set.identifies) continue;
-    if (is_placed_by_rows(set, *equations.data().sets[s].method) && beyond_repeats(set))
+    if (beyond_repeats(set, *equations.data().sets[s].method))
       most = std::max(most, beside(set.noise_sigma, set.repeat_sigma));
-    else if (beyond_sheet({"rows", set.noise_sigma, "mm"}, stated, set.used))
+    else if (beyond_sheet(rows_of(set), stated, set.used))
       most = std::max(most, beside(set.noise_sigma, stated));
   }
   return most;

@@ -9,6 +9,7 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/report/named.h"
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/search/naming.h"
@@ -29,14 +30,10 @@ bool moves(std::string_view effect) {
 std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
 std::string impossible_size(const std::vector<CauseResult>& named) {
-  for (const CauseResult& each : named) {
-    if (lasting_of(each.effect) == EffectLasting::moved_at_will) continue;
-    for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
-          kDiagnosis.report.impossible * v.usual_most)
-        return "no machine has " + v.name + " of " + in_readable_unit(v.value, v.unit) +
-               ", which is what the rows would need";
-  }
+  for (const CauseResult& each : named)
+    if (const NamedValue* v = of_impossible_size(each))
+      return "no machine has " + v->name + " of " + in_readable_unit(v->value, v->unit) +
+             ", which is what the rows would need";
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "diagnosis/constants.h"
+#include "kinematics/effect.h"
 
 namespace selfcal {
 namespace {
@@ -41,15 +42,18 @@ bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate
                              [&](const CauseResult& each) { return names(each, candidate); });
 }
 
+const NamedValue* of_impossible_size(const CauseResult& cause) {
+  if (lasting_of(cause.effect) == EffectLasting::moved_at_will) return nullptr;
+  const auto found = std::ranges::find_if(cause.parameters, [](const NamedValue& v) {
+    return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
+           kDiagnosis.report.impossible * v.usual_most;
+  });
+  return found == cause.parameters.end() ? nullptr : &*found;
+}
+
 std::vector<CauseResult> take_idle(std::vector<CauseResult>& named) {
-  // Of an impossible size it speaks of the rows, see doubt.h.
   const auto closes = [](const CauseResult& each) {
-    return std::ranges::any_of(each.parameters,
-                               [](const NamedValue& v) {
-                                 return std::abs(v.value) >
-                                        kDiagnosis.report.impossible * v.usual_most;
-                               }) ||
-           !each.closes_alone || !each.closes_beside ||
+    return of_impossible_size(each) || !each.closes_alone || !each.closes_beside ||
            *each.closes_alone >= kDiagnosis.naming.nothing_alone ||
            *each.closes_beside >= kDiagnosis.naming.nothing_beside;
   };

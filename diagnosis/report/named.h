@@ -10,8 +10,12 @@ namespace selfcal {
 bool names(const CauseResult& cause, const Candidate& candidate);
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate);
 
+/// A parameter far beyond what any machine has; null where there is none, and of what a person
+/// moves at will. It speaks of the rows, see doubt.h.
+const NamedValue* of_impossible_size(const CauseResult& cause);
+
 /// Takes out those of several causes that close nothing of the rows kept aside, neither alone nor
-/// beside the others, as long as any other does: returns them.
+/// beside the others, as long as any other does: returns them. One of an impossible size stays.
 std::vector<CauseResult> take_idle(std::vector<CauseResult>& named);
 
 /// `h` and what it lacks of what is named, as the most probable hypothesis has that.

@@ -143,9 +143,8 @@ Result<std::string> columns(sqlite3* database) {
         database,
         "SELECT (SELECT group_concat(name || ' ' || type || ' ' || \"notnull\" || ' ' || pk)"
         " FROM pragma_table_xinfo(?1)) || coalesce('; ' ||"
-        " (SELECT group_concat(\"from\" || ' ' || \"table\" || ' ' || coalesce(\"to\", '') || ' ' "
-        "||"
-        " on_delete || ' ' || on_update) FROM pragma_foreign_key_list(?1)), '')",
+        " (SELECT group_concat(\"from\" || ' ' || \"table\" || ' ' || coalesce(\"to\", '')"
+        " || ' ' || on_delete || ' ' || on_update) FROM pragma_foreign_key_list(?1)), '')",
         {table.table});
     if (!list) return list;
     all += table.table + (": " + *list) + "\n";

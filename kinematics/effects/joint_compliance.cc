@@ -124,7 +124,7 @@ void suppose_joint_compliance(const Supposed& rows, const EffectPlace& place, Su
     else if (weighs(rows.robot))
       to.add(place.name);
     else
-      to.cannot(place.name, "the robot's file gives no `masses:` of what it carries");
+      to.cannot(place.name, std::string(kNoMasses));
     return;
   }
   const Mechanics& mechanics = statics->mechanics();
