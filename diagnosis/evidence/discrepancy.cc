@@ -1,11 +1,10 @@
 // Covariance of two equations: that of their configurations, a Gaussian bell of the distance, times
-// the cosine between the directions that they measure in; lengths that no shift of the world
-// changes have one direction of their own. What comes and goes in time jumps or wanders: it is as
-// alike as exp(-|t1 - t2| / span) says, as the tool sees it, or as a motion of the base would have
-// it,
+// the cosine between the directions that they measure in. A row's only equation, where no shift of
+// the world changes it (a distance), has the direction of its set; of the angles of a pose none is
+// another's. What comes and goes in time jumps or wanders: it is as alike as exp(-|t1 - t2| / span)
+// says, as the tool sees it, or as a motion of the base would have it,
 //   d1 . d2 + (c1 x d1) . (c2 x d2),   c from the middle of all places, over the robot's size.
-// Where a joint is off by a
-// function of the readings, it is
+// Where a joint is off by a function of the readings, it is
 //   J(1) J(2) mean_ab (1 + bell_a) (1 + bell_b) / 4
 // with J what the joint moves the equation (of mean square 1 over all equations) and bell_a that of
 // the difference of reading a: functions of one reading and of two, all of them smooth.
@@ -40,13 +39,8 @@ class Kernel {
     std::ranges::copy_if(data.time, std::back_inserter(times),
                          [](double t) { return std::isfinite(t); });
     if (!times.empty()) span_ = std::ranges::max(times) - std::ranges::min(times);
-    direction_.setZero(rows.shift.rows(), 4);
-    for (Eigen::Index i = 0; i < direction_.rows(); ++i)
-      if (const double norm = rows.shift.row(i).norm(); norm > 0)
-        direction_.row(i).head<3>() = rows.shift.row(i) / norm;
-      else
-        direction_(i, 3) = 1;
     number();
+    find_directions();
   }
 
   bool possible(KernelDomain domain) const {
@@ -127,6 +121,24 @@ class Kernel {
       const auto [at, first] = block.try_emplace(key, static_cast<int>(blocks_.size()));
       if (first) blocks_.emplace_back();
       blocks_[at->second].push_back(i);
+    }
+  }
+
+  /// The directions that equations measure in, in the world's axes, with one more for each set:
+  /// that of rows of one equation that no shift changes.
+  void find_directions() {
+    const Eigen::Index n = rows_.shift.rows();
+    std::vector<int> equations(used_.empty() ? 0 : 1 + std::ranges::max(used_));
+    for (const int row : rows_.row)
+      if (row >= 0) ++equations[row];
+    const int sets = data_.set.empty() ? 0 : 1 + std::ranges::max(data_.set);
+    direction_.setZero(n, 3 + sets);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int row = rows_.row[i];
+      if (const double norm = rows_.shift.row(i).norm(); norm > 0)
+        direction_.row(i).head<3>() = rows_.shift.row(i) / norm;
+      else if (row >= 0 && equations[row] == 1)
+        direction_(i, 3 + data_.set[row]) = 1;
     }
   }
 

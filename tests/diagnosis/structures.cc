@@ -142,6 +142,17 @@ TEST(Structures, KnowDistancesThatNoShiftChanges) {
   EXPECT_EQ(of(KernelDomain::base), list.end()) << "no motion of the base changes them";
 }
 
+TEST(Structures, TakeNoAngleOfAPoseForAnother) {
+  Touches t;
+  t.data.repeat.clear();
+  t.rows.shift.setZero();
+  t.rows.row = {0, 0, 0};
+  t.data.time.resize(3);
+  t.data.time << 0, 500, 1000;
+  for (const auto& each : structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q))
+    EXPECT_TRUE(each.matrix().isDiagonal()) << "kind " << each.kind;
+}
+
 TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   Observations data;
   data.q.resize(2, 2);
