@@ -57,7 +57,8 @@ int find_joint(const Robot& robot, std::string_view name) {
 
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin) {
   for (Eigen::Index j = 0; j < q.size(); ++j)
-    if (!robot.joints()[j].allows(q[j], margin)) return false;
+    if (const Joint& joint = robot.joints()[j]; !joint.allows(q[j], margin * joint.range()))
+      return false;
   return robot.within_passive_limits(q);
 }
 

@@ -245,8 +245,8 @@ bool has_body(const Robot& robot, Body body);
 std::vector<NamedBody> named_bodies(const Robot& robot);
 /// The one called `name`; nothing where there is none.
 std::optional<Body> find_body(const Robot& robot, std::string_view name);
-/// Every reading keeps `margin` (rad or m) from its joint's limits, and the passive joints keep
-/// theirs.
+/// Every reading keeps `margin`, a share of its joint's range, from the joint's limits, and the
+/// passive joints keep theirs.
 bool within_limits(const Robot& robot, const Eigen::VectorXd& q, double margin = 0);
 
 /// Readings `q` alone, of one lane.

@@ -23,20 +23,20 @@ struct TouchTarget {
 };
 
 struct TouchPlanOptions {
-  double clearance = 0.03;     ///< m, how far out of the contact free ways end
-  double slow = 0.013;         ///< m, how far out of it a touch begins, slowly; at most
-                               ///< the clearance
-  double search = 0.01;        ///< m, how far behind the nominal place it is given up
-  double tilt = 1.2;           ///< rad, most between the stylus (z of the endpoint) and the way in
-  double apart = 0.02;         ///< m, kept between the endpoint and every surface that
-                               ///< is not touched
-  double limit_margin = 0.02;  ///< rad or m, kept from the joint limits
-  double check = 0.33;         ///< share kept aside to judge
-  double spacing = 0;          ///< m, least between points of a surface that are touched
-  double longest = 0;          ///< s, most that the motion of a session may take; 0: any time
-  double touch_speed = 0.01;   ///< m/s, of the endpoint towards a surface
-  int repeats = 1;             ///< touches of each configuration
-  Fence fence = {};            ///< where no part of the robot may be
+  double clearance = 0.03;      ///< m, how far out of the contact free ways end
+  double slow = 0.013;          ///< m, how far out of it a touch begins, slowly; at most
+                                ///< the clearance
+  double search = 0.01;         ///< m, how far behind the nominal place it is given up
+  double tilt = 1.2;            ///< rad, most between the stylus (z of the endpoint) and the way in
+  double apart = 0.02;          ///< m, kept between the endpoint and every surface that
+                                ///< is not touched
+  double limit_margin = 0.005;  ///< kept from the joint limits, of each joint's range
+  double check = 0.33;          ///< share kept aside to judge
+  double spacing = 0;           ///< m, least between points of a surface that are touched
+  double longest = 0;           ///< s, most that the motion of a session may take; 0: any time
+  double touch_speed = 0.01;    ///< m/s, of the endpoint towards a surface
+  int repeats = 1;              ///< touches of each configuration
+  Fence fence = {};             ///< where no part of the robot may be
   KnownBefore known = {};
   Eigen::VectorXd home;  ///< readings from which every touch can be begun
   double speed = 0.5;    ///< rad/s or m/s, of the joints between touches

@@ -134,7 +134,6 @@ std::vector<PlannedTouch> other_ways(double k) {
   cell.options.clearance /= 10;
   cell.options.slow /= 10;
   cell.options.search /= 10;
-  cell.options.limit_margin *= k;
   Random random(2);
   const TouchCandidates candidates(*robot, cell.xi, cell.sets, cell.obstacles, cell.options);
   std::vector<PlannedTouch> list;

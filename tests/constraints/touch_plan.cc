@@ -28,8 +28,8 @@ TEST(TouchPlan, TouchesItsPlanesWithinPatchLimitsAndTilt) {
     for (const Eigen::VectorXd& q : {each.start, each.end})
       for (Eigen::Index j = 0; j < 6; ++j) {
         const Joint& joint = rx90().joints()[j];
-        EXPECT_GE(q[j], joint.lower + cell.options.limit_margin);
-        EXPECT_LE(q[j], joint.upper - cell.options.limit_margin);
+        EXPECT_GE(q[j], joint.lower + cell.options.limit_margin * joint.range());
+        EXPECT_LE(q[j], joint.upper - cell.options.limit_margin * joint.range());
       }
   }
 }

@@ -94,7 +94,7 @@ TEST(TouchPlan, TellsMoreThanTouchesByChanceDo) {
 }
 
 TEST(TouchPlan, IdentifiesASurfaceWhereverItsOtherTouchesJudge) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
     PlannedCell cell;
     cell.options.seed = seed;
     cell.options.check = 0.33;

@@ -24,6 +24,8 @@ TEST(Joint, WithoutLimitsIsWithinThemAnywhere) {
   const auto robot = two_joints();
   EXPECT_TRUE(within_limits(*robot, Eigen::Vector2d(1.5, 100)));
   EXPECT_FALSE(within_limits(*robot, Eigen::Vector2d(1.5, 100), 0.01));
+  EXPECT_TRUE(within_limits(*robot, Eigen::Vector2d(1.46, 100), 0.01)) << "of 3.5 rad";
+  EXPECT_FALSE(within_limits(*robot, Eigen::Vector2d(1.47, 100), 0.01)) << "of 3.5 rad";
   EXPECT_FALSE(within_limits(*robot, Eigen::Vector2d(-2.1, 0)));
 }
 

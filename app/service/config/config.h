@@ -34,7 +34,7 @@
 //     search         0.01       1e-4 to 0.1 m   how far off the surface may be, either way
 //     apart          0.02       0 to 0.5 m      kept from every other surface; below clearance
 //     tilt           1.2        0.01 to 3.2 rad most between stylus and the way in
-//     limit_margin   0.02       0 to 1          kept from the joint limits (rad, m)
+//     limit_margin   0.005      0 to 0.4        kept from each joint's limits, of its range
 //     spacing        0          0 to 1 m        least between touched points of a surface
 //     longest        0          0 to 1e6 s      most that a session's motion may take; 0: any time
 //     keep_out       []                         where nothing may be: [{min: [x, y, z],

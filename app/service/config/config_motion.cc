@@ -26,7 +26,7 @@ void read_motion(Fields& f, Config& c, Problems& problems) {
   c.plan.touch_speed = c.speeds.touch;
   c.plan.spacing = f.number("spacing", c.plan.spacing, 0, 1);
   c.plan.longest = f.number("longest", c.plan.longest, 0, 1e6);
-  c.plan.limit_margin = f.number("limit_margin", c.plan.limit_margin, 0, 1);
+  c.plan.limit_margin = f.number("limit_margin", c.plan.limit_margin, 0, 0.4);
   c.touch.rest = f.number("rest", c.touch.rest, 1e-7, 0.1);
   if (c.plan.apart >= c.plan.clearance) f.fail("apart", "less than clearance");
   if (c.plan.search >= c.plan.clearance) f.fail("search", "less than clearance");
