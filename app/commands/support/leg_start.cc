@@ -19,6 +19,7 @@ Node as_made(const Robot& robot, const Eigen::VectorXd& xi) {
     if (const Node* list = node.find(part)) {
       Node chains = Node::list();
       for (const Node& each : list->items) chains.items.push_back(each.without({"nominal"}));
+      node = node.without({part});
       node.set(part, std::move(chains));
     }
   return node;
