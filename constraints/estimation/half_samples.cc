@@ -1,5 +1,6 @@
-// Balanced half-samples (McCarthy 1969) of rows in their order. With [R_h | z_h] the rows of half h
-// at the fitted parameters and Lambda, pull the precision of the priors and what they ask for,
+// Balanced half-samples (McCarthy 1969) of rows in the order of their times. With [R_h | z_h] the
+// rows of half h at the fitted parameters and Lambda, pull the precision of the priors and what
+// they ask for,
 //   s_h = C_h (R_h^T z_h + pull),   C_h = (R_h^T R_h + Lambda)^-1,   difference (s_1 - s_2) / 2,
 // whose square is expected to be, where the rows err apart and the truth is as the priors say,
 //   ((C_2 - C_1) Lambda (C_2 - C_1) + sum_h (C_h - C_h Lambda C_h)) / 4.
@@ -23,6 +24,7 @@ constexpr std::array kSplits = {1, 2, 3};
 /// By row of the data set, the stretch of its set's rows that it is in; -1 of other rows.
 std::vector<int> stretches(const Equations& equations) {
   const Observations& rows = equations.data().rows;
+  const std::vector<int> order = in_time(rows);
   std::vector<int> of_row(static_cast<size_t>(rows.rows()), -1);
   for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s) {
     std::vector<char> here(of_row.size(), 0);
@@ -30,8 +32,9 @@ std::vector<int> stretches(const Equations& equations) {
       here[static_cast<size_t>(item.row)] = 1;
     const auto count = static_cast<int>(equations.plan(s).items.size());
     int k = 0;
-    for (size_t row = 0; row < here.size(); ++row)
-      if (here[row]) of_row[row] = kStretches * k++ / count;
+    for (const int row : order)
+      if (here[static_cast<size_t>(row)])
+        of_row[static_cast<size_t>(row)] = kStretches * k++ / count;
   }
   return of_row;
 }

@@ -16,8 +16,8 @@ struct HalfSamples {
   Eigen::MatrixXd expected;
 };
 
-/// Linearised at `adjusted.fitted`. Each set's rows are taken as four stretches in their order, and
-/// every way to make two halves of them is one split.
+/// Linearised at `adjusted.fitted`. Each set's rows are taken as four stretches in the order of
+/// their times, and every way to make two halves of them is one split.
 HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted);
 
 }  // namespace selfcal

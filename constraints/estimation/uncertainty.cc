@@ -27,14 +27,18 @@ double determined(const Equations& equations, const Adjusted& adjusted) {
   return sum;
 }
 
-/// Residuals that took part, over the noise of their sets, in the order of the rows.
-std::vector<const RowResidual*> used_rows(const Judged& after, const Noise& noise) {
+/// Residuals that took part, over the noise of their sets, in the order of their times.
+std::vector<const RowResidual*> used_rows(const DataSet& data, const Judged& after,
+                                          const Noise& noise) {
+  std::vector<int> place(static_cast<size_t>(data.rows.rows()));
+  int at = 0;
+  for (const int row : in_time(data.rows)) place[static_cast<size_t>(row)] = at++;
+  const auto when = [&](const RowResidual* r) { return place[static_cast<size_t>(r->row)]; };
   std::vector<const RowResidual*> rows;
   rows.reserve(after.fit.size());
   for (const RowResidual& r : after.fit)
     if (!noise.outlier[static_cast<size_t>(r.row)]) rows.push_back(&r);
-  if (!std::ranges::is_sorted(rows, {}, &RowResidual::row))
-    std::ranges::stable_sort(rows, {}, &RowResidual::row);
+  if (!std::ranges::is_sorted(rows, {}, when)) std::ranges::stable_sort(rows, {}, when);
   return rows;
 }
 
@@ -221,7 +225,7 @@ Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
     result.budget.push_back(
         {std::string(source.name), endpoint_rms(deviations.weight, source.C.topLeftCorner(n, n))});
   result.expanded = result.k * sigma.rms;
-  const std::vector<const RowResidual*> rows = used_rows(after, noise);
+  const std::vector<const RowResidual*> rows = used_rows(data, after, noise);
   result.lack_of_fit = lack_of_fit(data, rows, noise, result.freedoms);
   result.residuals = residual_tests(rows, noise);
   result.correlations = correlations(equations.robot(), sum(sources));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -21,6 +22,18 @@ constexpr double kThere = 1e-6;  ///< of the robot's size, from the place drawn
 constexpr int kMostDraws = 100;
 
 using Uniform = std::uniform_real_distribution<double>;
+
+/// `rows` ordered by their readings, so that what is drawn between them is the same in whichever
+/// order they were written.
+Eigen::MatrixXd sorted(const Eigen::MatrixXd& rows) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(rows.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](Eigen::Index a, Eigen::Index b) {
+    const auto one = rows.row(a), other = rows.row(b);
+    return std::lexicographical_compare(one.begin(), one.end(), other.begin(), other.end());
+  });
+  return rows(order, Eigen::all);
+}
 
 /// The places that the box gives.
 class InBox {
@@ -94,10 +107,11 @@ std::vector<Eigen::VectorXd> in_box(const Robot& robot, const Eigen::VectorXd& x
 }
 
 std::vector<Eigen::VectorXd> between(const Robot& robot, const Eigen::VectorXd& xi,
-                                     const Eigen::MatrixXd& rows, int count,
+                                     const Eigen::MatrixXd& unsorted, int count,
                                      unsigned long long seed) {
   std::vector<Eigen::VectorXd> found;
-  if (rows.rows() == 0) return found;
+  if (unsorted.rows() == 0) return found;
+  const Eigen::MatrixXd rows = sorted(unsorted);
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<Eigen::Index> any(0, rows.rows() - 1);
   Uniform uniform;
