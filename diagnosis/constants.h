@@ -154,6 +154,9 @@ struct DiagnosisConstants {
     double far = 1 - 1e-6;
     /// A validation row's prediction has an error of its own; 1 to 2 [physics]
     double beyond = 1.25;
+    /// Of the rows, that may be false; more are no false readings: the machine or the cell is
+    /// another one there; 0.1 to 0.4 [habit]
+    double most_false = 0.2;
     int folds = 3;         ///< in which rows take turns at judging; 2 to 10 [cost]
     int stretches = 2;     ///< of a set's rows, in each fold; 1 to 5 [habit]
     int resamples = 1000;  ///< of blocks; 200 to 10000 [habit]
@@ -216,6 +219,8 @@ struct DiagnosisConstants {
     /// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
     /// exchanged may be moved as far as one likes; 10 to 100 [physics]
     double impossible = 20;
+    /// Of the usual smallest compliance: stiffer by two sigma is no machine; 5 to 50 [physics]
+    double too_stiff = 10;
     double other_sign = 3;  ///< sigmas beyond zero that no spring has; 2 to 5 [habit]
     /// Of the usual largest drift: a step may be taken for one; 2 to 10 [physics]
     double too_far = 3;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMost = 0.71;      ///< of a sigma: half the squares
 constexpr double kMetBetter = 0.8;  ///< of what half the rows were met to before
+constexpr double kApart = 10;       ///< times what those that identify are met to
 
 double doubt_from(const Solution& solution, std::string_view source) {
   const std::vector<BudgetLine>& budget = solution.uncertainty.budget;
@@ -75,6 +76,13 @@ bool seem_met_better(const Residuals& residual) {
   return !before.empty() && median(after) < kMetBetter * median(before);
 }
 
+bool lie_apart(const Residuals& residual) {
+  std::vector<double> aside, others;
+  for (const RowFigure& row : residual.rows) (row.check ? aside : others).push_back(row.after);
+  return !aside.empty() && !others.empty() &&
+         median(std::move(aside)) > kApart * median(std::move(others));
+}
+
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution) {
   for (const std::string& warning : solution.warnings)
     if (warning.starts_with(kFilesFirst)) return {warning};
@@ -114,6 +122,10 @@ std::vector<std::string> next_steps(const DataSet& data, const Solution& solutio
         (solution.residual.check.rms_without_outliers < solution.residual.check.rms_after
              ? ", and look at those beyond the noise: they hide how the others are met."
              : ": of so few a gain may be chance."));
+  else if (solution.verdict.answer == Answer::not_improved && lie_apart(solution.residual))
+    steps.push_back(
+        "See what is another one in the rows kept aside: the session, the robot, where the "
+        "instrument or a surface stands. They say nothing of the others.");
   else if (solution.verdict.answer == Answer::not_improved)
     steps.push_back("The maker's figures explain the check rows as well: keep them.");
   else if (solution.verdict.answer == Answer::not_determined &&

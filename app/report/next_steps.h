@@ -17,6 +17,10 @@ inline constexpr std::string_view kFilesFirst = "Look at the files first: ";
 /// The rows that judge are met better in their middle, whatever a test says of so many.
 bool seem_met_better(const Residuals& residual);
 
+/// Half the rows kept aside are met so much worse than those that identify that they are of another
+/// session, or of a machine that has changed.
+bool lie_apart(const Residuals& residual);
+
 /// What to do next, a sentence each.
 std::vector<std::string> next_steps(const DataSet& data, const Solution& solution);
 

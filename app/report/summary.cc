@@ -189,6 +189,8 @@ std::string headline(const Solution& solution) {
       return std::string("Not improved: ") +
              (seem_met_better(solution.residual)
                   ? "that these rows are met better may be chance, for all that they can tell"
+              : lie_apart(solution.residual)
+                  ? "the rows kept aside do not belong to those that identify"
                   : "the maker's figures explain the rows as well") +
              (figures.empty() ? std::string() : " (" + figures + ")") + ".";
     case Answer::not_determined:

@@ -2,6 +2,8 @@
 // Where the end position is not known to the target, but the check rows are no better and the
 // fitted rows do not contradict the maker's figures either, there is nothing to improve: that is an
 // answer too.
+#include <vector>
+
 #include "constraints/estimation/check_comparison.h"
 #include "constraints/estimation/judgement.h"
 #include "kinematics/readable.h"
@@ -24,6 +26,20 @@ std::string certainty(const Grounds& grounds) {
   return text + " (over the whole range of the joints" +
          (grounds.beyond_rows ? ", most of it beyond these rows," : "") +
          with_figures(" %.3g mm)", 1e3 * grounds.endpoint.rms);
+}
+
+/// Of what a check row was met by before: what is left of it where it is no better for any use; and
+/// of all of them those that must be better.
+constexpr double kHardlyLess = 0.99, kFewestBetter = 0.25;
+
+bool hardly_better(const std::vector<RowFigure>& rows) {
+  double judging = 0, better = 0;
+  for (const RowFigure& row : rows) {
+    judging += row.check;
+    better += row.check && (row.after < kHardlyLess * row.before ||
+                            row.angle_after < kHardlyLess * row.angle_before);
+  }
+  return better < kFewestBetter * judging;
 }
 
 /// What became of the check rows.
@@ -55,7 +71,9 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
   } else if (known_to(grounds.workspace, grounds.target) && compared.too_few()) {
     v.why += "; no test of so few configurations kept aside can say that they are met better";
   } else if (known_to(grounds.workspace, grounds.target)) {
-    v.answer = compared.better() ? Answer::improved : Answer::not_improved;
+    const bool hardly = compared.better() && hardly_better(residual.rows);
+    v.answer = compared.better() && !hardly ? Answer::improved : Answer::not_improved;
+    if (hardly) v.why += "; by less than a hundredth, which is of no use to anyone";
     if (compared.angles_rise) v.why += "; the angles are met worse than before";
     if (grounds.strays > grounds.target)
       v.why += with_figures(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "constraints/identifiability/observability.h"
 #include "kinematics/linear_algebra.h"
@@ -70,14 +71,16 @@ std::string ratio(double a, double b) { return format_number(std::round(a / b * 
 
 /// Rows kept aside that lie beyond the noise: so many that they are no false ones.
 std::string often_beyond(const SetResult& set, const Solution& solution) {
-  const auto far = std::ranges::count_if(
-      solution.outliers, [&](const Outlier& each) { return each.check && each.set == set.name; });
+  std::set<int> rows;
+  for (const Outlier& each : solution.outliers)
+    if (each.check && each.set == set.name) rows.insert(each.row);
+  const auto far = static_cast<std::ptrdiff_t>(rows.size());
   const auto own = std::ranges::find(solution.residual.check_by_set, set.name, &SetFigures::name);
   if (own == solution.residual.check_by_set.end() || far < kFewestFar ||
       static_cast<double>(far) < kOften * own->figures.rows)
     return {};
-  return "set " + set.name + ": " + std::to_string(far) + " of " +
-         std::to_string(own->figures.rows) +
+  return "set " + set.name + ": " + std::to_string(far) +
+         (far <= own->figures.rows ? " of " + std::to_string(own->figures.rows) : "") +  // or pairs
          " rows kept aside lie beyond the noise of those that identify: the robot strays from its "
          "geometry where they were taken, or so many readings are false; what is known of it "
          "holds for the others";

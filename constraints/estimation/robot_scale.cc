@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "constraints/estimation/shrinkage.h"
+#include "constraints/fitting/instrument_scale.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/readable.h"
@@ -44,6 +45,7 @@ class ScaleTest {
         columns_(free_columns(equations, prior_)) {}
 
   ScaleJudgement run() {
+    compare_instrument();
     find_lengths();
     if (lengths().empty()) return std::move(result_);
     if (!reads_lengths()) leave_scale_to_lengths();
@@ -207,6 +209,20 @@ class ScaleTest {
     result_.doubts.push_back(doubt);
   }
 
+  /// What is measured is all of another size than the maker says.
+  void compare_instrument() {
+    const auto found = instrument_scale(equations_, prior_, adjusted_.fitted.state.xi, R_);
+    if (!found || !found->beyond()) return;
+    result_.scale.against_maker = true;
+    result_.scale.contradictions.push_back(
+        with_figures("the robot is measured %.2g %%", 100 * std::abs(found->excess)) +
+        (found->excess > 0 ? " larger" : " smaller") +
+        with_figures(" all over than the maker's lengths say, which tell the scale to %.2g %% "
+                     "(%.2g sigma): check the instrument's scale, its units and its correction for "
+                     "the temperature, or the lengths in the robot's file",
+                     100 * found->sigma, std::abs(found->excess) / found->sigma));
+  }
+
   std::string in_words(double sigmas) {
     const RobotScale& scale = result_.scale;
     const auto m = static_cast<double>(lengths().size());
@@ -276,7 +292,7 @@ class ScaleTest {
 
 ScaleJudgement judge_scale(const Equations& equations, const Adjusted& adjusted,
                            const Eigen::MatrixXd& R, const Eigen::MatrixXd& weight) {
-  if (!adjusted.prior.use || equations.known_lengths() == 0) return {};
+  if (!adjusted.prior.use) return {};
   return ScaleTest(equations, adjusted, R, weight).run();
 }
 

@@ -15,7 +15,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kLargestProbe = 0.2;  // m
-constexpr const char* kKnownPlane =
+const std::string kKnownPlane =
     "[a, b, c] of a x + b y + c z + 1 = 0, which is -n / d of the unit normal n and the distance d "
     "along it; n times 1e9 where the plane goes through the world's origin";
 
@@ -246,7 +246,7 @@ MethodPtr make_plane(SetEntry& entry) {
   if (!(radius >= 0 && radius < kLargestProbe))
     entry.fields.fail("probe_radius", "metres from 0 to 0.2 (millimetres?)");
   const auto known = entry.fields.numbers("plane", 3);
-  entry.fields.refuse("normal", std::string("a known plane has `plane`: ") + kKnownPlane +
+  entry.fields.refuse("normal", "a known plane has `plane`: " + kKnownPlane +
                                     "; where only its normal is known, `method: plane-normal`");
   const Node* parallel = entry.fields.node("parallel_to");
   if (known && parallel) entry.fields.fail("parallel_to", "either `plane` or `parallel_to`");

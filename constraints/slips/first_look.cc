@@ -174,6 +174,15 @@ double spread_of(const Observations& rows) {
   return away.empty() ? HUGE_VAL : median(std::move(away));
 }
 
+/// The joints that read the same in every row; empty where all move.
+std::string silent_joints(const Robot& robot, const Observations& rows) {
+  std::string names;
+  for (Eigen::Index j = 0; j < rows.q.cols(); ++j)
+    if ((rows.q.col(j).array() == rows.q(0, j)).all())
+      names += (names.empty() ? "" : ", ") + robot.joints()[static_cast<size_t>(j)].name;
+  return names;
+}
+
 /// What each slip leaves, best first. One that makes all positions nearly one leaves little of any
 /// rows, and is none.
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
@@ -255,8 +264,15 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.explained = look.left > least && best < kSlipCollapse * look.left;
   look.tool =
       !look.explained && look.left < kSlipCollapse * look.tool_held && look.tool_held > gross;
+  const std::string silent = silent_joints(*robot, data.rows);
   if (look.explained)
-    look.found = look.tried.front().what;
+    look.found =
+        look.tried.front().what +
+        (silent.empty() ? "" : "; or " + silent + " moved: what is read of it never changes");
+  else if (!silent.empty())
+    look.found = "the rows do not fit, and what is read of " + silent +
+                 " is the same in all of them: a column that is not its encoder's, or an encoder "
+                 "that is silent";
   else if (look.tool)
     look.found = "the tool's frame is missing or another one";
   else if (look.left > gross && look.found.empty())

@@ -40,6 +40,8 @@ class SlipsOfRows {
     list_.push_back({std::move(what), nullptr, std::move(changed)});
   }
 
+  bool moves(Eigen::Index j) const { return (rows().q.col(j).array() != rows().q(0, j)).any(); }
+
   void of_joints() {
     const Eigen::Index n = rows().q.cols();
     for (Eigen::Index j = 0; j < n; ++j)
@@ -53,7 +55,7 @@ class SlipsOfRows {
             [j, turns](Observations& o) { o.q.col(j) *= turns; });
     for (Eigen::Index j = 0; j < n; ++j)
       for (Eigen::Index k = 0; k < j; ++k)
-        if (joint(j).quantity == joint(k).quantity)
+        if (joint(j).quantity == joint(k).quantity && moves(j) && moves(k))
           add("the columns of " + joint(k).name + " and " + joint(j).name + " are exchanged",
               [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
   }

@@ -39,6 +39,19 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
 
 bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
 
+/// A spring stiffer than any would be seen where the loads are said to be larger than they are.
+std::string too_stiff(const std::vector<CauseResult>& named) {
+  for (const CauseResult& each : named)
+    for (const NamedValue& v : each.parameters)
+      if (gives_way(each) && v.positive && v.value > 0 &&
+          kDiagnosis.report.too_stiff * (v.value + kDiagnosis.report.sigmas * v.sigma) <
+              v.usual_least)
+        return "no machine is so stiff as " + v.name + " of " + in_readable_unit(v.value, v.unit) +
+               " says: are the masses in the robot's file in kg, its gravity in m/s^2, and forces "
+               "in N?";
+  return {};
+}
+
 /// What a joint, a link or a tool that pushes back more than it is pushed would need.
 std::string impossible_sign(const CauseResult& cause) {
   for (const NamedValue& v : cause.parameters)
@@ -207,6 +220,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   if (std::string why = moved_between_rows(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
+  if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
   if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;

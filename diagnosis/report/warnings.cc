@@ -7,6 +7,7 @@
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -45,9 +46,9 @@ std::string of_gears(const HoldoutValidation& validation) {
 
 std::string stated_noise(const Set& set) {
   std::string text;
-  if (set.noise > 0) text += format_number(1e3 * set.noise) + " mm";
+  if (set.noise > 0) text += with_figures("%.4g mm", 1e3 * set.noise);
   if (set.noise_angle > 0)
-    text += (text.empty() ? "" : ", ") + format_number(1e3 * set.noise_angle) + " mrad";
+    text += (text.empty() ? "" : ", ") + with_figures("%.4g mrad", 1e3 * set.noise_angle);
   return text;
 }
 

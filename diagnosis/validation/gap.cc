@@ -104,6 +104,8 @@ Gap gap_of(const std::vector<ValidationRow>& all, unsigned long long seed, doubl
   std::vector<ValidationRow> rows;
   std::ranges::copy_if(all, std::back_inserter(rows),
                        [](const ValidationRow& row) { return !row.false_reading; });
+  const auto most = kDiagnosis.validation.most_false * static_cast<double>(all.size());
+  if (static_cast<double>(all.size() - rows.size()) > std::max(1.0, most)) rows = all;
   gap.rows = static_cast<int>(rows.size());
   gap.false_rows = static_cast<int>(all.size() - rows.size());
   if (rows.empty()) return gap;

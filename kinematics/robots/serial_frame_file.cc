@@ -10,6 +10,8 @@
 namespace selfcal::serial {
 namespace {
 
+constexpr double kHeaviestPart = 10000;  // kg; the largest arms weigh as much in all
+
 constexpr const char* kMotions[] = {"fixed", "revolute", "prismatic"};
 
 Motion read_motion(Fields& fields) {
@@ -123,7 +125,8 @@ void read_limits(Fields& fields, Frame& frame) {
 
 void read_mass(Fields& fields, Frame& frame) {
   frame.mass = fields.optional_number("mass");
-  if (frame.mass && *frame.mass < 0) fields.fail("mass", "a mass of at least 0 kg");
+  if (frame.mass && !(*frame.mass >= 0 && *frame.mass <= kHeaviestPart))
+    fields.fail("mass", "a mass of 0 to 10000 kg (grams?)");
   const auto com = fields.numbers("com", 3);
   if (!com) return;
   frame.com = *com;
@@ -178,6 +181,10 @@ Frame read_frame(const Node& node, int index, Convention convention, bool based,
     }
   if (convention == Convention::standard && fields.has("beta"))
     fields.fail("beta", "theta, r, d and alpha alone: standard DH has no beta");
+  if (convention == Convention::standard && fields.has("a"))
+    fields.fail("a",
+                "the letters of this file: what a data sheet's table calls d is r here, and its "
+                "a is d (`selfcal robot convert TABLE.csv` reads the sheet's own)");
   read_place(fields, convention, based && !moves ? kFarthestPlace : kLongestPart, problems, frame);
   read_mass(fields, frame);
   if (frame.name.find_first_of(".* \t") != std::string::npos || frame.name.empty())

@@ -85,6 +85,11 @@ TEST_F(DataCheck, SaysWhichReadingsAreTwiceWhatTheJointMoves) {
   expect_likely_wrong("the readings of j4 are twice what it moves (its gear ratio)");
 }
 
+TEST_F(DataCheck, SaysWhichJointReadsTheSameInEveryRow) {
+  change_rows({"q3"}, [](auto& q) { q[0] = 0.5; });
+  expect_likely_wrong("the rows do not fit, and what is read of j3 is the same in all of them");
+}
+
 TEST_F(DataCheck, SaysWhichJointsAreExchanged) {
   change_rows({"q2", "q3"}, [](auto& q) { std::swap(q[0], q[1]); });
   expect_likely_wrong("the columns of j2 and j3 are exchanged");

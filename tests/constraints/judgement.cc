@@ -97,6 +97,13 @@ TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
   EXPECT_EQ(rows.answer(), Answer::improved);
 }
 
+TEST(Verdict, IsNotImprovedWhereEveryRowIsBetterByNextToNothing) {
+  Rows rows;
+  rows.add(0, 60, 100 * kMicrometre, 99.5 * kMicrometre);
+  EXPECT_EQ(rows.answer(), Answer::not_improved);
+  EXPECT_THAT(rows.judged().why, testing::HasSubstr("by less than a hundredth"));
+}
+
 TEST(Verdict, IsNotDeterminedByRepeatsOfFewConfigurations) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);

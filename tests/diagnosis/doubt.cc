@@ -141,6 +141,29 @@ TEST(Doubt, NamesNoSpringThatPushesBack) {
   EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "") << "noise may make it of nothing";
 }
 
+TEST(Doubt, NamesNoSpringThatIsStifferThanAnyMachine) {
+  const Rows rows;
+  const DiagnosisOptions options = quick();
+  const LinearisedModel linearised(rows.robot, rows.data, options, {});
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = "joint_compliance";
+  diagnosis.named = {{.effect = "joint_compliance",
+                      .where = {"j2"},
+                      .parameters = {{.name = "j2.c",
+                                      .unit = "rad/(N m)",
+                                      .value = 1.2e-8,
+                                      .sigma = 1e-10,
+                                      .usual_least = 2e-7,
+                                      .usual_most = 1e-4,
+                                      .positive = true}}}};
+  diagnosis.gap.rms_before = 1e-4;
+  diagnosis.gap.rms_after = 0.5e-4;
+  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis),
+              HasSubstr("no machine is so stiff as j2.c"));
+  diagnosis.named.front().parameters.front().value = 3e-8;
+  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
+}
+
 TEST(LeaveOutImpossible, LeavesWhatElseIsNamed) {
   const CauseResult play{.effect = "joint_clearance", .where = {"leg3"}};
   const auto spring = [](double value) {

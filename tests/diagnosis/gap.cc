@@ -109,6 +109,15 @@ TEST(Gap, CountsTheRowsThatAreLeftOutAndSaysWhatItIsWithThem) {
   EXPECT_DOUBLE_EQ(gap.with_false_rows.all, std::sqrt(1 + 400.0 / 40));
 }
 
+TEST(Gap, LeavesNoRowOutWhereMoreThanAFifthWouldBe) {
+  std::vector<ValidationRow> list = rows(4, 4, 4);
+  for (size_t i = 0; i < 8; ++i) list[i].false_reading = true;
+  EXPECT_EQ(gap_of(list, 1).false_rows, 8);
+  list[8].false_reading = true;
+  EXPECT_EQ(gap_of(list, 1).false_rows, 0) << "the machine is another one there";
+  EXPECT_EQ(gap_of(list, 1).rows, 40);
+}
+
 TEST(Gap, OfNoRowsHasNoFigures) {
   const Gap gap = gap_of({}, 1);
   EXPECT_EQ(gap.rows, 0);

@@ -195,12 +195,14 @@ std::string table_refusal(const std::string& text) {
   return problems.any() ? problems.list.front() : "accepted";
 }
 
-TEST(StandardTable, IsRefusedWhereItHasABeta) {
+TEST(StandardTable, IsRefusedWithABetaOrTheSheetsLetters) {
   const std::string head = "robot: arm\nkind: serial\nconvention: standard\nframes:\n";
   EXPECT_THAT(table_refusal(head + "  - {name: j1, joint: revolute, beta: 0.1}\n"),
               AllOf(StartsWith("arm.yaml:5: "), HasSubstr("standard DH has no beta")));
   EXPECT_THAT(table_refusal(head + "  - {name: j1, joint: revolute, tolerance: {beta: 0.1}}\n"),
               AllOf(StartsWith("arm.yaml:5: "), HasSubstr("unknown key 'beta'")));
+  EXPECT_THAT(table_refusal(head + "  - {name: j1, joint: revolute, a: 0.4, d: 0.1}\n"),
+              AllOf(StartsWith("arm.yaml:5: "), HasSubstr("calls d is r here, and its a is d")));
   EXPECT_THAT(table_refusal("robot: arm\nkind: serial\nconvention: craig\nframes:\n"
                             "  - {name: j1, joint: revolute}\n"),
               AllOf(StartsWith("arm.yaml:3: "), HasSubstr("modified or standard")));
