@@ -111,8 +111,8 @@ struct Diagnosis {
   std::string scatter;  ///< in words, of rows that scatter more than stated, where `unknown` makes
                         ///< them or repeats say that it is noise
   std::string why;      ///< the verdict in words
-  /// Of the verdict, or of what it was refused for: (1 + k) / (1 + B), by the tail of what was found
-  /// where the statistic is beyond all B.
+  /// Of the verdict, or of what it was refused for: (1 + k) / (1 + B), by the tail of what was
+  /// found where the statistic is beyond all B.
   double p_value = 1;
   std::vector<CauseResult> candidates;  ///< most probable first, `none` and `unknown` among them
   SimulationBasedCalibration simulation;

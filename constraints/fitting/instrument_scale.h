@@ -9,8 +9,8 @@
 namespace selfcal {
 
 struct InstrumentScale {
-  double excess = 0;  ///< of what it reads over the maker's lengths, relative
-  double sigma = 0;   ///< to which these tell their common scale
+  double excess = 0;    ///< of what it reads over the maker's lengths, relative
+  double sigma = 0;     ///< to which these tell their common scale
   bool beyond() const;  ///< what the maker's lengths bear
 };
 
