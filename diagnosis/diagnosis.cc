@@ -165,8 +165,12 @@ class Diagnostician {
       posterior_ = evaluator_->search();
       // The evaluator and the linearised model must end up with the same rows.
       if (pass + 1 == kDiagnosis.rows.passes) break;
+      const std::vector<char> aside = linearised_.outlier();
       const bool refined = refine_by(posterior_.hypotheses.front());
-      if (!linearised_.try_moments_near(likely_steps()) && !refined) break;
+      const std::vector<ShapedEffect> steps = likely_steps();
+      const bool finer = linearised_.try_moments_near(steps);
+      if (finer) linearised_.take_back(wronged_by(steps, aside));
+      if (!finer && !refined) break;
     }
   }
 
@@ -211,6 +215,27 @@ class Diagnostician {
       if (!steps.empty()) break;
     }
     return steps;
+  }
+
+  /// The rows that were not put `aside` until a step was supposed at one of few moments, and lie
+  /// between that and the next: they speak for another moment.
+  std::vector<char> wronged_by(const std::vector<ShapedEffect>& steps,
+                               const std::vector<char>& aside) const {
+    std::vector<char> rows(aside.size(), 0);
+    const std::vector<int> order = in_time(data_.rows);
+    const auto apart = static_cast<std::ptrdiff_t>(order.size()) / kDiagnosis.shapes.moments + 1;
+    const std::vector<char>& outlier = linearised_.outlier();
+    for (const ShapedEffect& step : steps) {
+      const auto behind = std::ranges::find_if(
+          order, [&](int row) { return data_.rows.time[row] >= *step.shape.moment; });
+      const auto from = behind - std::min(apart, behind - order.begin());
+      const auto to = behind + std::min(apart, order.end() - behind);
+      for (auto at = from; at != to; ++at) {
+        const auto row = static_cast<std::size_t>(*at);
+        if (outlier[row] && !aside[row]) rows[row] = 1;
+      }
+    }
+    return rows;
   }
 
   /// Noise of a new configuration over that of an immediate repeat.

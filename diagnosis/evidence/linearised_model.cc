@@ -250,6 +250,11 @@ void LinearisedModel::start_with(std::vector<char> outlier) {
   relative_.assign(relative_.size(), 1);
 }
 
+void LinearisedModel::take_back(const std::vector<char>& rows) {
+  for (size_t row = 0; row < held_.size(); ++row)
+    if (held_[row] && rows[row]) outlier_[row] = 0;
+}
+
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
   const std::vector<double> unlike =
       unlike_noise(data_, kept().row, residuals(equations_of(all_, taking_part())),

@@ -80,6 +80,8 @@ class LinearisedModel {
   /// Puts aside these of the held rows (by row of the data set), no others, with the noise that the
   /// geometry's fit has.
   void start_with(std::vector<char> outlier);
+  /// The rows marked take part again, if they are among those that are weighed.
+  void take_back(const std::vector<char>& rows);
   /// The rows that are held, put aside or not; of a large data set one of every so many
   /// configurations. Whitened at a scale of one.
   const DenseEquations& all() const { return all_; }

@@ -180,6 +180,34 @@ TEST(RowsPutAside, AreOfferedToACauseThatActsInThemAlone) {
   EXPECT_LE(diagnosis.outliers.size(), 1U);
 }
 
+/// Of many rows a step is looked for between few at first: those between that moment and its own
+/// are beyond the noise, and must speak for a finer one all the same.
+TEST(RowsPutAside, SpeakForTheMomentOfAStepThatAFewMomentsMissed) {
+  const TwoSessions sessions;
+  DataSet data = sessions.before;
+  std::vector<int> twice(2 * static_cast<std::size_t>(data.rows.rows()));
+  for (std::size_t i = 0; i < twice.size(); ++i) twice[i] = static_cast<int>(i / 2);
+  data.rows = taken(data.rows, twice);
+  const auto rows = static_cast<int>(data.rows.rows());
+  data.rows.time = Eigen::VectorXd::LinSpaced(rows, 0, 10.0 * (rows - 1));
+  data.rows.repeat.assign(twice.size(), -1);
+  for (const int first : {53, 55, 57, 59}) {
+    DataSet stepped = data;
+    stepped.rows.q.col(2).tail(rows - first).array() -= 5e-3;
+    const Diagnosis diagnosis = diagnose(sessions.robot, stepped, without_simulation());
+    EXPECT_EQ(diagnosis.verdict.effect, "zero_shift") << diagnosis.why;
+    EXPECT_TRUE(diagnosis.outliers.empty()) << first;
+    int told = 0, before = 0, behind = 0;
+    ASSERT_EQ(std::sscanf(diagnosis.verdict.shape.c_str(), "from %d s on, between %d and %d s",
+                          &told, &before, &behind),
+              3)
+        << diagnosis.verdict.shape;
+    EXPECT_LT(before, 10 * first) << diagnosis.verdict.shape;
+    EXPECT_GE(behind, 10 * first) << diagnosis.verdict.shape;
+    EXPECT_LE(behind - before, 30) << diagnosis.verdict.shape;
+  }
+}
+
 TEST(AskedEffects, StepBetweenTheRowsWhereItHappened) {
   TwoSessions sessions;
   DataSet& data = sessions.before;
