@@ -77,8 +77,7 @@ class Adjustment {
     adjusted_.before.at = {};
     adjusted_.fitted = fit_all();
     multi_start();
-    if (release_scale() || hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi))
-      adjusted_.fitted = fit_all();
+    if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
     place_scale();
     if (adjusted_.scale < 0 && options_.priors)
@@ -206,23 +205,6 @@ class Adjustment {
     hold({parameters()[*length].name,
           "the touches leave the robot's scale free: this length is held where the maker's lengths "
           "together have the scale"});
-    return true;
-  }
-
-  /// Frees the length again where the rows do tell the scale, which the misfit of the placed robot
-  /// may have hidden.
-  bool release_scale() {
-    if (adjusted_.scale < 0) return false;
-    const auto length = static_cast<size_t>(adjusted_.scale);
-    std::vector<char> free = adjusted_.prior.free;
-    free[length] = 1;
-    if (held_scale(equations_, adjusted_.fitted.at.R, adjusted_.fitted.state.xi, free))
-      return false;
-    std::erase_if(adjusted_.gauge,
-                  [&](const Note& note) { return note.parameter == parameters()[length].name; });
-    adjusted_.prior.free = std::move(free);
-    adjusted_.scale = -1;
-    start_.xi = adjusted_.fitted.state.xi;
     return true;
   }
 
