@@ -178,7 +178,7 @@ double spread_of(const Observations& rows) {
 std::string silent_joints(const Robot& robot, const Observations& rows) {
   std::string names;
   for (Eigen::Index j = 0; j < rows.q.cols(); ++j)
-    if ((rows.q.col(j).array() == rows.q(0, j)).all())
+    if (is_silent(rows, j))
       names += (names.empty() ? "" : ", ") + robot.joints()[static_cast<size_t>(j)].name;
   return names;
 }

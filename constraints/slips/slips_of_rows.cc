@@ -40,8 +40,6 @@ class SlipsOfRows {
     list_.push_back({std::move(what), nullptr, std::move(changed)});
   }
 
-  bool moves(Eigen::Index j) const { return (rows().q.col(j).array() != rows().q(0, j)).any(); }
-
   void of_joints() {
     const Eigen::Index n = rows().q.cols();
     for (Eigen::Index j = 0; j < n; ++j)
@@ -55,7 +53,8 @@ class SlipsOfRows {
             [j, turns](Observations& o) { o.q.col(j) *= turns; });
     for (Eigen::Index j = 0; j < n; ++j)
       for (Eigen::Index k = 0; k < j; ++k)
-        if (joint(j).quantity == joint(k).quantity && moves(j) && moves(k))
+        if (joint(j).quantity == joint(k).quantity && !is_silent(rows(), j) &&
+            !is_silent(rows(), k))
           add("the columns of " + joint(k).name + " and " + joint(j).name + " are exchanged",
               [j, k](Observations& o) { o.q.col(j).swap(o.q.col(k)); });
   }
@@ -154,6 +153,11 @@ class SlipsOfRows {
 
 std::vector<Slip> slips_of_rows(const Robot& robot, const DataSet& data) {
   return SlipsOfRows(robot, data).take();
+}
+
+bool is_silent(const Observations& rows, Eigen::Index j) {
+  const auto read = rows.q.col(j).array();
+  return read.size() == 0 || (read == read[0]).all();
 }
 
 }  // namespace selfcal

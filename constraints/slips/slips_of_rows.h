@@ -22,4 +22,7 @@ struct Slip {
 /// columns.
 std::vector<Slip> slips_of_rows(const Robot& robot, const DataSet& data);
 
+/// Joint `j` reads the same in every row.
+bool is_silent(const Observations& rows, Eigen::Index j);
+
 }  // namespace selfcal
