@@ -24,6 +24,7 @@ struct DiagnosisConstants {
     int fewest_offered = 4;           ///< rows put aside, that are offered back; 3 to 10 [habit]
     double hardly_any = 0.3;          ///< of them; 0.1 to 0.5 [habit]
     double median_to_sigma = 1.4826;  ///< of a normal variable [exact]
+    int most_of_configuration = 12;   ///< rows that are weighed; 5 to 50 [cost]
     double fewest_visits = 6;         ///< freedoms that tell a visit's noise; 4 to 20 [habit]
     double most_of_visits = 10;       ///< over the noise of immediate repeats; 3 to 100 [physics]
     /// Of the equations, that unknowns take at most where noise is told from the middle of what is
@@ -62,9 +63,13 @@ struct DiagnosisConstants {
     std::array<double, 7> sizes = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
     /// Times the usual largest: up to it a size is as good as any; 1 to 10 [physics]
     double as_usual = 3;
-    double tenfold = 2;             ///< log evidence that ten times that costs; 1 to 5 [trials]
-    int agreements = 3;             ///< rounds of noise and structure; 1 to 10 [cost]
-    double worthwhile = 5;          ///< log evidence that a cause must bring; 2 to 10 [habit]
+    double tenfold = 2;     ///< log evidence that ten times that costs; 1 to 5 [trials]
+    int agreements = 3;     ///< rounds of noise and structure; 1 to 10 [cost]
+    double worthwhile = 5;  ///< log evidence that a cause must bring; 2 to 10 [habit]
+    int most_together = 8;  ///< candidates of a set; 3 to 12 [cost]
+    /// Log weight below the best, that a set has to count at all; and what one costs that needs of
+    /// a machine what none has (Report::impossible, other_sign); 6 to 20, 10 to 50 [physics]
+    double counts = 12, impossible = 20;
     std::size_t most_families = 5;  ///< that a set of causes grows to; 3 to 10 [trials]
     /// Log weight below the best, that a coarse search leaves out; 15 to 40 [exact]
     double hopeless = 25;
@@ -103,6 +108,9 @@ struct DiagnosisConstants {
     /// What the presence of structure that no listed cause explains takes of the probability of
     /// those that are: of what 0.9 and more was said beside it, half was there; 0.2 to 0.7 [trials]
     double beside_unknown = 0.4;
+    /// Of causes that nothing speaks against, those that are another one, which the list lacks and
+    /// which looks the same; 0.02 to 0.15 [trials]
+    double imitated = 0.05;
     /// Of the gap, that what is named leaves: structure beside it is as little a doubt, in
     /// proportion, as it leaves less; 0.02 to 0.2 [habit]
     double hardly_left = 0.1;
@@ -253,8 +261,11 @@ struct DiagnosisConstants {
     /// Of what is left with the forces: less without them is a slip; 0.8 to 1 [habit]
     double forces_cost = 0.97;
     double withdrawn = 0.95;  ///< probability of `unknown` that is left then; 0.5 to 1 [habit]
-    double worth = 0.02;      ///< of probability that a step must bring; 0 to 0.2 [habit]
-    double most_times = 10;   ///< as many rows as a step has, that anybody takes; 2 to 50 [habit]
+    /// The same where what is named closes nothing: as often it is there, and small; 0.5 to 0.95
+    /// [trials]
+    double withdrawn_idle = 0.6;
+    double worth = 0.02;     ///< of probability that a step must bring; 0 to 0.2 [habit]
+    double most_times = 10;  ///< as many rows as a step has, that anybody takes; 2 to 50 [habit]
     std::size_t most_steps = 3, most_for_unknown = 4;  ///< 1 to 10 [habit]
     /// Least probable cause that may yet be there where none is named; 0.01 to 0.3 [habit]
     double edge = 0.05;

@@ -16,6 +16,9 @@ struct SearchRule {
   double another = 0.25;      ///< factor on the odds of each cause after the first
   double same_family = 0.3;   ///< odds that a cause acts at one more place
   int extended_singles = 14, extended_pairs = 14;
+  /// Triples and larger sets, by what their families have elsewhere; 0: none, and sets that no
+  /// machine can have count as any other.
+  int extended_further = 4;
   int most_structures = 4;  ///< kept for pairs and triples
   /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
   /// its noise from what its own best cause leaves.

@@ -100,7 +100,8 @@ Whitened Pair::whitened(const DenseEquations& rows) const {
   return out;
 }
 
-EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, const SearchRule& rule) const {
+EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, SearchRule rule) const {
+  rule.extended_further = 0;  // what changed at three joints need not have changed at others
   const Eigen::MatrixXd by_joint = rows.W(Eigen::all, reading_columns(*geometry_));
   return EvidenceEvaluator(
       whitened(rows),

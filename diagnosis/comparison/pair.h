@@ -37,7 +37,7 @@ class Pair {
   const std::vector<char>& outlier() const { return outlier_; }
   /// Of large data sets every so many configurations of each: the smaller one's are worth more.
   DenseEquations weighed(const std::vector<char>& outlier) const;
-  EvidenceEvaluator evaluator(const DenseEquations& rows, const SearchRule& rule) const;
+  EvidenceEvaluator evaluator(const DenseEquations& rows, SearchRule rule) const;
   /// By row of both: what these changes, fitted to `rows`, leave of it is far beyond noise.
   std::vector<char> outliers_among(const DenseEquations& rows, const Hypothesis& changes) const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnosis/constants.h"
+#include "kinematics/effect.h"
 
 namespace selfcal {
 namespace {
@@ -56,6 +57,18 @@ void EvidenceEvaluator::number_causes() {
   }
 }
 
+/// What is moved at will may be moved as far as one likes.
+Eigen::VectorXd EvidenceEvaluator::most_possible(const Candidate& candidate,
+                                                 const std::vector<EffectParameter>& parameters) {
+  Eigen::VectorXd most =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(candidate.main.size()), INFINITY);
+  if (lasting_of(candidate.effect) == EffectLasting::moved_at_will) return most;
+  for (Eigen::Index i = 0; i < most.size(); ++i)
+    most[i] = kDiagnosis.report.impossible *
+              parameters[static_cast<size_t>(candidate.main[static_cast<size_t>(i)])].usual_most;
+  return most;
+}
+
 /// Each candidate's columns in units that are visible alike beyond the geometry and noise alone.
 void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& parameters) {
   const Whitened& rows = rows_->rows();
@@ -63,6 +76,7 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
   const auto n = static_cast<double>(rows.C.rows());
   for (const Candidate& candidate : all_.list) {
     Block block;
+    most_possible_.push_back(most_possible(candidate, parameters));
     std::vector<double> unit;
     double visible = 0, whole = 0, largest = 0;
     for (size_t i = 0; i < candidate.main.size(); ++i) {

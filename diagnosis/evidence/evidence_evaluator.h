@@ -2,8 +2,9 @@
 // with a common scale, each weighed by its marginal likelihood.
 //
 // Every single candidate is weighed at every size and with every structure of the unknown; the best
-// ones are extended by every other candidate to pairs, the best of these to triples. The posterior
-// is the normalised evidence of all sets visited times their priors.
+// ones are extended by every other candidate to pairs, the best of these to triples, and triples
+// beside noise alone by what their families have at further places. The posterior is the normalised
+// evidence of all sets visited times their priors; sets that no machine can have count less.
 #pragma once
 
 #include <array>
@@ -113,6 +114,8 @@ class EvidenceEvaluator {
   Hypothesis without_parts(Hypothesis h) const;
   /// One of them holds all that the other has.
   bool overlap(int a, int b) const;
+  static Eigen::VectorXd most_possible(const Candidate& candidate,
+                                       const std::vector<EffectParameter>& parameters);
   void number_causes();
   void make_blocks(const std::vector<EffectParameter>& parameters);
   /// The structure's size as what its best explanation leaves says. `AC` and `products` are what
@@ -137,6 +140,8 @@ class EvidenceEvaluator {
   std::vector<double> beyond_nuisance_,
       amplitude_;           ///< amplitude over the usual largest, at size 1
   std::vector<char> seen_;  ///< not absorbed altogether
+  /// By candidate, of its main parameters, beyond which no machine has them.
+  std::vector<Eigen::VectorXd> most_possible_;
   /// By candidate: number of the first candidate of its family (effect), of its cause (effect and
   /// place).
   std::vector<int> family_, cause_;

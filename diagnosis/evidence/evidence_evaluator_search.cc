@@ -17,6 +17,7 @@ class Search {
   Search(const EvidenceEvaluator& evaluator, bool coarse)
       : evaluator_(evaluator),
         coarse_(coarse),
+        goes_on_(!coarse && evaluator.rule_.extended_further > 0),
         candidates_(static_cast<int>(evaluator.blocks_.size())),
         kept_(evaluator.marginal_likelihoods_.size(), 0) {}
 
@@ -30,16 +31,23 @@ class Search {
     keep_best();
     visit_elsewhere(best_of(3, pairs));
     keep_best();
+    if (goes_on_) {
+      if (!is_enough()) grow_beside_noise();
+      lower_impossible();
+    }
     return posterior();
   }
 
  private:
-  /// A hypothesis of up to three candidates, ascending.
+  static constexpr int kMostTogether = kDiagnosis.evidence.most_together;
+
+  /// A hypothesis of so many candidates, ascending.
   struct Visit {
     int count = 0, structure = 0;
-    std::array<int, 3> candidates{};
-    std::array<double, 3> sizes{};
+    std::array<int, kMostTogether> candidates{};
+    std::array<double, kMostTogether> sizes{};
     double log_weight = 0;
+    bool judged = false;  ///< whether it is possible is known
 
     std::span<const int> all() const {
       return {candidates.data(), static_cast<std::size_t>(count)};
@@ -114,12 +122,15 @@ class Search {
     distinct_ = visited_.size();
   }
 
+  enum class Beside { any, noise };
   /// The best of `size` candidates. Not one cause in all its shapes: two of each cause and
   /// structure.
-  std::vector<Visit> best_of(int size, int most) const {
+  std::vector<Visit> best_of(int size, int most, Beside which = Beside::any) const {
     std::vector<const Visit*> list;
     for (const Visit& each : visited_)
-      if (each.count == size && kept_[each.structure]) list.push_back(&each);
+      if (each.count == size && kept_[each.structure] &&
+          (which == Beside::any || evaluator_.structure(each.structure).kind == 0))
+        list.push_back(&each);
     const auto worse = [](const Visit* a, const Visit* b) {
       return a->log_weight != b->log_weight ? a->log_weight < b->log_weight : a > b;
     };
@@ -137,7 +148,82 @@ class Search {
     return diverse;
   }
 
-  void extend(const std::vector<Visit>& from) {
+  /// One or two candidates explain the rows best, beside noise alone.
+  bool is_enough() const {
+    const auto best = std::ranges::max_element(visited_, {}, &Visit::log_weight);
+    return best == visited_.end() ||
+           (best->count < 3 && evaluator_.structure(best->structure).kind == 0);
+  }
+
+  /// What one joint has the others may have as well: triples that noise alone stands beside, by
+  /// further candidates of their families, as long as that makes them more probable. They count
+  /// where they make all structure needless.
+  void grow_beside_noise() {
+    std::vector<Visit> best = best_of(3, evaluator_.rule_.extended_further, Beside::noise);
+    while (!best.empty() && best.front().count < kMostTogether) {
+      const double before = best.front().log_weight;
+      const int count = best.front().count + 1;
+      extend(best, Of::same_families);
+      keep_best();
+      std::erase_if(visited_, [&](const Visit& each) {
+        return each.count == count && each.log_weight > before - kDiagnosis.evidence.hopeless &&
+               is_impossible(each.hypothesis());
+      });
+      distinct_ = visited_.size();
+      best = best_of(count, evaluator_.rule_.extended_further, Beside::noise);
+      std::erase_if(best, [&](const Visit& each) { return each.log_weight <= before; });
+    }
+  }
+
+  /// It needs of a machine what none has: a size far beyond any usual one, or a sign that physics
+  /// does not allow. It stands for something else.
+  bool is_impossible(const Hypothesis& h) const {
+    const MarginalLikelihood::Estimate estimate =
+        evaluator_.marginal_likelihood(h.structure).estimate(evaluator_.terms(h));
+    Eigen::Index first = 0;
+    for (const int c : h.candidates) {
+      const Block& block = evaluator_.block(c);
+      const Eigen::VectorXd& most = evaluator_.most_possible_[static_cast<std::size_t>(c)];
+      const auto sigma = [&](Eigen::Index at) {
+        return std::sqrt(estimate.variance * estimate.covariance(at, at));
+      };
+      for (Eigen::Index i = 0; i < most.size(); ++i)
+        if (std::abs(estimate.mean[first + i]) - kDiagnosis.report.sigmas * sigma(first + i) >
+            most[i])
+          return true;
+      for (const int i : block.positive)
+        if (estimate.mean[first + i] + kDiagnosis.report.other_sign * sigma(first + i) < 0)
+          return true;
+      first += static_cast<Eigen::Index>(block.columns.size());
+    }
+    return false;
+  }
+
+  /// Of all that counts, what is impossible counts less.
+  void lower_impossible() {
+    for (bool lowered = true; lowered;) {
+      lowered = false;
+      const double least = std::ranges::max(visited_, {}, &Visit::log_weight).log_weight -
+                           kDiagnosis.evidence.counts;
+      for (Visit& each : visited_) {
+        if (each.judged || each.log_weight < least) continue;
+        each.judged = true;
+        if (each.count == 0 || !is_impossible(each.hypothesis())) continue;
+        each.log_weight -= kDiagnosis.evidence.impossible;
+        lowered = true;
+      }
+    }
+  }
+
+  /// The set has its family. A step is nothing that several joints have.
+  bool is_more_of_the_same(const Visit& set, int c) const {
+    return !candidate(c).shape.moment && std::ranges::any_of(set.all(), [&](int have) {
+      return evaluator_.family_[have] == evaluator_.family_[c];
+    });
+  }
+
+  enum class Of { all, same_families };
+  void extend(const std::vector<Visit>& from, Of which = Of::all) {
     for (const Visit& each : from) {
       const Hypothesis h = each.hypothesis();
       const MarginalLikelihood rest =
@@ -145,6 +231,7 @@ class Search {
       const double held = evaluator_.held(h);
       for (int c = 0; c < candidates_; ++c) {
         if (!evaluator_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
+        if (which == Of::same_families && !is_more_of_the_same(each, c)) continue;
         Visit more = each;
         more.add(c, 1);
         if (hopeless(rest, c, held + evaluator_.log_prior(more.all(), h.structure))) continue;
@@ -242,6 +329,7 @@ class Search {
 
   const EvidenceEvaluator& evaluator_;
   const bool coarse_;
+  const bool goes_on_;      ///< beyond triples, and asks of each set whether a machine can have it
   double top_ = -INFINITY;  ///< log weight of the best so far
   int candidates_;
   std::vector<char> kept_;  ///< by structure: pairs and triples are tried in it

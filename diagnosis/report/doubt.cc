@@ -197,6 +197,11 @@ std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& r
   return same;
 }
 
+/// The files state a noise far beyond what is left.
+bool may_state_millimetres(const Gap& gap) {
+  return gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before;
+}
+
 }  // namespace
 
 std::string closes_nothing(const Diagnosis& diagnosis) {
@@ -209,7 +214,7 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
   std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
                     " of the rows that no choice has seen, and calibration alone " +
                     millimetres(gap.rms_before);
-  if (gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before)
+  if (may_state_millimetres(gap))
     why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
            ": is it in metres, and 1 sigma?";
   return why;
@@ -244,6 +249,8 @@ std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseRes
 
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const std::string names = names_in_words(diagnosis.named);
+  const bool idle = doubt == closes_nothing(diagnosis) && !may_state_millimetres(diagnosis.gap);
+  const double unknown = idle ? kDiagnosis.report.withdrawn_idle : kDiagnosis.report.withdrawn;
   diagnosis.named.clear();
   if (!names.empty() && diagnosis.next.empty())
     diagnosis.next_why = "nothing is named: look at the rows and files first";
@@ -252,10 +259,9 @@ void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnos
   for (ValidationRow& each : diagnosis.validation_rows) each.after = each.before;
   diagnosis.gap = gap_of(diagnosis.validation_rows, options.seed, diagnosis.floor_freedom,
                          diagnosis.gap.validated_on);
-  say_unknown(kDiagnosis.report.withdrawn, diagnosis.candidates, diagnosis.verdict);
+  say_unknown(unknown, diagnosis.candidates, diagnosis.verdict);
   for (CauseResult& each : diagnosis.candidates)
-    if (each.effect != kUnknown)
-      each.probability = std::min(each.probability, 1 - kDiagnosis.report.withdrawn);
+    if (each.effect != kUnknown) each.probability = std::min(each.probability, 1 - unknown);
   diagnosis.scatter.clear();
   diagnosis.why = "no cause is named, and noise explains it as little: " + doubt +
                   "; look at the rows and files first" +

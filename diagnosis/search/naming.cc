@@ -173,10 +173,12 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   for (const CauseResult& each : causes)
     if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
   const double lacking = std::max(unknown->probability - by_order, 0.0);
-  const double kept = 1 - kDiagnosis.naming.beside_unknown *
-                              std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) * lacking;
+  const double beside = 1 - kDiagnosis.naming.beside_unknown *
+                                std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) *
+                                lacking;
   const auto lower = [&](CauseResult& each) {
-    if (!names_effect(each.effect) || may_be_order(each)) return;
+    if (!names_effect(each.effect)) return;
+    const double kept = (1 - kDiagnosis.naming.imitated) * (may_be_order(each) ? 1 : beside);
     each.probability *= kept;
     each.together *= kept;
   };

@@ -48,7 +48,8 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 
 /// Where structure of no known cause is probable, the list of causes lacks one, and those on it are
 /// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it, by the less
-/// the less of the gap what is named leaves (`left`, a share; 1 where nothing tells). The verdict
+/// the less of the gap what is named leaves (`left`, a share; 1 where nothing tells); and by a
+/// twentieth throughout, for what no list has may look like what one has. The verdict
 /// is `unknown` where that is surer than its cause then, and much is left.
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named, double left);

@@ -251,13 +251,14 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   std::vector<CauseResult> named = {causes[0], causes[2]};
   allow_for_the_unknown(causes, verdict, named, 1);
   // 0.45 of the 0.8 are the drift's other half.
-  const double kept = 1 - kDiagnosis.naming.beside_unknown * (0.8 - 0.45);
+  const double all = 1 - kDiagnosis.naming.imitated;
+  const double kept = all * (1 - kDiagnosis.naming.beside_unknown * (0.8 - 0.45));
   EXPECT_EQ(causes[0].effect, kUnknown) << "the most probable first";
   EXPECT_EQ(causes[0].probability, 0.8);
   EXPECT_NEAR(verdict.probability, 0.9 * kept, 1e-12);
   EXPECT_NEAR(causes[1].probability, 0.9 * kept, 1e-12);
   EXPECT_NEAR(named[0].together, 0.9 * kept, 1e-12);
-  EXPECT_EQ(named[1].probability, 0.5);
+  EXPECT_NEAR(named[1].probability, 0.5 * all, 1e-12);
   EXPECT_EQ(causes[3].probability, 0.01);
 }
 
@@ -272,9 +273,10 @@ TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
     return named.front().probability / 0.9;
   };
   const double most = kDiagnosis.naming.beside_unknown;
-  EXPECT_NEAR(kept(0.5), 1 - most, 1e-12);
-  EXPECT_NEAR(kept(kDiagnosis.naming.hardly_left / 2), 1 - most / 2, 1e-12);
-  EXPECT_NEAR(kept(-0.01), 1, 1e-12) << "all is closed";
+  const double all = 1 - kDiagnosis.naming.imitated;
+  EXPECT_NEAR(kept(0.5), all * (1 - most), 1e-12);
+  EXPECT_NEAR(kept(kDiagnosis.naming.hardly_left / 2), all * (1 - most / 2), 1e-12);
+  EXPECT_NEAR(kept(-0.01), all, 1e-12) << "all is closed";
 }
 
 TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {

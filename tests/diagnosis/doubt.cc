@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "kinematics/corrected_robot.h"
@@ -193,6 +194,22 @@ TEST(Withdraw, LeavesNothingNamedAndNothingClosedByIt) {
   // What is found closes what it closes.
   EXPECT_LT(diagnosis.gap.rms_all, diagnosis.gap.rms_before);
   EXPECT_GT(diagnosis.gap.closed_all.fraction, 0.5);
+  EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
+  EXPECT_EQ(diagnosis.verdict.probability, kDiagnosis.report.withdrawn);
+}
+
+TEST(Withdraw, IsLessSureWhereWhatIsNamedOnlyClosesNothing) {
+  Diagnosis diagnosis;
+  diagnosis.named = {{.effect = "backlash", .where = {"j1"}}};
+  diagnosis.model = Rows().robot;
+  for (int row = 0; row < 30; ++row)
+    diagnosis.validation_rows.push_back(
+        {.before = 100, .after = 101, .all = 101, .floor = 1, .block = row});
+  diagnosis.gap = gap_of(diagnosis.validation_rows, 1);
+  ASSERT_NE(closes_nothing(diagnosis), "");
+  withdraw(closes_nothing(diagnosis), quick(), diagnosis);
+  EXPECT_EQ(diagnosis.verdict.effect, kUnknown);
+  EXPECT_EQ(diagnosis.verdict.probability, kDiagnosis.report.withdrawn_idle);
 }
 
 }  // namespace

@@ -70,5 +70,79 @@ TEST(Search, VisitsSetsWithoutTheStructureThatTheirPartsNeeded) {
   EXPECT_NEAR(best.sizes[0], 2.83, 1.5) << "about three times the noise";
 }
 
+/// Random columns, smooth over the rows in `smooth` of them, and what so many of the first add up
+/// to beside noise; those of one joint each, all of one family or each of its own.
+struct Many {
+  Many(int smooth, bool one_family) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    rows.A = Eigen::MatrixXd::Ones(kRows, 1);
+    rows.weight = rows.pull = Eigen::VectorXd::Zero(1);
+    rows.C.resize(kRows, 20);
+    for (double& each : rows.C.reshaped()) each = normal(random);
+    for (int c = 0; c < smooth; ++c)
+      for (int i = 0; i < kRows; ++i)
+        rows.C(i, c) = std::sin(2 * std::numbers::pi * i * (c + 2) / kRows + c);
+    rows.y = 3 * rows.C.leftCols(smooth).rowwise().sum();
+    for (double& each : rows.y) each += normal(random);
+    for (int c = 0; c < rows.C.cols(); ++c) {
+      all.list.push_back({.effect = one_family ? "gears" : "cause" + std::to_string(c),
+                          .at = "j" + std::to_string(c),
+                          .main = {c}});
+      parameters.push_back({"c", "rad", 1, 4});
+    }
+  }
+
+  Posterior search() const {
+    return EvidenceEvaluator(rows, noise_and_structure(), all, parameters,
+                             SearchRule{.noise_is_known = true})
+        .search();
+  }
+
+  Whitened rows;
+  Candidates all;
+  std::vector<EffectParameter> parameters;
+};
+
+TEST(Search, GoesOnToAllJointsThatHaveWhatThreeHave) {
+  const Posterior posterior = Many(6, true).search();
+  EXPECT_EQ(posterior.hypotheses.front().candidates, (std::vector{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(posterior.hypotheses.front().structure, 0);
+  EXPECT_LT(posterior.unknown, 0.05);
+  for (int c = 0; c < 6; ++c)
+    EXPECT_GT(posterior.cause.at({"gears", "j" + std::to_string(c)}), 0.9) << c;
+}
+
+TEST(Search, PutsNoMoreThanThreeFamiliesTogether) {
+  const Posterior posterior = Many(6, false).search();
+  EXPECT_LE(posterior.hypotheses.front().candidates.size(), 3U);
+  EXPECT_GT(posterior.unknown, 0.95);
+}
+
+TEST(Search, GoesOnToNoSpringThatWouldPush) {
+  Many springs(6, true);
+  for (EffectParameter& each : springs.parameters) each.positive = true;
+  EXPECT_EQ(springs.search().hypotheses.front().candidates.size(), 6U);
+  springs.rows.y -= 6 * springs.rows.C.col(4);
+  const Posterior posterior = springs.search();
+  EXPECT_GT(posterior.unknown, 0.95);
+  EXPECT_LE(posterior.hypotheses.front().candidates.size(), 3U);
+}
+
+TEST(Search, PrefersWhatAMachineCanHave) {
+  // Two columns nearly alike, one of which would need forty times the usual largest.
+  Many two(1, false);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  two.rows.C.col(1) = 0.02 * two.rows.C.col(0);
+  for (double& each : two.rows.C.col(1)) each += 2e-4 * normal(random);
+  two.rows.y = 160 * two.rows.C.col(1);
+  for (double& each : two.rows.y) each += 0.1 * normal(random);
+  EXPECT_EQ(two.search().hypotheses.front().candidates, (std::vector{0}));
+  // What may be moved as far as one likes may be that large.
+  two.all.list[1].effect = "tool_shift";
+  EXPECT_EQ(two.search().hypotheses.front().candidates, (std::vector{1}));
+}
+
 }  // namespace
 }  // namespace selfcal
