@@ -251,7 +251,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
     if (beyond_repeats(set, method)) {
       set.unexplained = true;
       solution.warnings.push_back(
-          unexplained(set, rows_of(set), set.repeat_sigma, "immediate repeats", ""));
+          unexplained(set, rows_of(set), set.repeat_sigma, "their repeats", ""));
     }
     if (std::string often = often_beyond(set, solution); !often.empty())
       solution.warnings.push_back(std::move(often));

@@ -122,22 +122,6 @@ std::vector<int> configurations(const Observations& rows) {
   return numbers;
 }
 
-bool repeats_row_before(const Observations& rows, int row) {
-  if (row == 0) return false;
-  const int before = row - 1;
-  const auto alike = [](const auto& a, const auto& b) {
-    return ((a == b) || (a.isNaN() && b.isNaN())).all();
-  };
-  const auto same = [&](const Eigen::MatrixXd& column) {
-    return column.rows() == 0 || alike(column.row(row).array(), column.row(before).array());
-  };
-  const bool later = rows.time.size() > 0 && std::abs(rows.time[row] - rows.time[before]) > kAtOnce;
-  return !later && rows.set[row] == rows.set[before] && rows.group[row] == rows.group[before] &&
-         rows.check[row] == rows.check[before] && same(rows.q) && same(rows.wrench) &&
-         (rows.velocity.rows() == 0 ||
-          alike(rows.velocity.row(row).array().sign(), rows.velocity.row(before).array().sign()));
-}
-
 MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows) {
   MeasurementConditions at;
   at.wrench = picked(data.wrench, rows);

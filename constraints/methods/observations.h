@@ -67,11 +67,6 @@ std::vector<int> in_time(const Observations& rows);
 /// of one, any other row is alone.
 std::vector<int> configurations(const Observations& rows);
 
-/// Whether `row` was measured where the row before it was: both of one set, group and part, the
-/// readings and the load the same in every digit, each joint come from the same side, no more than
-/// kAtOnce later where both have their times.
-bool repeats_row_before(const Observations& rows, int row);
-
 /// What else held when `rows` were taken, a lane each.
 MeasurementConditions conditions(const Observations& data, const std::vector<int>& rows);
 

@@ -8,6 +8,7 @@
 #include "constraints/methods/instrument.h"
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
 namespace {
@@ -118,10 +119,11 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
 std::vector<Scale> declared_noise(const DataSet& data) {
   std::vector<Scale> declared;
   for (const Set& set : data.sets) declared.push_back({set.noise, set.noise_angle});
-  std::map<std::pair<int, int>, int> visits;  // set, repeat
-  for (int row = 0; row < data.rows.rows() && !data.rows.repeat.empty(); ++row)
-    if (data.rows.repeat[row] >= 0 && !data.rows.check[row] &&
-        ++visits[{data.rows.set[row], data.rows.repeat[row]}] > 1)
+  if (data.rows.repeat.empty()) return declared;
+  const std::vector<int> visit = visits(data.rows);  // what lies between two may have a cause
+  std::map<int, int> rows_of;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    if (data.rows.repeat[row] >= 0 && !data.rows.check[row] && ++rows_of[visit[row]] > 1)
       declared[static_cast<size_t>(data.rows.set[row])] = {0, 0};
   return declared;
 }
@@ -129,9 +131,18 @@ std::vector<Scale> declared_noise(const DataSet& data) {
 /// Of each stretch of `step` configurations one, at a place within it that goes by the golden
 /// ratio: how a session alternates (approaches, surfaces, payloads) cannot keep step with that.
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most) {
-  const double step = std::max(1.0, equations / most);
   std::vector<char> take(static_cast<size_t>(rows.rows()), 0);
   const std::vector<int> configuration = configurations(rows);
+  const int most_of_one = kDiagnosis.rows.most_of_configuration;
+  std::map<int, int> of_configuration;
+  double all = 0, at_most = 0;
+  for (size_t row = 0; row < take.size(); ++row) {
+    if (rows.check[row]) continue;
+    all += 1;
+    at_most += ++of_configuration[configuration[row]] <= most_of_one;
+  }
+  of_configuration.clear();
+  const double step = std::max(1.0, equations / most * at_most / std::max(all, 1.0));
   std::map<int, char> decided;  // by configuration
   double stretches = 0, count = 0;
   const auto next = [&] {
@@ -141,7 +152,7 @@ std::vector<char> weighed_rows(const Observations& rows, double equations, doubl
   for (size_t row = 0; row < take.size(); ++row) {
     if (rows.check[row]) continue;
     const auto [found, made] = decided.try_emplace(configuration[row], count >= next());
-    take[row] = found->second;
+    take[row] = found->second && ++of_configuration[configuration[row]] <= most_of_one;
     if (!made) continue;
     stretches += take[row];
     count += 1;

@@ -23,7 +23,7 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
 std::vector<Scale> declared_noise(const DataSet& data);
 
 /// By row, 1 where it takes part: of rows with more than `most` of `equations` one of every so many
-/// configurations, with all its repeats; none that are kept aside to judge.
+/// configurations, with its repeats as far as they tell more; none that are kept aside to judge.
 std::vector<char> weighed_rows(const Observations& rows, double equations, double most);
 
 /// Those of the rows that `take` (by row) holds, and those that no row carries.

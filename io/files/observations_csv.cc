@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "constraints/methods/repeats.h"
 #include "io/files/columns.h"
 #include "io/files/csv.h"
 #include "io/files/row_labels.h"
@@ -162,13 +163,10 @@ class RowReader {
     return std::nullopt;
   }
 
-  /// A measurement that another row has in every digit is no second one. Readings alone may well be
-  /// the same twice, and so may what is called a repeat.
+  /// What another row says in every digit says nothing more: readings that encoders round alike
+  /// are rounded by the same, too. What is called a repeat may well be the same.
   void note_copy(Cells cells, const Labels& labels) {
-    const Set& set = data_.sets[labels.set];
-    const bool measures = std::ranges::any_of(
-        needs_[labels.set], [](const Need& need) { return need.column != "group"; });
-    if (!measures || set.method->paired() || labels.repeat >= 0) return;
+    if (data_.sets[labels.set].method->paired() || labels.repeat >= 0) return;
     std::size_t hash = 0;
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (i != layout_.part)
@@ -238,27 +236,6 @@ Result<void> read_rows(const std::filesystem::path& path, RowReader& reader, int
   return {};
 }
 
-/// Where no column names them, rows that repeat the one before are its immediate repeats: what is
-/// to be said of it.
-std::optional<std::string> label_repeats(DataSet& data) {
-  Observations& rows = data.rows;
-  if (!rows.repeat.empty()) return std::nullopt;
-  std::vector<int> repeat(static_cast<std::size_t>(rows.rows()), -1);
-  int labels = 0, first = 0;
-  for (int row = 1; row < rows.rows(); ++row) {
-    if (data.sets[rows.set[row]].method->paired() || !repeats_row_before(rows, row)) continue;
-    if (labels == 0) first = row;
-    if (repeat[row - 1] < 0) repeat[row - 1] = labels++;
-    repeat[row] = repeat[row - 1];
-  }
-  if (labels == 0) return std::nullopt;
-  const auto repeats = std::ranges::count_if(repeat, [](int each) { return each >= 0; }) - labels;
-  rows.repeat = std::move(repeat);
-  return std::to_string(repeats) + (repeats > 1 ? " rows have" : " row has") +
-         " the readings of the row before, first row " + std::to_string(first + 1) +
-         ": taken as its immediate repeats";
-}
-
 }  // namespace
 
 Result<void> read_observations(const std::filesystem::path& path, const Robot& robot,
@@ -270,7 +247,8 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
     notices.push_back(path.string() + ": " + notice);
   }
   reader.hand_over();
-  if (const auto repeats = label_repeats(data)) notices.push_back(path.string() + ": " + *repeats);
+  if (const auto repeats = label_repeats(robot, data))
+    notices.push_back(path.string() + ": " + *repeats);
   return {};
 }
 

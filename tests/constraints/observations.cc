@@ -59,26 +59,5 @@ TEST(Configurations, AreNumberedInTimeWithTheirRepeatsBySet) {
   EXPECT_EQ(in_time(rows), (std::vector<int>{0, 1, 2, 3, 4, 5}));
 }
 
-TEST(RepeatsRowBefore, AsksForTheSameReadingsLoadApproachAndMoment) {
-  Observations rows = of(2, 0.1);
-  rows.time = Eigen::Vector2d(0, 10);
-  rows.velocity = Eigen::MatrixXd{{0.1, -0.2}, {0.11, -0.21}};
-  rows.wrench = Eigen::MatrixXd::Constant(2, 6, NAN);
-  EXPECT_FALSE(repeats_row_before(rows, 0));
-  EXPECT_TRUE(repeats_row_before(rows, 1));
-  const auto not_where = [&](auto change) {
-    Observations other = rows;
-    change(other);
-    return !repeats_row_before(other, 1);
-  };
-  EXPECT_TRUE(not_where([](Observations& o) { o.q(1, 1) = 0.1000001; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.velocity(1, 1) = 0.2; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.wrench(1, 2) = 9.81; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.time[1] = 100; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.group[1] = 1; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.check[1] = 1; }));
-  EXPECT_TRUE(not_where([](Observations& o) { o.set[1] = 1; }));
-}
-
 }  // namespace
 }  // namespace selfcal

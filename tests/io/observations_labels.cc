@@ -60,8 +60,8 @@ TEST_F(ObservationsCsv, NotesTimesThatGoBackAgainAndAgain) {
   std::string two_sets = "set,q1,q2,time\n";
   for (int set = 0; set < 2; ++set)
     for (int row = 0; row < 10; ++row)
-      two_sets +=
-          std::string("table,1,0.") + std::to_string(row) + "," + std::to_string(row) + "\n";
+      two_sets += "table," + std::to_string(set) + ",0." + std::to_string(row) + "," +
+                  std::to_string(row) + "\n";
   EXPECT_THAT(notices(two_sets), IsEmpty());
 }
 
@@ -83,12 +83,12 @@ TEST_F(ObservationsCsv, CountsRowsThatSayTheSameInEveryDigitOnce) {
       "tracker,,0.1,0.2,1,2,3.1,,fit\n"  // measured again
       "tracker,,0.1,0.2,1,2,3,a,fit\n"   // said to be repeats
       "tracker,,0.1,0.2,1,2,3,a,fit\n"
-      "table,,0.9,1.0,,,,,fit\n"  // nothing but readings, which encoders may give twice
-      "table,,0.9,1.0,,,,,fit\n";
+      "table,,0.9,1.0,,,,,fit\n"  // a touch, whose readings are the measurement
+      "table,,0.9,1.0,,,,,check\n";
   const auto loaded = load(csv);
   ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
-  EXPECT_THAT(loaded->data.rows.check, ElementsAre(0, kCopy, 0, 0, 0, 0, 0));
-  EXPECT_THAT(notices(csv), ElementsAre("observations.csv: 1 row says what another says in every "
+  EXPECT_THAT(loaded->data.rows.check, ElementsAre(0, kCopy, 0, 0, 0, 0, kCopy));
+  EXPECT_THAT(notices(csv), ElementsAre("observations.csv: 2 rows say what another says in every "
                                         "digit, first row 2: each is counted once"));
 }
 
