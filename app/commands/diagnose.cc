@@ -95,7 +95,8 @@ void look_at_files_first(const std::string& path, const Inputs& inputs,
                                          {diagnosis.gap.rms_nominal, true, *diagnosis.model,
                                           diagnosis.values, diagnosis.gap.rms_before});
   if (wrong.words.empty()) return;
-  const bool taken_in = diagnosis.gap.rms_before < kTakenIn * diagnosis.gap.rms_nominal;
+  const bool taken_in =
+      wrong.tool || diagnosis.gap.rms_before < kTakenIn * diagnosis.gap.rms_nominal;
   if (!diagnosis.named.empty() && (wrong.explained || !taken_in))
     withdraw(wrong.explained ? "one slip in the files explains the rows"
                              : "calibration does not take in what is wrong with the files",

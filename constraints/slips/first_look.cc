@@ -218,6 +218,15 @@ FirstLook where_no_row_has_a_place(const Robot& robot, const DataSet& data,
   return look;
 }
 
+/// How far the file lets its tool be off (m), 1 sigma of each of its lengths.
+double tool_tolerance(const Robot& robot) {
+  double squares = 0;
+  for (const Parameter& p : robot.parameters())
+    if (p.part == Part::tool && p.quantity == Quantity::length)
+      squares += p.tolerance * p.tolerance;
+  return std::sqrt(squares);
+}
+
 }  // namespace
 
 double gross_misfit(const Robot& robot, bool lengths) {
@@ -262,9 +271,9 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.tried = tried(*robot, data, others);
   const double best = look.tried.empty() ? look.left : look.tried.front().left;
   look.explained = look.left > least && best < kSlipCollapse * look.left;
-  look.tool =
-      !look.explained && look.left < kSlipCollapse * look.tool_held && look.tool_held > gross;
   const std::string silent = silent_joints(*robot, data.rows);
+  look.tool = !look.explained && silent.empty() && look.left < kSlipCollapse * look.tool_held &&
+              look.tool_held > gross && look.tool_moved > tool_tolerance(*robot);
   if (look.explained)
     look.found =
         look.tried.front().what +

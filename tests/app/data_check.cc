@@ -177,6 +177,18 @@ TEST_F(DataCheck, IsTheFirstAdviceOfAnIdentification) {
   }
 }
 
+TEST_F(DataCheck, TakesNoToolForAnotherOneThatIsAsFarOffAsItsFileLetsIt) {
+  for (const char* tolerance : {"0.05", "0.2"}) {
+    ASSERT_NO_FATAL_FAILURE(simulate(kTable));
+    change_robot("xyz: [0.03, 0.02, 0.15]",
+                 std::string("xyz: [0, 0, 0], tolerance: {z: ") + tolerance + "}");
+    const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
+    EXPECT_EQ(ran.out.find("the tool's frame is missing") != std::string::npos,
+              std::string(tolerance) == "0.05")
+        << ran.out;
+  }
+}
+
 TEST_F(DataCheck, LeavesTheDiagnosisNoCauseOfWhatASlipExplains) {
   constexpr const char* kBare = R"(robot: irb1600
 kind: serial

@@ -120,7 +120,7 @@ LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
     text += " (half the rows are off by more than " + plain_figure(1e3 * look->left) + " " + unit +
             ", the maker's tolerances leave about " + plain_figure(1e3 * look->expected) + " " +
             unit + ")";
-  return {text + ".", look->explained};
+  return {text + ".", look->explained, look->tool};
 }
 
 }  // namespace selfcal

@@ -33,6 +33,7 @@ struct NominalFit {
 struct LikelyWrong {
   std::string words;       ///< a sentence; empty where nothing is likely wrong
   bool explained = false;  ///< one slip brings the rows to the robot
+  bool tool = false;       ///< it is the tool's frame, which a calibration takes in
 };
 
 /// Costs nothing where `nominal` is not gross.

@@ -27,14 +27,17 @@ Locations somewhere(const Robot& robot, unsigned long long seed) {
   return X;
 }
 
-/// Coefficients of a plane with normal `n` through the endpoint at a random configuration.
+/// Coefficients of a plane with normal `n` that cuts the reach of the endpoint, wherever the robot
+/// stands: between the middle of random configurations and the farther end from the world's origin,
+/// which no plane with coefficients a b c goes through.
 Eigen::Vector3d plane_through(const Robot& robot, const Eigen::Vector3d& n,
                               unsigned long long seed) {
   const Locations X = somewhere(robot, seed);
-  int farthest = 0;  // a plane through the origin has no coefficients a b c
-  for (int lane = 1; lane < kLanes; ++lane)
-    if (std::abs(n.dot(X.p(lane))) > std::abs(n.dot(X.p(farthest)))) farthest = lane;
-  return -n / (0.6 * n.dot(X.p(farthest)));
+  Eigen::VectorXd along(kLanes);
+  for (int lane = 0; lane < kLanes; ++lane) along[lane] = n.dot(X.p(lane));
+  const double middle = along.mean();
+  const double end = middle > 0 ? along.maxCoeff() : along.minCoeff();
+  return -n / (middle + 0.6 * (end - middle));
 }
 
 Node with_noise(Node node, const MethodOptions& options) {
