@@ -20,14 +20,35 @@ std::vector<Eigen::Vector3d> tips(const Robot& robot, const DataSet& data, int s
   return points;
 }
 
-/// Direction in which the points spread least.
-Eigen::Vector3d thin_direction(const std::vector<Eigen::Vector3d>& points,
+/// Some rows of a set, spread over them: enough to say where something stands.
+std::vector<int> some_rows(const DataSet& data, int set) {
+  const auto step = 1 + std::ranges::count(data.rows.set, set) / kMostStarted;
+  std::vector<int> rows;
+  for (int row = 0, i = 0; row < data.rows.rows(); ++row)
+    if (data.rows.set[row] == set && i++ % step == 0) rows.push_back(row);
+  return rows;
+}
+
+/// Direction in which the points spread least, out of the surface that they lie on: where most of
+/// the links are that the kind gives, or the world's origin is.
+Eigen::Vector3d thin_direction(const Robot& robot, const DataSet& data, int set,
+                               const std::vector<Eigen::Vector3d>& points,
                                const Eigen::Vector3d& centre) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& p : points) spread += (p - centre) * (p - centre).transpose();
   const Symmetric eigen = symmetric_eigen(spread);
   const Eigen::Vector3d n = eigen.vectors.col(0);
-  return n.dot(centre) > 0 ? Eigen::Vector3d(-n) : n;  // towards the robot
+  int outside = 0;
+  for (const int row : some_rows(data, set)) {
+    const std::vector<Eigen::Isometry3d> poses =
+        seen_poses(robot, data.rows.q.row(row).transpose());
+    for (size_t i = 0; i + 1 < poses.size(); ++i) {
+      const double away = n.dot(poses[i].translation() - poses.back().translation());
+      outside += (away > 0) - (away < 0);
+    }
+  }
+  const double side = outside != 0 ? outside : -n.dot(centre);
+  return side < 0 ? Eigen::Vector3d(-n) : n;
 }
 
 /// Its rows hold lengths that an instrument measured.
@@ -39,45 +60,48 @@ bool measures_lengths(const Method& method) {
              own, [](const MeasuredColumn& each) { return each.quantity == Quantity::length; });
 }
 
-/// Where the device of a set stands, by what fits the rows best with the robot as it is: what is
-/// off it matters times an error of scale, which is of second order.
-Eigen::Vector3d device_of(const Robot& robot, const DataSet& data, int set) {
+/// Own values of a set that fit its rows best with the robot as it is; none where it has no place
+/// at any of them.
+Eigen::VectorXd own_values(const Robot& robot, const DataSet& data, int set) {
   const Method& method = *data.sets[set].method;
   const Eigen::VectorXd xi = values(robot);
-  const auto all = std::ranges::count(data.rows.set, set);
   std::vector<int> rows;
   std::vector<Location> X;
   Locations link, tip;
-  for (int row = 0, i = 0; row < data.rows.rows(); ++row) {
-    if (data.rows.set[row] != set || i++ % (1 + all / kMostStarted) != 0) continue;
+  for (const int row : some_rows(data, set)) {
     const ConfigurationBlock block = block_of(data.rows.q.row(row).transpose());
     if (!robot.locate(block, xi, Body::endpoint, tip, nullptr).closes()) continue;
     robot.locate(block, xi, Body::last_link, link, nullptr);
     rows.push_back(row);
     X.push_back(method.body() == Body::last_link ? link.at(0) : tip.at(0));
   }
-  if (rows.empty()) return Eigen::Vector3d::Zero();
+  if (rows.empty()) return {};
   const Location tool = {link.R(0).transpose() * tip.R(0),
                          link.R(0).transpose() * (tip.p(0) - link.p(0))};
-  return method.device(method.start(X, rows, data.rows, nullptr, tool));
+  return method.start(X, rows, data.rows, nullptr, tool);
 }
 
 MeasuredSet measured_set(const Robot& robot, const DataSet& data, int set) {
+  const Method& method = *data.sets[set].method;
   MeasuredSet context;
   context.name = data.sets[set].name;
-  context.touch = data.sets[set].method->touches() == TouchedSurface::plane;
-  context.lengths = measures_lengths(*data.sets[set].method);
+  context.touch = method.touches();
+  context.lengths = measures_lengths(method);
   const std::vector<Eigen::Vector3d> points = tips(robot, data, set);
   context.without_rows = points.empty();
   if (context.without_rows) return context;
-  if (context.lengths) context.device = device_of(robot, data, set);
   for (const Eigen::Vector3d& p : points) context.centre += p / static_cast<double>(points.size());
-  if (!context.touch) return context;
+  // What is off there matters times an error of scale, which is of second order.
+  if (context.lengths)
+    if (const Eigen::VectorXd own = own_values(robot, data, set); own.size() > 0)
+      context.device = method.device(own);
+  if (context.touch != TouchedSurface::plane) return context;
   for (int row = 0; row < data.rows.rows() && data.rows.normal.rows() > 0; ++row)
     if (data.rows.set[row] == set && data.rows.normal.row(row).allFinite())
       context.normal += data.rows.normal.row(row).transpose();
-  context.normal = context.normal.norm() > 1e-6 ? Eigen::Vector3d(context.normal.normalized())
-                                                : thin_direction(points, context.centre);
+  context.normal = context.normal.norm() > 1e-6
+                       ? Eigen::Vector3d(context.normal.normalized())
+                       : thin_direction(robot, data, set, points, context.centre);
   return context;
 }
 

@@ -64,6 +64,9 @@ inline constexpr double kFarthestPlace = 1000;  ///< m, from the world's origin
 inline constexpr double kColdest = -100, kHottest = 150;
 inline constexpr double kMostTurned = 8 * std::numbers::pi;  ///< rad: more turns than any wrist has
 
+/// The surface that the tool touches.
+enum class TouchedSurface { none, plane, curved };
+
 /// Reads the fields of one mapping. A getter of a missing or broken field returns its fallback
 /// and notes the problem, so that a reader runs straight through and is judged at its end.
 class Fields {

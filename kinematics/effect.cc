@@ -64,7 +64,10 @@ int MeasurementContext::find(std::string_view set) const {
   return -1;
 }
 
-bool MeasurementContext::touched() const { return std::ranges::any_of(sets, &MeasuredSet::touch); }
+bool MeasurementContext::touched() const {
+  return std::ranges::any_of(
+      sets, [](const MeasuredSet& set) { return set.touch != TouchedSurface::none; });
+}
 
 Node Effect::describe(const Eigen::VectorXd& v) const {
   Node node = Node::map();

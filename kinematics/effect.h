@@ -57,9 +57,10 @@ struct Regressor {
 /// One surface or target of a data set, as far as effects at it ask.
 struct MeasuredSet {
   std::string name;
-  bool touch = false;                                ///< a flat surface was touched
+  TouchedSurface touch = TouchedSurface::none;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its rows (m)
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean outward normal; zero when not known
+  /// Of a flat surface, outward, by its rows; zero when not known.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   bool lengths = false;       ///< an instrument measured positions or lengths
   bool without_rows = false;  ///< it has none here, so that nothing is known of it
   Eigen::Vector3d device = Eigen::Vector3d::Zero();  ///< origin of the lengths (m, world)
@@ -79,7 +80,7 @@ struct MeasurementContext {
   std::optional<double> reference = {};
 
   int find(std::string_view set) const;  ///< -1 when there is none
-  bool touched() const;                  ///< a flat surface, in some set
+  bool touched() const;                  ///< a surface, in some set
 };
 
 struct EffectParameter {

@@ -104,7 +104,7 @@ void Machine::add_effects(Problems& problems) {
   for (const Set& set : sets_) context.sets.emplace_back().name = set.name;
   for (const TrueSurface& surface : surfaces_) {
     MeasuredSet& set = context.sets[static_cast<std::size_t>(surface.set)];
-    set.touch = true;
+    set.touch = TouchedSurface::plane;
     set.centre = surface.within.centre;
     set.normal = surface.outward;
   }

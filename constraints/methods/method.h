@@ -35,9 +35,6 @@ struct Plane {
   std::optional<double> d = {};                  ///< m; nothing where only the direction is known
 };
 
-/// The surface that the tool touches; instruments, sockets and nests have none.
-enum class TouchedSurface { none, plane, curved };
-
 /// What a session's plan can do for a method: touch a surface, sit in sockets or nests, visit what
 /// a lock allows, or nothing.
 enum class Planned { no, surface, places, lock };
@@ -165,6 +162,7 @@ class Method {
   virtual std::string lock() const { return {}; }
   /// True when where the touched surface lies, or how it is turned, is given.
   virtual bool place_known() const { return false; }
+  /// What the tool touches; instruments, sockets and nests have no surface.
   virtual TouchedSurface touches() const { return TouchedSurface::none; }
   /// The touched plane; nothing of other methods.
   virtual std::optional<Plane> plane(const Eigen::VectorXd& nuisance,

@@ -1,6 +1,7 @@
 // The endpoint lies on a sphere (a ball probed from all sides, a ball bar, two arms that touch):
 //   r = |P - c| - rho,   dr = u . (Psi_p dxi - dc) - drho,   u = (P - c) / |P - c|
 // Centre and radius are unknown unless given; the radius is that of the endpoint's locus.
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/methods/maker.h"
@@ -9,6 +10,8 @@
 
 namespace selfcal {
 namespace {
+
+constexpr int kSteps = 20;  ///< of a start, which the fit goes on from; 5 to 50 [cost]
 
 class Sphere final : public Method {
  public:
@@ -42,6 +45,7 @@ class Sphere final : public Method {
     const Eigen::Vector4d fit = least_squares(A, b);
     Eigen::VectorXd nuisance(4);
     nuisance.head<3>() = centre_.value_or(mean + fit.head<3>());
+    if (radius_ && !centre_) nuisance.head<3>() = middle_of(X, mean, nuisance.head<3>());
     double radius = 0;
     for (const Location& each : X)
       radius += (each.p - nuisance.head<3>()).norm() / static_cast<double>(X.size());
@@ -94,6 +98,49 @@ class Sphere final : public Method {
   }
 
  private:
+  /// Middle of a ball of the known radius that the points lie on: touches of a small part of it
+  /// hardly tell the radius, and without it the ball may come to lie on their other side. Sought
+  /// from `given`, and from either side of the plane that they lie nearest to.
+  Eigen::Vector3d middle_of(const std::vector<Location>& X, const Eigen::Vector3d& mean,
+                            const Eigen::Vector3d& given) const {
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Location& each : X)
+      spread += (each.p - mean) * (each.p - mean).transpose() / static_cast<double>(X.size());
+    const Eigen::Vector3d n = symmetric_eigen(spread).vectors.col(0);
+    const double away = std::sqrt(std::max(*radius_ * *radius_ - spread.trace(), 0.0));
+    Eigen::Vector3d best = given;
+    double least = HUGE_VAL;
+    for (Eigen::Vector3d c :
+         {given, Eigen::Vector3d(mean + away * n), Eigen::Vector3d(mean - away * n)}) {
+      const double squares = settle(X, c);
+      if (!(squares < least)) continue;
+      least = squares;
+      best = c;
+    }
+    return best;
+  }
+
+  /// Gauss and Newton's steps of `c`; what is left of the points, squared.
+  double settle(const std::vector<Location>& X, Eigen::Vector3d& c) const {
+    double squares = HUGE_VAL;
+    for (int step = 0; step < kSteps; ++step) {
+      Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9 * static_cast<double>(X.size());
+      Eigen::Vector3d b = Eigen::Vector3d::Zero();
+      squares = 0;
+      for (const Location& each : X) {
+        const double length = (each.p - c).norm();
+        if (!(length > 0)) continue;
+        const Eigen::Vector3d u = (each.p - c) / length;
+        const double r = length - *radius_;
+        A += u * u.transpose();
+        b += r * u;
+        squares += r * r;
+      }
+      c += A.ldlt().solve(b);
+    }
+    return squares;
+  }
+
   int radius_at() const { return centre_ ? 0 : 3; }
 
   std::optional<Eigen::Vector3d> centre_;

@@ -41,7 +41,8 @@ std::unique_ptr<Effect> make_plane_form_error(const EffectPlan& plan) {
 
 void suppose_plane_form_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.set < 0 || !rows.shows(place.set)) return;
-  if (rows.context.sets[static_cast<size_t>(place.set)].touch) to.add(place.name);
+  if (rows.context.sets[static_cast<size_t>(place.set)].touch == TouchedSurface::plane)
+    to.add(place.name);
 }
 
 }  // namespace selfcal

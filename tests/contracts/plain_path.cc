@@ -24,7 +24,7 @@ constexpr int kRowsOfASet = 75;  // two blocks and a part of one
 /// An arm with effects of readings, load, temperature and touch.
 std::shared_ptr<const Robot> arm_with_effects() {
   MeasurementContext context;
-  context.sets = {{"s", true, {0.4, 0.2, 0.1}, {0.1, -0.3, 0.9}}};
+  context.sets = {{"s", TouchedSurface::plane, {0.4, 0.2, 0.1}, {0.1, -0.3, 0.9}}};
   for (double t = 0; t <= 3600; t += 60) {
     context.times.push_back(t);
     context.temperatures.push_back(20 + t / 900);

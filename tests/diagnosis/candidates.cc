@@ -132,7 +132,8 @@ TEST(Candidates, LetTheBaseDriftSettleAndWander) {
 
 TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
   Session session(50);
-  session.context.sets = {{.name = "table", .touch = true}, {.name = "leica", .lengths = true}};
+  session.context.sets = {{.name = "table", .touch = TouchedSurface::plane},
+                          {.name = "leica", .lengths = true}};
   for (int row = 20; row < 50; ++row) session.data.rows.set[row] = 1;
   const auto count = [&](const char* effect, const char* at) {
     const Candidates all = session.candidates();

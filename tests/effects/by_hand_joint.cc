@@ -100,7 +100,7 @@ TEST(ZeroShiftByHand, FollowsTheTemperatureWhereItIsSaid) {
 
 TEST(TriggerLatencyByHand, TakesTheJointsBackByVelocityTimesDelay) {
   // 2 ms late at 0.05 rad/s: the joint was 100 urad short of where it was read when the touch
-  // happened. Rows that touch nothing (no normal), or whose velocity is not known, are not late.
+  // happened. Rows that touch nothing, or whose velocity is not known, are not late.
   const std::string late = "[{effect: trigger_latency, delay: 2.0e-3}]";
   Held held;
   held.velocity = numbers({0.05});
@@ -108,6 +108,13 @@ TEST(TriggerLatencyByHand, TakesTheJointsBackByVelocityTimesDelay) {
   expect_near(moved(kTurntable, late, held).turn, 0, 0, -100e-6);
   held.normal.setConstant(kUnknown);
   expect_near(moved(kTurntable, late, held).turn, 0, 0, 0);
+  MeasurementContext context;  // of a set that is touched no row needs a normal
+  context.sets = {{"ball", TouchedSurface::curved}, {"tracker"}};
+  held.set = 0;
+  expect_near(moved(kTurntable, late, held, context).turn, 0, 0, -100e-6);
+  held.set = 1;
+  expect_near(moved(kTurntable, late, held, context).turn, 0, 0, 0);
+  held.set = -1;
   held.normal = Eigen::Vector3d::UnitZ();
   held.velocity = numbers({kUnknown});
   expect_near(moved(kTurntable, late, held).turn, 0, 0, 0);

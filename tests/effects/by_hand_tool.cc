@@ -84,7 +84,8 @@ TEST(ToolComplianceByHand, LetsTheToolItselfBendByForcesAtItsTip) {
 
 MeasurementContext tracked() {
   MeasurementContext context;
-  context.sets = {{"table", true, {0, 0, 0}, {0, 0, 1}}, {"tracker", false, {}, {}, true}};
+  context.sets = {{"table", TouchedSurface::plane, {0, 0, 0}, {0, 0, 1}},
+                  {"tracker", TouchedSurface::none, {}, {}, true}};
   context.times = {0, 100};
   context.temperatures = {20, 24};
   context.reference = 22;

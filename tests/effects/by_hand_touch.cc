@@ -34,12 +34,36 @@ TEST(ProbePretravelByHand, DependsOnTheAngleToTheStylusAndOnTheSideOfIt) {
   expect_near(moved(kTurntable, probe, held).p, 0, 0, 0, 0);
 }
 
+TEST(ProbePretravelByHand, TakesTheNormalOfItsPlaneWhereTheRowHasNone) {
+  // On the table the stylus (z) stands along the normal: p0 alone, along z. A row's own normal
+  // along x goes before: sin phi is 1, psi 0, so that p0 + p1 + p3 = 5 + 14 = 19 um. On a ball, at
+  // a normal (0.6, 0, -0.8), 0.6 (p1 + p3) = 8.4 um, for p0 is as another radius there.
+  const std::string probe = "[{effect: probe_pretravel, p0: 5.0e-6, p1: 1.0e-5, p3: 4.0e-6}]";
+  MeasurementContext context;
+  context.sets = {{"table", TouchedSurface::plane, {1, 0, 0}, {0, 0, 1}},
+                  {"ball", TouchedSurface::curved, {0.7, 0, 0.4}},
+                  {"tracker"}};
+  Held held;
+  held.set = 0;
+  expect_near(moved(kTurntable, probe, held, context).p, 0, 0, 5e-6, 1e-15);
+  for (const int set : {1, 2}) {
+    held.set = set;
+    expect_near(moved(kTurntable, probe, held, context).p, 0, 0, 0, 0);
+  }
+  held.set = 0;
+  held.normal = {1, 0, 0};
+  expect_near(moved(kTurntable, probe, held, context).p, 19e-6, 0, 0, 1e-15);
+  held.set = 1;
+  held.normal = {0.6, 0, -0.8};
+  expect_near(moved(kTurntable, probe, held, context).p, 0.6 * 8.4e-6, 0, -0.8 * 8.4e-6, 1e-15);
+}
+
 /// A table whose middle is at (0.8, -0.1, 0): the tip at (1, 0, 0) has u = 0.2, v = 0.1 m there. Of
 /// a vertical normal u is the world's x and v = n x u its y.
 MeasurementContext table() {
   MeasurementContext context;
-  context.sets = {{"other", true, {0, 0, 0}, {0, 0, 1}},
-                  {"table", true, {0.8, -0.1, 0}, {0, 0, 2}}};
+  context.sets = {{"other", TouchedSurface::plane, {0, 0, 0}, {0, 0, 1}},
+                  {"table", TouchedSurface::plane, {0.8, -0.1, 0}, {0, 0, 2}}};
   return context;
 }
 
@@ -96,6 +120,22 @@ TEST(FixtureShiftByHand, GoesAlongTheNormalOfAWall) {
                     held, context)
                   .p,
               -10e-6, 0, 0, 1e-15);
+}
+
+TEST(FixtureShiftByHand, TakesABallBackToWhereItStood) {
+  MeasurementContext context;
+  context.sets = {{"ball", TouchedSurface::curved, {1, 0, 0}}};
+  const std::string moving =
+      "[{effect: fixture_shift, at: ball, moment: 500, x: 1.0e-4, y: -2.0e-4, z: 3.0e-4}]";
+  Held held;
+  held.set = 0;
+  held.time = 500;
+  expect_near(moved(kTurntable, moving, held, context).p, -1e-4, 2e-4, -3e-4, 1e-15);
+  held.time = 499.9;
+  expect_near(moved(kTurntable, moving, held, context).p, 0, 0, 0, 0);
+  held.set = -1;
+  held.time = 500;
+  expect_near(moved(kTurntable, moving, held, context).p, 0, 0, 0, 0);
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"TriggerLatency", "effect: trigger_latency"},
       {"PlaneFormError", "effect: plane_form_error, at: table"},
       {"FixtureShift", "effect: fixture_shift, at: table, moment: 1000"},
+      {"FixtureShiftOfABall", "effect: fixture_shift, at: ball, moment: 1000"},
       {"ToolShift", "effect: tool_shift, at: probe, moment: 1000"},
       {"ToolCompliance", "effect: tool_compliance, at: probe"},
       {"ToolComplianceOfALightTool", "effect: tool_compliance, at: probe", "serial", false, true},
@@ -88,11 +89,13 @@ inline std::string entry_text(const EffectCase& each, const std::string& joint,
   return text;
 }
 
-/// Sets "table" (touched) and "tracker"; an hour in which it grows warm.
+/// Sets "table" and "ball" (touched) and "tracker"; an hour in which it grows warm.
 inline MeasurementContext random_context(std::mt19937_64& random) {
   MeasurementContext context;
-  context.sets = {{"table", true, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
-                  {"tracker", false, {}, {}, true}};
+  context.sets = {
+      {"table", TouchedSurface::plane, {0.4, 0.2, uniform(random, -0.2, 0.2)}, {0.1, -0.3, 0.9}},
+      {"tracker", TouchedSurface::none, {}, {}, true},
+      {"ball", TouchedSurface::curved, {0.5, -0.1, 0.3}}};
   for (double t = 0; t <= 3600; t += 60) {
     context.times.push_back(t);
     context.temperatures.push_back(20 + t / 900 + uniform(random, -0.1, 0.1));
@@ -117,7 +120,7 @@ inline ConfigurationBlock with_conditions(ConfigurationBlock block, std::mt19937
   at.normal = random_matrix(kLanes, 3, 1, random).rowwise().normalized();
   at.temperature = random_matrix(kLanes, 1, 5, random).array() + 20;
   at.time = random_matrix(kLanes, 1, 1700, random).array() + 1800;
-  for (int lane = 0; lane < kLanes; ++lane) at.set.push_back(lane % 2);
+  for (int lane = 0; lane < kLanes; ++lane) at.set.push_back(lane % 3);
   return block;
 }
 
