@@ -11,9 +11,8 @@
 namespace selfcal {
 namespace {
 
-// A cap of 25 degrees about its top, which is 4 mm high: without the radius the points, off by a
-// quarter of a millimetre as a robot's are before calibration, do not say on which side the ball
-// is.
+// A cap of 9 degrees about its top, 0.6 mm high: of points that are off by a quarter of a
+// millimetre, as a robot's are before calibration, a ball of any radius is far off in half.
 TEST(BallOfKnownRadius, IsFoundBehindASmallPartOfItThatWasTouched) {
   Problems problems;
   Node entry = Node::map();
@@ -22,6 +21,7 @@ TEST(BallOfKnownRadius, IsFoundBehindASmallPartOfItThatWasTouched) {
   ASSERT_FALSE(problems.any()) << problems.list.front();
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
+  int far = 0;
   for (int trial = 0; trial < 50; ++trial) {
     const Eigen::Vector3d centre(0.6, -0.2, 0.3);
     const Eigen::Vector3d top =
@@ -30,7 +30,7 @@ TEST(BallOfKnownRadius, IsFoundBehindASmallPartOfItThatWasTouched) {
     for (int i = 0; i < 6; ++i) {
       Location at;
       const Eigen::Vector3d aside = Eigen::Vector3d::NullaryExpr([&] { return normal(random); });
-      at.p = centre + 0.05 * (top + 0.45 * aside.cross(top).normalized()).normalized();
+      at.p = centre + 0.05 * (top + 0.15 * aside.cross(top).normalized()).normalized();
       at.p += 0.25e-3 * Eigen::Vector3d::NullaryExpr([&] { return normal(random); });
       X.push_back(at);
     }
@@ -38,9 +38,10 @@ TEST(BallOfKnownRadius, IsFoundBehindASmallPartOfItThatWasTouched) {
     std::vector<int> rows(X.size());
     std::iota(rows.begin(), rows.end(), 0);
     const Eigen::VectorXd own = ball.method->start(X, rows, {}, nullptr, {});
-    EXPECT_LT((own.head<3>() - centre).norm(), 0.01) << "trial " << trial;
+    far += (own.head<3>() - centre).norm() > 0.02;
     EXPECT_EQ(own[3], 0.05);
   }
+  EXPECT_LE(far, 5);
 }
 
 }  // namespace
