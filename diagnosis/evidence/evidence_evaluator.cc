@@ -57,12 +57,14 @@ void EvidenceEvaluator::number_causes() {
   }
 }
 
-/// What is moved at will may be moved as far as one likes.
+/// What is moved at will may be moved as far as one likes; and what comes to be elsewhere farther
+/// than any machine's tells of an instrument that was moved.
 Eigen::VectorXd EvidenceEvaluator::most_possible(const Candidate& candidate,
                                                  const std::vector<EffectParameter>& parameters) {
   Eigen::VectorXd most =
       Eigen::VectorXd::Constant(static_cast<Eigen::Index>(candidate.main.size()), INFINITY);
-  if (lasting_of(candidate.effect) == EffectLasting::moved_at_will) return most;
+  const EffectLasting lasting = lasting_of(candidate.effect);
+  if (lasting == EffectLasting::moved_at_will || lasting == EffectLasting::moves) return most;
   for (Eigen::Index i = 0; i < most.size(); ++i)
     most[i] = kDiagnosis.report.impossible *
               parameters[static_cast<size_t>(candidate.main[static_cast<size_t>(i)])].usual_most;
