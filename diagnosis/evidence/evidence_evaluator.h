@@ -82,6 +82,9 @@ class EvidenceEvaluator {
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
   /// at most five families.
   Hypothesis grow(Hypothesis h, size_t most) const;
+  /// It needs of a machine what none has: a size far beyond any usual one, or a sign that physics
+  /// does not allow. It stands for something else.
+  bool is_impossible(const Hypothesis& h) const;
 
  private:
   friend class Search;

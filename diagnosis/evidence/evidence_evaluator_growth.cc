@@ -1,6 +1,7 @@
 // A set of causes that grows as far as it goes: each candidate that makes it more probable, without
-// those that others make up for.
+// those that others make up for; and whether a machine can have a set.
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -79,6 +80,28 @@ Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
     h = pruned(without_parts(std::move(best)));
   }
   return h;
+}
+
+bool EvidenceEvaluator::is_impossible(const Hypothesis& h) const {
+  const MarginalLikelihood::Estimate estimate =
+      marginal_likelihoods_[h.structure].estimate(terms(h));
+  Eigen::Index first = 0;
+  for (const int c : h.candidates) {
+    const Block& block = blocks_[c];
+    const Eigen::VectorXd& most = most_possible_[static_cast<std::size_t>(c)];
+    const auto sigma = [&](Eigen::Index at) {
+      return std::sqrt(estimate.variance * estimate.covariance(at, at));
+    };
+    for (Eigen::Index i = 0; i < most.size(); ++i)
+      if (std::abs(estimate.mean[first + i]) - kDiagnosis.report.sigmas * sigma(first + i) >
+          most[i])
+        return true;
+    for (const int i : block.positive)
+      if (estimate.mean[first + i] + kDiagnosis.report.other_sign * sigma(first + i) < 0)
+        return true;
+    first += static_cast<Eigen::Index>(block.columns.size());
+  }
+  return false;
 }
 
 }  // namespace selfcal

@@ -1,6 +1,5 @@
 // The sets of causes that are visited, and their posterior.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -39,36 +38,7 @@ class Search {
   }
 
  private:
-  static constexpr int kMostTogether = kDiagnosis.evidence.most_together;
-
-  /// A hypothesis of so many candidates, ascending.
-  struct Visit {
-    int count = 0, structure = 0;
-    std::array<int, kMostTogether> candidates{};
-    std::array<double, kMostTogether> sizes{};
-    double log_weight = 0;
-    bool judged = false;  ///< whether it is possible is known
-
-    std::span<const int> all() const {
-      return {candidates.data(), static_cast<std::size_t>(count)};
-    }
-    auto key() const { return std::tuple(count, structure, candidates); }
-    void add(int candidate, double size) {
-      int at = count++;
-      for (; at > 0 && candidates[at - 1] > candidate; --at) {
-        candidates[at] = candidates[at - 1];
-        sizes[at] = sizes[at - 1];
-      }
-      candidates[at] = candidate;
-      sizes[at] = size;
-    }
-    Hypothesis hypothesis() const {
-      return {{candidates.begin(), candidates.begin() + count},
-              structure,
-              log_weight,
-              {sizes.begin(), sizes.begin() + count}};
-    }
-  };
+  using Visit = CompactHypothesis;
 
   double note(Visit visit, double log_evidence) {
     visit.log_weight = log_evidence + evaluator_.log_prior(visit.all(), visit.structure);
@@ -160,43 +130,19 @@ class Search {
   /// where they make all structure needless.
   void grow_beside_noise() {
     std::vector<Visit> best = best_of(3, evaluator_.rule_.extended_further, Beside::noise);
-    while (!best.empty() && best.front().count < kMostTogether) {
+    while (!best.empty() && best.front().count < kDiagnosis.evidence.most_together) {
       const double before = best.front().log_weight;
       const int count = best.front().count + 1;
       extend(best, Of::same_families);
       keep_best();
       std::erase_if(visited_, [&](const Visit& each) {
         return each.count == count && each.log_weight > before - kDiagnosis.evidence.hopeless &&
-               is_impossible(each.hypothesis());
+               evaluator_.is_impossible(each.hypothesis());
       });
       distinct_ = visited_.size();
       best = best_of(count, evaluator_.rule_.extended_further, Beside::noise);
       std::erase_if(best, [&](const Visit& each) { return each.log_weight <= before; });
     }
-  }
-
-  /// It needs of a machine what none has: a size far beyond any usual one, or a sign that physics
-  /// does not allow. It stands for something else.
-  bool is_impossible(const Hypothesis& h) const {
-    const MarginalLikelihood::Estimate estimate =
-        evaluator_.marginal_likelihood(h.structure).estimate(evaluator_.terms(h));
-    Eigen::Index first = 0;
-    for (const int c : h.candidates) {
-      const Block& block = evaluator_.block(c);
-      const Eigen::VectorXd& most = evaluator_.most_possible_[static_cast<std::size_t>(c)];
-      const auto sigma = [&](Eigen::Index at) {
-        return std::sqrt(estimate.variance * estimate.covariance(at, at));
-      };
-      for (Eigen::Index i = 0; i < most.size(); ++i)
-        if (std::abs(estimate.mean[first + i]) - kDiagnosis.report.sigmas * sigma(first + i) >
-            most[i])
-          return true;
-      for (const int i : block.positive)
-        if (estimate.mean[first + i] + kDiagnosis.report.other_sign * sigma(first + i) < 0)
-          return true;
-      first += static_cast<Eigen::Index>(block.columns.size());
-    }
-    return false;
   }
 
   /// Of all that counts, what is impossible counts less.
@@ -208,7 +154,7 @@ class Search {
       for (Visit& each : visited_) {
         if (each.judged || each.log_weight < least) continue;
         each.judged = true;
-        if (each.count == 0 || !is_impossible(each.hypothesis())) continue;
+        if (each.count == 0 || !evaluator_.is_impossible(each.hypothesis())) continue;
         each.log_weight -= kDiagnosis.evidence.impossible;
         lowered = true;
       }

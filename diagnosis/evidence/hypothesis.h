@@ -1,11 +1,17 @@
 // A set of causes that may explain the rows, and what a search leaves of many.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
+
+#include "diagnosis/constants.h"
 
 namespace selfcal {
 
@@ -15,6 +21,33 @@ struct Hypothesis {
   int structure = 0;
   double log_weight = 0;      ///< evidence times prior, summed over sizes
   std::vector<double> sizes;  ///< most probable, by candidate
+};
+
+/// One as a search holds many of them: of so many candidates at most, ascending, in one place.
+struct CompactHypothesis {
+  int count = 0, structure = 0;
+  std::array<int, kDiagnosis.evidence.most_together> candidates{};
+  std::array<double, kDiagnosis.evidence.most_together> sizes{};
+  double log_weight = 0;
+  bool judged = false;  ///< whether a machine can have it is known
+
+  std::span<const int> all() const { return {candidates.data(), static_cast<std::size_t>(count)}; }
+  auto key() const { return std::tuple(count, structure, candidates); }
+  void add(int candidate, double size) {
+    int at = count++;
+    for (; at > 0 && candidates[at - 1] > candidate; --at) {
+      candidates[at] = candidates[at - 1];
+      sizes[at] = sizes[at - 1];
+    }
+    candidates[at] = candidate;
+    sizes[at] = size;
+  }
+  Hypothesis hypothesis() const {
+    return {{candidates.begin(), candidates.begin() + count},
+            structure,
+            log_weight,
+            {sizes.begin(), sizes.begin() + count}};
+  }
 };
 
 /// Answers that stand where an effect is named: what calibration leaves is noise, or structure that
