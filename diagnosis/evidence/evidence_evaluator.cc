@@ -240,9 +240,12 @@ EvidenceEvaluator::Single EvidenceEvaluator::weigh_alone(int structure, int cand
   return over_sizes(candidate, logs);
 }
 
-double EvidenceEvaluator::sized(Hypothesis& h) const {
+Eigen::MatrixXd EvidenceEvaluator::gram(const Hypothesis& h) const {
+  return marginal_likelihoods_[h.structure].gram(MarginalLikelihood::unfold(terms(h)).first);
+}
+
+double EvidenceEvaluator::sized(Hypothesis& h, const Eigen::MatrixXd& G) const {
   const MarginalLikelihood& own = marginal_likelihoods_[h.structure];
-  const Eigen::MatrixXd G = own.gram(MarginalLikelihood::unfold(terms(h)).first);
   double log_evidence = -INFINITY;
   for (std::size_t i = 0; i < h.candidates.size(); ++i) {
     std::array<double, kSizes.size()> logs{};

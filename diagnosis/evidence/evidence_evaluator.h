@@ -85,6 +85,8 @@ class EvidenceEvaluator {
   /// It needs of a machine what none has: a size far beyond any usual one, or a sign that physics
   /// does not allow. It stands for something else.
   bool is_impossible(const Hypothesis& h) const;
+  /// The same from G of its columns (MarginalLikelihood::gram), the candidates in any order.
+  bool is_impossible(const Hypothesis& h, const Eigen::MatrixXd& G) const;
 
  private:
   friend class Search;
@@ -108,9 +110,11 @@ class EvidenceEvaluator {
   /// Priors of sizes that stay as they are.
   double held(const Hypothesis& h) const;
   double held(int candidate, double size) const;
-  /// Gives each cause the size that is most probable beside the others, one after the other. Its
-  /// log evidence, without the prior of the set.
-  double sized(Hypothesis& h) const;
+  /// G of the set's columns.
+  Eigen::MatrixXd gram(const Hypothesis& h) const;
+  /// Gives each cause the size that is most probable beside the others, one after the other, from
+  /// G of their columns. Its log evidence, without the prior of the set.
+  double sized(Hypothesis& h, const Eigen::MatrixXd& G) const;
   Hypothesis with(Hypothesis h, int candidate, const MarginalLikelihood& rest) const;
   Hypothesis with_best(const Hypothesis& h, const MarginalLikelihood& rest) const;
   Hypothesis pruned(Hypothesis h) const;

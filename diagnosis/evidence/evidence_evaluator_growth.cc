@@ -83,8 +83,12 @@ Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
 }
 
 bool EvidenceEvaluator::is_impossible(const Hypothesis& h) const {
+  return is_impossible(h, gram(h));
+}
+
+bool EvidenceEvaluator::is_impossible(const Hypothesis& h, const Eigen::MatrixXd& G) const {
   const MarginalLikelihood::Estimate estimate =
-      marginal_likelihoods_[h.structure].estimate(terms(h));
+      marginal_likelihoods_[h.structure].estimate(terms(h), G);
   Eigen::Index first = 0;
   for (const int c : h.candidates) {
     const Block& block = blocks_[c];

@@ -47,6 +47,22 @@ class Search {
     return visit.log_weight;
   }
 
+  /// What was noted last is to be judged: it may be among what counts in the end.
+  bool counts() const {
+    return goes_on_ && visited_.back().log_weight > top_ - kDiagnosis.evidence.counts;
+  }
+
+  /// Whether a machine can have what was noted last, from G of its columns.
+  void judge(const Hypothesis& h, const Eigen::MatrixXd& G) {
+    visited_.back().impossible = evaluator_.is_impossible(h, G);
+  }
+
+  bool is_impossible(Visit& visit) const {
+    if (!visit.impossible)
+      visit.impossible = visit.count > 0 && evaluator_.is_impossible(visit.hypothesis());
+    return *visit.impossible;
+  }
+
   /// A candidate cannot come near the best, whatever its size.
   bool hopeless(const MarginalLikelihood& marginal_likelihood, int candidate,
                 double log_prior) const {
@@ -81,6 +97,8 @@ class Search {
         Visit one{.structure = s};
         one.add(c, single.size);
         best = std::max(best, note(one, single.log_sum));
+        if (counts())
+          judge(one.hypothesis(), evaluator_.marginal_likelihoods_[s].gram(evaluator_.blocks_[c]));
       }
       kept_[s] = evaluator_.structure(s).kind == 0;
       if (!kept_[s]) ranked.emplace_back(-best, s);
@@ -135,9 +153,11 @@ class Search {
       const int count = best.front().count + 1;
       extend(best, Of::same_families);
       keep_best();
+      for (Visit& each : visited_)
+        if (each.count == count && each.log_weight > before - kDiagnosis.evidence.hopeless)
+          is_impossible(each);
       std::erase_if(visited_, [&](const Visit& each) {
-        return each.count == count && each.log_weight > before - kDiagnosis.evidence.hopeless &&
-               evaluator_.is_impossible(each.hypothesis());
+        return each.count == count && each.impossible.value_or(false);
       });
       distinct_ = visited_.size();
       best = best_of(count, evaluator_.rule_.extended_further, Beside::noise);
@@ -147,15 +167,16 @@ class Search {
 
   /// Of all that counts, what is impossible counts less.
   void lower_impossible() {
+    std::vector<char> seen(visited_.size(), 0);
     for (bool lowered = true; lowered;) {
       lowered = false;
       const double least = std::ranges::max(visited_, {}, &Visit::log_weight).log_weight -
                            kDiagnosis.evidence.counts;
-      for (Visit& each : visited_) {
-        if (each.judged || each.log_weight < least) continue;
-        each.judged = true;
-        if (each.count == 0 || !evaluator_.is_impossible(each.hypothesis())) continue;
-        each.log_weight -= kDiagnosis.evidence.impossible;
+      for (std::size_t i = 0; i < visited_.size(); ++i) {
+        if (seen[i] || visited_[i].log_weight < least) continue;
+        seen[i] = 1;
+        if (!is_impossible(visited_[i])) continue;
+        visited_[i].log_weight -= kDiagnosis.evidence.impossible;
         lowered = true;
       }
     }
@@ -172,8 +193,11 @@ class Search {
   void extend(const std::vector<Visit>& from, Of which = Of::all) {
     for (const Visit& each : from) {
       const Hypothesis h = each.hypothesis();
-      const MarginalLikelihood rest =
-          evaluator_.marginal_likelihoods_[h.structure].given(evaluator_.terms(h));
+      const MarginalLikelihood& own = evaluator_.marginal_likelihoods_[h.structure];
+      const std::vector<MarginalLikelihood::Term> terms = evaluator_.terms(h);
+      const std::vector<int> columns = MarginalLikelihood::unfold(terms).first;
+      const Eigen::MatrixXd products = own.products(columns);
+      const MarginalLikelihood rest = own.given(terms, products);
       const double held = evaluator_.held(h);
       for (int c = 0; c < candidates_; ++c) {
         if (!evaluator_.seen_[c] || std::ranges::count(each.all(), c) > 0) continue;
@@ -185,8 +209,30 @@ class Search {
         more = each;
         more.add(c, single.size);
         note(more, single.log_sum + held);
+        if (counts()) judge(beside(h, c, single.size), with_block(products, columns, own, c));
       }
     }
+  }
+
+  static Hypothesis beside(Hypothesis h, int c, double size) {
+    h.candidates.push_back(c);
+    h.sizes.push_back(size);
+    return h;
+  }
+
+  /// G of a set's `columns`, whose `products` with all columns are given, and candidate `c` behind
+  /// them.
+  Eigen::MatrixXd with_block(const Eigen::MatrixXd& products, const std::vector<int>& columns,
+                             const MarginalLikelihood& own, int c) const {
+    const Block& block = evaluator_.blocks_[c];
+    const auto n = static_cast<Eigen::Index>(columns.size()),
+               m = static_cast<Eigen::Index>(block.columns.size());
+    Eigen::MatrixXd G(n + m, n + m);
+    G.topLeftCorner(n, n) = products(Eigen::all, columns);
+    G.topRightCorner(n, m) = products(Eigen::all, block.columns);
+    G.bottomLeftCorner(m, n) = G.topRightCorner(n, m).transpose();
+    G.bottomRightCorner(m, m) = own.gram(block);
+    return G;
   }
 
   /// Sets of causes in all other structures that are kept. Where one cause is missing its share
@@ -199,9 +245,11 @@ class Search {
         Visit other = each;
         other.structure = s;
         Hypothesis h = other.hypothesis();
-        const double log_evidence = evaluator_.sized(h);
+        const Eigen::MatrixXd G = evaluator_.gram(h);
+        const double log_evidence = evaluator_.sized(h, G);
         for (int i = 0; i < other.count; ++i) other.sizes[i] = h.sizes[i];
         note(other, log_evidence);
+        if (counts()) judge(h, G);
       }
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,7 +30,7 @@ struct CompactHypothesis {
   std::array<int, kDiagnosis.evidence.most_together> candidates{};
   std::array<double, kDiagnosis.evidence.most_together> sizes{};
   double log_weight = 0;
-  bool judged = false;  ///< whether a machine can have it is known
+  std::optional<bool> impossible = {};  ///< no machine can have it; without a value: not asked
 
   std::span<const int> all() const { return {candidates.data(), static_cast<std::size_t>(count)}; }
   auto key() const { return std::tuple(count, structure, candidates); }

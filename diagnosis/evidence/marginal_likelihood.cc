@@ -135,6 +135,13 @@ Eigen::MatrixXd MarginalLikelihood::gram(const std::vector<int>& columns) const 
   return transposed_product(Z, Z);
 }
 
+Eigen::MatrixXd MarginalLikelihood::gram(const Block& block) const {
+  if (block.group < 0) return gram(block.columns);
+  const auto n = static_cast<Eigen::Index>(block.columns.size());
+  return Eigen::MatrixXd::NullaryExpr(
+      n, n, [&](Eigen::Index i, Eigen::Index j) { return product(block.group, i, j); });
+}
+
 std::pair<std::vector<int>, Eigen::VectorXd> MarginalLikelihood::unfold(
     std::span<const Term> terms) {
   std::vector<int> columns;

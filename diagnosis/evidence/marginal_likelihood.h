@@ -103,6 +103,8 @@ class MarginalLikelihood {
     double variance = 1;  ///< s^2
   };
   Estimate estimate(std::span<const Term> terms) const;
+  /// The same from G of their columns (as gram() gives it) in their order.
+  Estimate estimate(std::span<const Term> terms, const Eigen::MatrixXd& G) const;
   /// The means alone, of any number of terms.
   Eigen::VectorXd mean(std::span<const Term> terms) const;
 
@@ -113,6 +115,8 @@ class MarginalLikelihood {
   }
   /// Of G, rows and columns `columns`.
   Eigen::MatrixXd gram(const std::vector<int>& columns) const;
+  /// The same of a block, at no cost where it is in a group.
+  Eigen::MatrixXd gram(const Block& block) const;
   /// a by all columns of G.
   Eigen::MatrixXd products(const std::vector<int>& a) const;
   /// Columns of the terms, one after the other, and the prior sigma of each.

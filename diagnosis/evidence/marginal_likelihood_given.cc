@@ -64,10 +64,15 @@ MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms,
 }
 
 MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> terms) const {
+  return estimate(terms, gram(unfold(terms).first));
+}
+
+MarginalLikelihood::Estimate MarginalLikelihood::estimate(std::span<const Term> terms,
+                                                          const Eigen::MatrixXd& G) const {
   if (terms.empty()) return {{}, {}, variance(yy_)};
   const auto [columns, D] = unfold(terms);
   const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
-                            Eigen::MatrixXd(D.asDiagonal() * gram(columns) * D.asDiagonal());
+                            Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
   const Eigen::MatrixXd inverse = inverse_of_positive(H);
   Estimate estimate;
   const Eigen::VectorXd g = D.cwiseProduct(g_(columns));
