@@ -72,6 +72,7 @@ class Adjustment {
       equations_.start(start);
     }
     adjusted_.before = fit_placed(start);
+    if (!near_) place_from_afar(start);
     start_ = start;
     hold_scale(quietest() * adjusted_.before.at.R, adjusted_.before.state.xi);
     adjusted_.before.at = {};
@@ -147,6 +148,22 @@ class Adjustment {
     FitRule rule;  // what the nominal robot's errors leave is no noise to tell a false row by
     rule.most_iterations = near_ ? 0 : options_.most_iterations;
     return run_fit(start, prior, rule, "placing the nominal robot");
+  }
+
+  /// A robot that stands far from what it touches may be placed on its wrong side: it is placed
+  /// again from where it comes near, and all goes on from the better place.
+  void place_from_afar(State& start) {
+    State far = start;
+    for (std::size_t s = 0; s < far.nuisance.size(); ++s)
+      if (far.nuisance[s].size() > 0)
+        far.nuisance[s] = equations_.data().sets[s].method->from_afar(far.nuisance[s]);
+    if (far.nuisance == start.nuisance) return;
+    State near = fit_placed(far).state;
+    equations_.start(near);
+    Fit placed = fit_placed(near);
+    if (placed.objective < adjusted_.before.objective - kClearlyBetter)
+      adjusted_.before = std::move(placed);
+    start = adjusted_.before.state;
   }
 
   Fit fit_all() { return run_fit(start_, adjusted_.prior, "identifying"); }

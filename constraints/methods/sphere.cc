@@ -52,6 +52,13 @@ class Sphere final : public Method {
     nuisance[3] = radius_.value_or(radius);
     return nuisance;
   }
+  /// A known ball of no size: by a tool that is thought longer by its radius, touches lie on its
+  /// other side, where the fit stays.
+  Eigen::VectorXd from_afar(const Eigen::VectorXd& nuisance) const override {
+    Eigen::VectorXd point = nuisance;
+    if (centre_ && radius_) point[3] = 0;
+    return point;
+  }
   void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const override {
     if (!centre_) nuisance.head<3>() += step.head<3>();
     if (!radius_) nuisance[3] += step[radius_at()];

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "constraints/estimation/identification.h"
+#include "constraints/methods/shared/unit_normal.h"
 #include "io/files/robot_file.h"
 #include "tests/recovery/random_robot.h"
 #include "tests/recovery/rx90.h"
@@ -128,6 +129,47 @@ TEST(Touches, PutFalseRowsAsideByNameAndOnlyThem) {
   EXPECT_LE(missed, 2);
   EXPECT_LE(innocent, 1);
   EXPECT_LT(aligned_errors(*robot, solution.values, truth)[250], 0.05e-3);
+}
+
+// Balls of 20 mm touched with the tool towards them, whose file has it 30 mm longer than it is and
+// the base elsewhere: as the robot is thought to be, it went through the balls.
+TEST(Touches, OfKnownBallsAreFoundByAToolThatIsShorterThanThought) {
+  const auto robot = robot_of(kRx90);
+  const std::vector<Eigen::Vector3d> centres{
+      {0.6, 0.1, 0.6}, {0.5, -0.3, 0.7}, {0.3, 0.5, 0.9}, {-0.2, 0.6, 0.6}};
+  for (int seed = 1; seed <= 6; ++seed) {
+    Random random(seed);
+    Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+    truth[find_parameter(*robot, "r7")] -= 0.03;
+    const Eigen::Vector3d aside = 0.02 * random_direction(random);
+    const auto balls = [&](const Eigen::Vector3d& by) {
+      std::vector<SetPart> parts;
+      for (const Eigen::Vector3d& centre : centres) {
+        Node ball = entry({{"method", "sphere"}, {"radius", "0.02"}});
+        ball.set("center", Node::of(Eigen::VectorXd(centre + by)));
+        parts.push_back({"ball" + std::to_string(parts.size()), ball, 150});
+      }
+      return parts;
+    };
+    Session session = make_session(*robot, truth, balls(aside), 20e-6, random);
+    ASSERT_EQ(session.unreached, "");
+    std::vector<int> towards;
+    for (int row = 0; row < session.data.rows.rows(); ++row) {
+      const Location end = locate(*robot, truth, session.data.rows.q.row(row).transpose());
+      const auto set = static_cast<std::size_t>(session.data.rows.set[row]);
+      const Eigen::Vector3d normal = (end.p - centres[set] - aside).normalized();
+      if (end.R.col(2).dot(normal) < -0.3) towards.push_back(row);
+    }
+    session.data.rows = taken(session.data.rows, towards);
+    Node all = Node::map();
+    for (const SetPart& part : balls(Eigen::Vector3d::Zero())) all.set(part.name, part.node);
+    Problems problems;
+    session.data.sets = read_sets(all, problems);
+    ASSERT_FALSE(problems.any());
+    const Solution solution = identify(*robot, session.data);
+    EXPECT_TRUE(solution.converged) << solution.stop_reason;
+    EXPECT_LT(solution.residual.check.rms_after, 60e-6) << "seed " << seed;
+  }
 }
 
 }  // namespace
