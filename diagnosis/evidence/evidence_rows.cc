@@ -141,7 +141,7 @@ Eigen::MatrixXd StructuredRows::inverse_times(Eigen::MatrixXd X) const {
   noise->blocks->whiten(X);
   if (kernel) {
     const Eigen::MatrixXd& W = kernel->kernel->W;
-    X.noalias() -= W * (hidden.asDiagonal() * transposed_product(W, X));
+    X -= product(W, hidden.asDiagonal() * transposed_product(W, X));
   }
   noise->blocks->whiten_transposed(X);
   return X;
@@ -153,7 +153,7 @@ void StructuredRows::whiten(Eigen::MatrixXd& X) const {
   // (I - W h W')^(1/2) = I - W (1 - (1 - h)^(1/2)) W', W orthonormal.
   const Eigen::MatrixXd& W = kernel->kernel->W;
   const Eigen::VectorXd part = 1 - (1 - hidden.array()).sqrt();
-  X.noalias() -= W * (part.asDiagonal() * transposed_product(W, X));
+  X -= product(W, part.asDiagonal() * transposed_product(W, X));
 }
 
 Eigen::MatrixXd StructuredRows::AC() const {

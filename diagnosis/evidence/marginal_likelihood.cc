@@ -60,7 +60,7 @@ Eigen::MatrixXd MarginalLikelihood::beyond_geometry(const Eigen::MatrixXd& X) co
   const Eigen::MatrixXd AX = transposed_product(rows().A(), fixed_->seen.inverse_times(X));
   const Eigen::MatrixXd taken =
       solve_lower_transposed(root, solve_lower(root, Eigen::MatrixXd(scale * AX)));
-  return scale * fixed_->seen.inverse_times(X - rows().A() * taken);
+  return scale * fixed_->seen.inverse_times(X - selfcal::product(rows().A(), taken));
 }
 
 MarginalLikelihood::Statistics MarginalLikelihood::statistics_of(const Eigen::MatrixXd& Y) const {
@@ -120,7 +120,7 @@ Eigen::MatrixXd MarginalLikelihood::root_of_gram(const std::vector<int>& columns
   Eigen::MatrixXd X = rows().rows().C(Eigen::all, columns);
   const Eigen::MatrixXd AX = scale * fixed_->seen.AC(columns);
   const Eigen::MatrixXd taken = solve_lower_transposed(root, solve_lower(root, AX));
-  X.noalias() -= rows().A() * taken;
+  X -= selfcal::product(rows().A(), taken);
   fixed_->seen.whiten(X);
   X *= std::sqrt(scale);
   const Eigen::Index n = X.rows();
