@@ -87,8 +87,7 @@ CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluat
   known.together = with_look_alikes_of(linearised, posterior, known);
   if (posterior.unknown < kDiagnosis.naming.probable)
     return posterior.unknown > known.together ? unknown : known;
-  // DiscrepancyCovariance that is surer than the cause: what else it is, nobody knows.
-  if (known.together < std::min(kDiagnosis.naming.sure, posterior.unknown)) return unknown;
+  if (known.together < kDiagnosis.naming.probable) return unknown;
   const Shares part = shares(evaluator, posterior);
   return part.left > kDiagnosis.naming.most_left * (part.left + part.explained) ? unknown : known;
 }
@@ -185,7 +184,8 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   std::ranges::for_each(causes, lower);
   std::ranges::for_each(named, lower);
   lower(verdict);
-  if (names_effect(verdict.effect) && left > kDiagnosis.naming.most_left &&
+  const bool hardly = verdict.of_its_kind() < kDiagnosis.naming.probable;
+  if (names_effect(verdict.effect) && (left > kDiagnosis.naming.most_left || hardly) &&
       verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking))
     verdict = {.effect = kUnknown, .probability = unknown->probability};
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
