@@ -103,6 +103,12 @@ class Diagnostician {
       p.unknown = p_of_unknown(linearised_, *evaluator_, best_with_structure(), data_.rows,
                                options_.resamples, options_.seed);
     if (structure) result_.unknown = domain_of_unknown(*evaluator_, posterior_);
+    // Structure that noise shows as well speaks against no cause that noise does not.
+    if (structure && p.unknown > options_.name_below_p && p.known <= options_.name_below_p) {
+      posterior_ = without_structure(posterior_, evaluator_->ingredients());
+      result_.candidates = cause_results(linearised_, *evaluator_, posterior_);
+      named = named_cause(linearised_, *evaluator_, posterior_, result_.candidates, options_);
+    }
     const bool asked_unknown = named.effect == kUnknown;
     result_.verdict = decided(std::move(named), posterior_, p, options_);
     result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;

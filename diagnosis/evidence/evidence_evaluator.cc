@@ -18,7 +18,7 @@ EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovar
                                      const Candidates& all,
                                      const std::vector<EffectParameter>& parameters,
                                      const SearchRule& rule)
-    : all_(all), rule_(rule) {
+    : all_(all), rule_(rule), numbers_(all) {
   Groups groups;
   for (const Candidate& candidate : all.list) {
     groups.push_back(candidate.main);
@@ -27,7 +27,6 @@ EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovar
   }
   rows_ = std::make_shared<const EvidenceRows>(std::make_shared<const Whitened>(std::move(rows)),
                                                groups);
-  number_causes();
   marginal_likelihoods_.reserve(structures.size());
   StructuredRows seen{.rows = rows_};
   ObservedRows own(*rows_, rows_->rows().y, true);
@@ -47,14 +46,10 @@ EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovar
                                   (structure(s).kind > 0 ? std::log(rule_.unknown_odds) : 0));
 }
 
-void EvidenceEvaluator::number_causes() {
-  for (const Candidate& candidate : all_.list) {
-    const auto first = [&](auto of) {
-      return static_cast<int>(std::ranges::find(all_.list, of(candidate), of) - all_.list.begin());
-    };
-    family_.push_back(first([](const Candidate& each) { return each.effect; }));
-    cause_.push_back(first([](const Candidate& each) { return Cause{each.effect, each.at}; }));
-  }
+Ingredients EvidenceEvaluator::ingredients() const {
+  Ingredients of{all_, numbers_, {}};
+  for (int s = 0; s < structures(); ++s) of.unknown.push_back(structure(s).kind > 0);
+  return of;
 }
 
 /// What is moved at will may be moved as far as one likes; and what comes to be elsewhere farther
@@ -194,7 +189,7 @@ double EvidenceEvaluator::log_prior(std::span<const int> candidates, int structu
         if (number[candidates[j]] == number[c]) return true;
       return false;
     };
-    if (has(family_))
+    if (has(numbers_.family))
       sum += log_odds_.same_family;
     else
       sum += log_odds_.family + (++families > 1 ? log_odds_.another : 0);

@@ -17,6 +17,7 @@
 #include "diagnosis/evidence/candidates.h"
 #include "diagnosis/evidence/hypothesis.h"
 #include "diagnosis/evidence/marginal_likelihood.h"
+#include "diagnosis/evidence/posterior.h"
 #include "diagnosis/options.h"
 
 namespace selfcal {
@@ -61,6 +62,7 @@ class EvidenceEvaluator {
   }
   const Block& block(int candidate) const { return blocks_[candidate]; }
   const Candidates& candidates() const { return all_; }
+  Ingredients ingredients() const;
   const DiscrepancyCovariance& structure(int s) const {
     return marginal_likelihoods_[s].structure();
   }
@@ -123,7 +125,6 @@ class EvidenceEvaluator {
   bool overlap(int a, int b) const;
   static Eigen::VectorXd most_possible(const Candidate& candidate,
                                        const std::vector<EffectParameter>& parameters);
-  void number_causes();
   void make_blocks(const std::vector<EffectParameter>& parameters);
   /// The structure's size as what its best explanation leaves says. `AC` and `products` are what
   /// it sees (StructuredRows).
@@ -132,6 +133,7 @@ class EvidenceEvaluator {
 
   const Candidates& all_;
   const SearchRule rule_;
+  const CauseNumbers numbers_;
   std::shared_ptr<const EvidenceRows> rows_;
   std::vector<MarginalLikelihood> marginal_likelihoods_;
   /// By structure, one candidate's after the other; none before many y are seen.
@@ -149,9 +151,6 @@ class EvidenceEvaluator {
   std::vector<char> seen_;  ///< not absorbed altogether
   /// By candidate, of its main parameters, beyond which no machine has them.
   std::vector<Eigen::VectorXd> most_possible_;
-  /// By candidate: number of the first candidate of its family (effect), of its cause (effect and
-  /// place).
-  std::vector<int> family_, cause_;
 };
 
 }  // namespace selfcal

@@ -1,4 +1,4 @@
-// The sets of causes that are visited, and their posterior.
+// The sets of causes that are visited.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,7 +6,6 @@
 
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/evidence_evaluator.h"
-#include "kinematics/expects.h"
 
 namespace selfcal {
 
@@ -34,7 +33,9 @@ class Search {
       if (!is_enough()) grow_beside_noise();
       lower_impossible();
     }
-    return posterior();
+    Posterior found = posterior_of(visited_, evaluator_.ingredients());
+    found.log_total -= evaluator_.marginal_likelihoods_.front().log_evidence({});
+    return found;
   }
 
  private:
@@ -130,7 +131,7 @@ class Search {
       const Visit& each = *list.back();
       list.pop_back();
       std::vector<int> causes;
-      for (const int c : each.all()) causes.push_back(evaluator_.cause_[c]);
+      for (const int c : each.all()) causes.push_back(evaluator_.numbers_.cause[c]);
       if (++taken[{causes, each.structure}] <= 2) diverse.push_back(each);
     }
     return diverse;
@@ -185,7 +186,8 @@ class Search {
   /// The set has its family. A step is nothing that several joints have.
   bool is_more_of_the_same(const Visit& set, int c) const {
     return !candidate(c).shape.moment && std::ranges::any_of(set.all(), [&](int have) {
-      return evaluator_.family_[have] == evaluator_.family_[c];
+      const std::vector<int>& family = evaluator_.numbers_.family;
+      return family[have] == family[c];
     });
   }
 
@@ -253,72 +255,8 @@ class Search {
       }
   }
 
-  Posterior posterior() {
-    double top = -INFINITY, sum = 0;
-    for (const Visit& each : visited_) top = std::max(top, each.log_weight);
-    for (const Visit& each : visited_) sum += std::exp(each.log_weight - top);
-    const double total = top + std::log(sum);
-    expects(std::isfinite(total), "the evidence of finite rows is finite");
-    Posterior posterior;
-    posterior.log_total = total - evaluator_.marginal_likelihoods_.front().log_evidence({});
-    std::vector<double> family(evaluator_.blocks_.size()), cause(evaluator_.blocks_.size());
-    for (Visit& each : visited_) {
-      each.log_weight -= total;
-      share_out(each, family, cause, posterior);
-    }
-    for (const Visit* each : worth_telling()) posterior.hypotheses.push_back(each->hypothesis());
-    for (int c = 0; c < candidates_; ++c) {
-      const auto at = static_cast<std::size_t>(c);
-      if (family[at] > 0) posterior.family[candidate(c).effect] = family[at];
-      if (cause[at] > 0) posterior.cause[{candidate(c).effect, candidate(c).at}] = cause[at];
-    }
-    return posterior;
-  }
-
-  /// The most probable first: all that are possible, the best one with each candidate, and of noise
-  /// alone and of structure.
-  std::vector<const Visit*> worth_telling() const {
-    std::vector<const Visit*> best(static_cast<std::size_t>(candidates_) + 2, nullptr), list;
-    const auto look = [&](std::size_t at, const Visit& each) {
-      if (!best[at] || each.log_weight > best[at]->log_weight) best[at] = &each;
-    };
-    for (const Visit& each : visited_) {
-      if (each.log_weight > -kDiagnosis.evidence.hardly_possible) list.push_back(&each);
-      look(evaluator_.structure(each.structure).kind > 0 ? 0 : 1, each);
-      for (const int c : each.all()) look(static_cast<std::size_t>(c) + 2, each);
-    }
-    for (const Visit* each : best)
-      if (each && each->log_weight <= -kDiagnosis.evidence.hardly_possible) list.push_back(each);
-    std::ranges::sort(list, [](const Visit* a, const Visit* b) {
-      return a->log_weight != b->log_weight ? a->log_weight > b->log_weight : a < b;
-    });
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-  }
-
   const Candidate& candidate(int c) const {
     return evaluator_.all_.list[static_cast<std::size_t>(c)];
-  }
-
-  /// Its probability, to each family and cause (by number) that it has.
-  void share_out(const Visit& visit, std::vector<double>& family, std::vector<double>& cause,
-                 Posterior& posterior) const {
-    const double p = std::exp(visit.log_weight);
-    const bool unknown = evaluator_.structure(visit.structure).kind > 0;
-    double meant = 1;  // all that it has
-    for (const int c : visit.all()) meant *= candidate(c).meant;
-    posterior.unknown += unknown ? p : p * (1 - meant);
-    if (!unknown && visit.count == 0) posterior.none += p;
-    const auto once = [&](const std::vector<int>& number, std::vector<double>& to) {
-      for (int i = 0; i < visit.count; ++i) {
-        const int mine = number[visit.candidates[i]];
-        bool before = false;
-        for (int j = 0; j < i; ++j) before = before || number[visit.candidates[j]] == mine;
-        if (!before) to[mine] += p * candidate(visit.candidates[i]).meant;
-      }
-    };
-    once(evaluator_.family_, family);
-    once(evaluator_.cause_, cause);
   }
 
   const EvidenceEvaluator& evaluator_;

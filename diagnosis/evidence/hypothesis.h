@@ -1,15 +1,12 @@
-// A set of causes that may explain the rows, and what a search leaves of many.
+// A set of causes that may explain the rows.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "diagnosis/constants.h"
@@ -51,21 +48,16 @@ struct CompactHypothesis {
   }
 };
 
+inline CompactHypothesis compact(const Hypothesis& h) {
+  CompactHypothesis same{.structure = h.structure};
+  for (std::size_t i = 0; i < h.candidates.size(); ++i) same.add(h.candidates[i], h.sizes[i]);
+  same.log_weight = h.log_weight;
+  return same;
+}
+
 /// Answers that stand where an effect is named: what calibration leaves is noise, or structure that
 /// no known effect explains.
 inline constexpr const char kNone[] = "none", kUnknown[] = "unknown";
 inline bool names_effect(std::string_view answer) { return answer != kNone && answer != kUnknown; }
-
-using Cause = std::pair<std::string, std::string>;  ///< effect, at
-
-struct Posterior {
-  /// Most probable first, log_weight normalised: those that are possible, the best one with each
-  /// candidate, the best of noise alone and of structure.
-  std::vector<Hypothesis> hypotheses;
-  std::map<std::string, double> family;
-  std::map<Cause, double> cause;
-  double none = 0, unknown = 0;
-  double log_total = 0;  ///< log evidence over that of nothing at all
-};
 
 }  // namespace selfcal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "diagnosis/evidence/candidates.h"
+#include "diagnosis/evidence/posterior.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/evidence/posterior.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
