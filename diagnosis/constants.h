@@ -118,8 +118,8 @@ struct DiagnosisConstants {
     /// alone; 0 to 0.05 [habit]
     double nothing_beside = 0.005, nothing_alone = 0.02;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
-    /// Of the squares beyond noise, that what is named may leave: the larger part leads; 0.05 to 0.5
-    /// [exact]
+    /// Of the squares beyond noise, that what is named may leave: the larger part leads; 0.05 to
+    /// 0.5 [exact]
     double most_left = 0.5;
     double of_moment =
         0.95;  ///< probability of the rows that a step is told between; 0.9 to 0.99 [habit]
