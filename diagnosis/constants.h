@@ -117,6 +117,8 @@ struct DiagnosisConstants {
     /// Share of the gap below which one of several causes closes nothing: beside the others, and
     /// alone; 0 to 0.05 [habit]
     double nothing_beside = 0.005, nothing_alone = 0.02;
+    /// Of causes that step again and again at one place, those that did; 0.3 to 0.9 [trials]
+    double steps_again = 0.5;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise, that what is named may leave: the larger part leads; 0.05 to
     /// 0.5 [exact]

@@ -54,6 +54,7 @@ class Diagnostician {
     const std::optional<double>& closed = result_.gap.closed.fraction;
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named,
                           closed ? 1 - *closed : 1);
+    doubt_repeated_steps(result_.candidates, result_.verdict, result_.named);
     NextSteps next = next_steps(linearised_, data_, result_, options_);
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <iterator>
 
@@ -188,6 +189,46 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   if (names_effect(verdict.effect) && (left > kDiagnosis.naming.most_left || hardly) &&
       verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking))
     verdict = {.effect = kUnknown, .probability = unknown->probability};
+  std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
+}
+
+std::ptrdiff_t steps_of(const CauseResult& cause) {
+  std::ptrdiff_t most = 0;
+  for (const FoundEffect& one : cause.correction)
+    most = std::max(most, std::ranges::count_if(cause.correction, [&](const FoundEffect& other) {
+                      return other.what.at == one.what.at && other.what.shape.moment;
+                    }));
+  return most;
+}
+
+void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
+                          std::vector<CauseResult>& named) {
+  const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
+  if (unknown == causes.end()) return;
+  double lost = 0;
+  const auto lower = [&](CauseResult& each) {
+    if (steps_of(each) < 2) return;
+    lost = std::max(lost, (1 - kDiagnosis.naming.steps_again) * each.probability);
+    each.probability *= kDiagnosis.naming.steps_again;
+    each.together *= kDiagnosis.naming.steps_again;
+  };
+  std::ranges::for_each(causes, lower);
+  std::ranges::for_each(named, lower);
+  if (lost == 0) return;
+  unknown->probability = std::min(1.0, unknown->probability + lost);
+  const CauseResult by_the_unknown = *unknown;
+  if (steps_of(verdict) > 1) {
+    lower(verdict);
+    const auto other = std::ranges::find_if(named, [](const CauseResult& each) {
+      return steps_of(each) < 2 && each.of_its_kind() > kDiagnosis.naming.probable;
+    });
+    if (other != named.end()) {
+      verdict = *other;
+      std::rotate(named.begin(), other, other + 1);
+    } else if (by_the_unknown.probability > verdict.of_its_kind()) {
+      verdict = {.effect = kUnknown, .probability = by_the_unknown.probability};
+    }
+  }
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
 }
 

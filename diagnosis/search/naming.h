@@ -1,6 +1,7 @@
 // Which of the causes are named, from their probabilities and from how often noise does as well.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "diagnosis/evidence/evidence_evaluator.h"
@@ -33,6 +34,9 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
 CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 
+/// Moments at which it happened at one place, at most.
+std::ptrdiff_t steps_of(const CauseResult& cause);
+
 /// The causes; each that is probable and not sure is `together` what it and those of its
 /// look-alikes are that are not sure themselves.
 std::vector<CauseResult> with_look_alikes(const LinearisedModel& linearised,
@@ -53,6 +57,12 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 /// is `unknown` where that is surer than its cause then, and much is left.
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named, double left);
+
+/// What steps again and again at one place is as often something that wanders, or comes and goes,
+/// and looks like it: so much of its probability is the unknown's, among `causes`, `named` and of
+/// the verdict, which another that is named leads then, or the unknown where that is surer.
+void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
+                          std::vector<CauseResult>& named);
 
 /// The verdict becomes `unknown`, of this probability at least; the others give way in proportion.
 void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict);

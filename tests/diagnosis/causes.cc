@@ -279,6 +279,55 @@ TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
   EXPECT_NEAR(kept(-0.01), all, 1e-12) << "all is closed";
 }
 
+/// Of probability 0.9, with steps at these places.
+CauseResult stepping(const char* effect, const std::vector<const char*>& at) {
+  CauseResult cause{.effect = effect, .where = {at.front()}, .probability = 0.9};
+  for (const char* each : at) {
+    cause.correction.push_back({.what = {effect, each, {}}});
+    cause.correction.back().what.shape.moment =
+        100.0 * static_cast<double>(cause.correction.size());
+  }
+  return cause;
+}
+
+TEST(DoubtRepeatedSteps, LeavesStepsOfSeveralPlacesAlone) {
+  std::vector<CauseResult> causes = {stepping("zero_shift", {"j1", "j4"}),
+                                     {.effect = kUnknown, .probability = 0.1}};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {verdict};
+  doubt_repeated_steps(causes, verdict, named);
+  EXPECT_EQ(verdict.effect, "zero_shift");
+  EXPECT_EQ(verdict.probability, 0.9);
+  EXPECT_EQ(causes[1].probability, 0.1);
+}
+
+TEST(DoubtRepeatedSteps, SaysUnknownOfWhatStepsAgainAtOnePlace) {
+  std::vector<CauseResult> causes = {stepping("zero_shift", {"j4", "j4"}),
+                                     {.effect = kUnknown, .probability = 0.1}};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {verdict};
+  doubt_repeated_steps(causes, verdict, named);
+  const double half = 0.9 * kDiagnosis.naming.steps_again;
+  EXPECT_EQ(verdict.effect, kUnknown);
+  EXPECT_NEAR(verdict.probability, 0.1 + 0.9 - half, 1e-12);
+  EXPECT_EQ(causes.front().effect, kUnknown) << "the most probable first";
+  ASSERT_EQ(named.size(), 1u);
+  EXPECT_NEAR(named.front().probability, half, 1e-12);
+}
+
+TEST(DoubtRepeatedSteps, LetAnotherLeadThatIsNamed) {
+  const CauseResult other{.effect = "backlash", .where = {"j1"}, .probability = 0.8};
+  std::vector<CauseResult> causes = {
+      stepping("zero_shift", {"j4", "j4"}), other, {.effect = kUnknown, .probability = 0.1}};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {verdict, other};
+  doubt_repeated_steps(causes, verdict, named);
+  EXPECT_EQ(verdict.effect, "backlash");
+  EXPECT_EQ(verdict.probability, 0.8);
+  ASSERT_EQ(named.size(), 2u);
+  EXPECT_EQ(named.front().effect, "backlash");
+}
+
 TEST(VerdictInWords, SaysThatASizeIsFarBeyondTheUsual) {
   CauseResult cause{.effect = "zero_shift", .where = {"j6"}, .probability = 0.99};
   cause.parameters = {{"j6.step", "rad", 0.0149, 1e-5, 5e-5, 5e-3}};
