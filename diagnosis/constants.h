@@ -120,8 +120,8 @@ struct DiagnosisConstants {
     /// Of causes that step again and again at one place, those that did; 0.3 to 0.9 [trials]
     double steps_again = 0.5;
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
-    /// Of the squares beyond noise, that what is named may leave: the larger part leads; 0.05 to
-    /// 0.5 [exact]
+    /// Of the squares beyond noise, that what is found may leave: the larger part leads; 0.2 to 0.8
+    /// [habit]
     double most_left = 0.5;
     double of_moment =
         0.95;  ///< probability of the rows that a step is told between; 0.9 to 0.99 [habit]
@@ -132,7 +132,10 @@ struct DiagnosisConstants {
     double least_of_row = 0.05;
     double of_tail = 0.2;             ///< share of the resamples that is it; 0.05 to 0.3 [habit]
     std::size_t fewest_of_tail = 15;  ///< resamples; 10 to 50 [habit]
-    double least_p = 1e-6;            ///< that a tail is believed; 1e-9 to 1e-4 [habit]
+    /// How often noise shows as much structure, from which none of it is believed; 0.1 to 0.5
+    /// [habit]
+    double no_structure = 0.3;
+    double least_p = 1e-6;  ///< that a tail is believed; 1e-9 to 1e-4 [habit]
   };
   /// Sessions that are simulated over the rows.
   struct Simulation {
@@ -191,6 +194,14 @@ struct DiagnosisConstants {
     /// Of the confusion at first, below which no row is worth it; 1e-4 to 0.02 [habit]
     double least_confusion = 0.002;
     double least_gain = 0.01;  ///< of the confusion now, that a row must take; 0 to 0.1 [habit]
+  };
+  /// Of noise that is not the same everywhere.
+  struct Uneven {
+    int fewest = 30;             ///< configurations that may show it; 20 to 60 [habit]
+    double least_freedom = 0.2;  ///< of a configuration; 0.1 to 0.5 [habit]
+    double by_chance = 1e-3;   ///< how often noise that is even shows as much; 1e-5 to 0.01 [habit]
+    double times = 1.3;        ///< as much at one end as at the other; 1.1 to 2 [habit]
+    double probability = 0.8;  ///< of `unknown` then; 0.6 to 0.95 [trials]
   };
   /// Of two sessions, and of a machine with its simulator.
   struct Comparison {
@@ -285,6 +296,7 @@ struct DiagnosisConstants {
   Simulation simulation;
   Validation validation;
   FurtherRows further_rows;
+  Uneven uneven;
   Comparison comparison;
   Report report;
 };

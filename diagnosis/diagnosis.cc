@@ -14,6 +14,7 @@
 #include "diagnosis/report/doubt.h"
 #include "diagnosis/report/experiment_design.h"
 #include "diagnosis/report/scatter.h"
+#include "diagnosis/report/uneven_noise.h"
 #include "diagnosis/report/validated_correction.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
@@ -96,27 +97,31 @@ class Diagnostician {
     const NullDistribution null(linearised_, *evaluator_, data_.rows, options_.resamples,
                                 options_.seed, options_.most_outliers);
     ByNoise p{null.p_of(evaluator_->best_found().log_odds), 1};
+    Posterior posterior = posterior_;
     CauseResult named =
-        named_cause(linearised_, *evaluator_, posterior_, result_.candidates, options_);
+        named_cause(linearised_, *evaluator_, posterior, result_.candidates, options_);
     const bool structure =
-        posterior_.unknown > kDiagnosis.naming.probable || named.effect == kUnknown;
+        posterior.unknown > kDiagnosis.naming.probable || named.effect == kUnknown;
     if (structure)
       p.unknown = p_of_unknown(linearised_, *evaluator_, best_with_structure(), data_.rows,
                                options_.resamples, options_.seed);
-    if (structure) result_.unknown = domain_of_unknown(*evaluator_, posterior_);
     // Structure that noise shows as well speaks against no cause that noise does not.
     if (structure && p.unknown > options_.name_below_p && p.known <= options_.name_below_p) {
-      posterior_ = without_structure(posterior_, evaluator_->ingredients());
-      result_.candidates = cause_results(linearised_, *evaluator_, posterior_);
-      named = named_cause(linearised_, *evaluator_, posterior_, result_.candidates, options_);
+      posterior =
+          with_less_structure(posterior, share_of_structure(p.unknown, options_.name_below_p),
+                              evaluator_->ingredients());
+      result_.candidates = cause_results(linearised_, *evaluator_, posterior);
+      named = named_cause(linearised_, *evaluator_, posterior, result_.candidates, options_);
     }
     const bool asked_unknown = named.effect == kUnknown;
-    result_.verdict = decided(std::move(named), posterior_, p, options_);
+    if (posterior.unknown > kDiagnosis.naming.probable || asked_unknown)
+      result_.unknown = domain_of_unknown(*evaluator_, posterior);
+    result_.verdict = decided(std::move(named), posterior, p, options_);
     result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;
     tell("practising on simulated sessions", 0.8);
     result_.simulation = calibrate_by_simulation(linearised_, *evaluator_, null, options_);
     std::vector<CauseResult> together =
-        with_look_alikes(linearised_, posterior_, result_.candidates);
+        with_look_alikes(linearised_, posterior, result_.candidates);
     for (std::vector<CauseResult>* list : {&result_.candidates, &together})
       for (CauseResult& each : *list) {
         each.p_value = each.effect != kUnknown ? p.known : structure ? p.unknown : NAN;
@@ -130,6 +135,7 @@ class Diagnostician {
     result_.named = sure_causes(together, result_.verdict, p, options_);
     left_out_ = leave_out_impossible(result_.named, result_.verdict);
     doubt_noise(linearised_, data_, evaluator_->marginal_likelihood(0).freedom(), result_);
+    doubt_even_noise(linearised_, data_, result_);
   }
 
   /// The most probable causes beside structure of no known one.

@@ -105,11 +105,13 @@ struct Diagnosis {
   std::string gap_unjudged;                    ///< why the gap has no rows; empty where it has
   std::vector<ValidationRow> validation_rows;  ///< that the gap is the figures of
   CauseResult verdict;  ///< effect "none" or "unknown" without a place, else one of `candidates`
-  /// All that are sure, the verdict's first: what is named. None where the verdict is "none".
+  /// What is named, the verdict's first: all that were sure before what speaks against them was
+  /// counted. None where the verdict is "none".
   std::vector<CauseResult> named;
   std::optional<KernelDomain> unknown = {};  ///< how the rows err that `unknown` explains
   std::string scatter;  ///< in words, of rows that scatter more than stated, where `unknown` makes
                         ///< them or repeats say that it is noise
+  std::string uneven;   ///< in words, of noise that is not the same everywhere
   std::string why;      ///< the verdict in words
   /// Of the verdict, or of what it was refused for: (1 + k) / (1 + B), by the tail of what was
   /// found where the statistic is beyond all B.

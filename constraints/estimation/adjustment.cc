@@ -161,7 +161,7 @@ class Adjustment {
     State near = fit_placed(far).state;
     equations_.start(near);
     Fit placed = fit_placed(near);
-    if (placed.objective < adjusted_.before.objective - kClearlyBetter)
+    if (placed.converged && placed.objective < adjusted_.before.objective - kClearlyBetter)
       adjusted_.before = std::move(placed);
     start = adjusted_.before.state;
   }

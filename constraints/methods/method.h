@@ -183,8 +183,8 @@ class Method {
   virtual Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                                 const Observations& data, const Eigen::VectorXd* reference,
                                 const Location& tool) const;
-  /// The same where the robot may stand farther from what is touched than this is large: where a
-  /// fit of these values ends, that of `nuisance` sets out.
+  /// Own values for a robot that may stand farther from what is touched than this is large: where a
+  /// fit of these ends, that of `nuisance` sets out.
   virtual Eigen::VectorXd from_afar(const Eigen::VectorXd& nuisance) const { return nuisance; }
   virtual void retract(Eigen::VectorXd& nuisance, const Eigen::VectorXd& step) const;
   virtual std::vector<NuisanceReport> report(const Eigen::VectorXd& nuisance,

@@ -62,6 +62,7 @@ class EvidenceEvaluator {
   }
   const Block& block(int candidate) const { return blocks_[candidate]; }
   const Candidates& candidates() const { return all_; }
+  /// What its sets are made of; refers to this.
   Ingredients ingredients() const;
   const DiscrepancyCovariance& structure(int s) const {
     return marginal_likelihoods_[s].structure();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/constants.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 
@@ -50,6 +51,7 @@ struct CompactHypothesis {
 
 inline CompactHypothesis compact(const Hypothesis& h) {
   CompactHypothesis same{.structure = h.structure};
+  expects(h.candidates.size() <= same.candidates.size(), "a set as a search visits it");
   for (std::size_t i = 0; i < h.candidates.size(); ++i) same.add(h.candidates[i], h.sizes[i]);
   same.log_weight = h.log_weight;
   return same;

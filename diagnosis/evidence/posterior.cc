@@ -108,10 +108,19 @@ Posterior posterior_of(std::vector<CompactHypothesis>& visited, const Ingredient
   return posterior;
 }
 
-Posterior without_structure(const Posterior& all, const Ingredients& of) {
-  std::vector<CompactHypothesis> visited;
+Posterior with_less_structure(const Posterior& all, double kept, const Ingredients& of) {
+  const auto is_structured = [&](const Hypothesis& h) {
+    return of.unknown[static_cast<std::size_t>(h.structure)] != 0;
+  };
+  double without = 0;
   for (const Hypothesis& h : all.hypotheses)
-    if (!of.unknown[static_cast<std::size_t>(h.structure)]) visited.push_back(compact(h));
+    if (!is_structured(h)) without += std::exp(h.log_weight);
+  std::vector<CompactHypothesis> visited;
+  for (const Hypothesis& h : all.hypotheses) {
+    if (is_structured(h) && kept <= 0) continue;
+    visited.push_back(compact(h));
+    visited.back().log_weight += std::log(is_structured(h) ? kept : kept + (1 - kept) / without);
+  }
   Posterior rest = posterior_of(visited, of);
   rest.log_total += all.log_total;
   return rest;

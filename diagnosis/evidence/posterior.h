@@ -40,7 +40,8 @@ struct Ingredients {
 /// Of sets whose weights are logarithms of evidence times prior; these become normalised, and the
 /// log of their sum is the total.
 Posterior posterior_of(std::vector<CompactHypothesis>& visited, const Ingredients& of);
-/// What is left of `all` where there is no structure.
-Posterior without_structure(const Posterior& all, const Ingredients& of);
+/// What `all` becomes with so much (0 to 1) of the probability that sets beside structure had; the
+/// rest goes to those without, in proportion.
+Posterior with_less_structure(const Posterior& all, double kept, const Ingredients& of);
 
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "diagnosis/constants.h"
+#include "diagnosis/search/naming.h"
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -109,14 +110,12 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   return words;
 }
 
-/// ". zero_shift at j4 steps 3 times: …", of what is named and found at several moments.
+/// ". zero_shift at j4 steps 3 times: …", of what is named.
 std::string repeated_steps(const Diagnosis& diagnosis) {
   std::string words;
   for (const CauseResult& each : diagnosis.named) {
     for (const std::string& at : each.where) {
-      const auto steps = std::ranges::count_if(diagnosis.found, [&](const FoundEffect& found) {
-        return found.what.effect == each.effect && found.what.at == at && found.what.shape.moment;
-      });
+      const std::ptrdiff_t steps = steps_at(each, at);
       if (steps > 1)
         words += ". " + each.effect + " at " + at + phrase(" steps %td times: something ", steps) +
                  "there slips again and again, or wanders";
@@ -201,6 +200,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            repeated_steps(diagnosis) + beside_the_unknown(diagnosis) +
            unusual_sizes(diagnosis.named);
   const std::string beside = besides(diagnosis);
+  if (!diagnosis.uneven.empty())
+    return "no known effect explains the gap (" + sure(verdict.probability) +
+           "): " + diagnosis.uneven + beside +
+           ". Time stamps that jitter, a beam that bends, a part that shakes or hits are like this";
   if (!diagnosis.scatter.empty())
     return "no known effect explains the gap (" + sure(verdict.probability) +
            "): " + diagnosis.scatter + beside +

@@ -5,6 +5,7 @@
 #include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/report/scatter.h"
+#include "diagnosis/report/uneven_noise.h"
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/readable.h"
@@ -131,7 +132,8 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
   std::vector<std::string> list;
   for (const std::string& each :
        {of_fits(validation), of_undecided(validation), of_gears(validation),
-        of_noise(linearised, data), warning_of_scatter(linearised, data, diagnosis), of_order(data),
+        of_noise(linearised, data), warning_of_scatter(linearised, data, diagnosis),
+        warning_of_uneven_noise(linearised, data, diagnosis), of_order(data),
         of_masses(linearised)})
     if (!each.empty()) list.push_back(each);
   return list;

@@ -64,6 +64,13 @@ Shares shares(const EvidenceEvaluator& evaluator, const Posterior& posterior) {
   return {before - after, after - noise};
 }
 
+/// At some place.
+bool steps_again(const CauseResult& cause) {
+  return std::ranges::any_of(cause.correction, [&](const FoundEffect& found) {
+    return steps_at(cause, found.what.at) > 1;
+  });
+}
+
 }  // namespace
 
 CauseResult without_cause(const Posterior& posterior) {
@@ -112,6 +119,11 @@ CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& cau
       none->probability < options.name_below_none)
     return verdict;
   return {.effect = kNone, .probability = none->probability};
+}
+
+double share_of_structure(double p, double name_below_p) {
+  const double none = kDiagnosis.naming.no_structure;
+  return std::clamp(std::log(none / p) / std::log(none / name_below_p), 0.0, 1.0);
 }
 
 std::vector<CauseResult> with_look_alikes(const LinearisedModel& linearised,
@@ -192,13 +204,10 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
 }
 
-std::ptrdiff_t steps_of(const CauseResult& cause) {
-  std::ptrdiff_t most = 0;
-  for (const FoundEffect& one : cause.correction)
-    most = std::max(most, std::ranges::count_if(cause.correction, [&](const FoundEffect& other) {
-                      return other.what.at == one.what.at && other.what.shape.moment;
-                    }));
-  return most;
+std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at) {
+  return std::ranges::count_if(cause.correction, [&](const FoundEffect& found) {
+    return found.what.at == at && found.what.shape.moment;
+  });
 }
 
 void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
@@ -207,7 +216,7 @@ void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict
   if (unknown == causes.end()) return;
   double lost = 0;
   const auto lower = [&](CauseResult& each) {
-    if (steps_of(each) < 2) return;
+    if (!steps_again(each)) return;
     lost = std::max(lost, (1 - kDiagnosis.naming.steps_again) * each.probability);
     each.probability *= kDiagnosis.naming.steps_again;
     each.together *= kDiagnosis.naming.steps_again;
@@ -215,18 +224,18 @@ void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict
   std::ranges::for_each(causes, lower);
   std::ranges::for_each(named, lower);
   if (lost == 0) return;
-  unknown->probability = std::min(1.0, unknown->probability + lost);
-  const CauseResult by_the_unknown = *unknown;
-  if (steps_of(verdict) > 1) {
+  unknown->probability += (1 - unknown->probability) * lost;
+  if (verdict.effect == kUnknown) verdict.probability = unknown->probability;
+  if (steps_again(verdict)) {
     lower(verdict);
     const auto other = std::ranges::find_if(named, [](const CauseResult& each) {
-      return steps_of(each) < 2 && each.of_its_kind() > kDiagnosis.naming.probable;
+      return !steps_again(each) && each.of_its_kind() > kDiagnosis.naming.probable;
     });
     if (other != named.end()) {
       verdict = *other;
       std::rotate(named.begin(), other, other + 1);
-    } else if (by_the_unknown.probability > verdict.of_its_kind()) {
-      verdict = {.effect = kUnknown, .probability = by_the_unknown.probability};
+    } else if (unknown->probability > verdict.of_its_kind()) {
+      verdict = {.effect = kUnknown, .probability = unknown->probability};
     }
   }
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "diagnosis/evidence/evidence_evaluator.h"
@@ -14,7 +15,8 @@ namespace selfcal {
 CauseResult without_cause(const Posterior& posterior);
 
 /// What is named: see DiagnosisOptions::name_below_none. Of several causes that are more probable
-/// than not the largest; `unknown` where much is left after all of these.
+/// than not the largest; `unknown` where more is left after all that is found than that explains,
+/// and where none is more probable than not and structure of no known cause is.
 CauseResult named_cause(const LinearisedModel& linearised, const EvidenceEvaluator& evaluator,
                         const Posterior& posterior, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
@@ -34,8 +36,12 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
 CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 
-/// Moments at which it happened at one place, at most.
-std::ptrdiff_t steps_of(const CauseResult& cause);
+/// Moments at which it stepped at that place.
+std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at);
+
+/// Of the probability of structure, what is left where noise shows as much in `p` of cases: all of
+/// it up to `name_below_p`, none from no_structure on, in between by the logarithm.
+double share_of_structure(double p, double name_below_p);
 
 /// The causes; each that is probable and not sure is `together` what it and those of its
 /// look-alikes are that are not sure themselves.
@@ -53,8 +59,9 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 /// Where structure of no known cause is probable, the list of causes lacks one, and those on it are
 /// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it, by the less
 /// the less of the gap what is named leaves (`left`, a share; 1 where nothing tells); and by a
-/// twentieth throughout, for what no list has may look like what one has. The verdict
-/// is `unknown` where that is surer than its cause then, and much is left.
+/// twentieth throughout, for what no list has may look like what one has. The verdict is `unknown`
+/// where that is surer than its cause then, and more is left than that closes or the cause is no
+/// longer more probable than not.
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named, double left);
 

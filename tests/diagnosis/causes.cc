@@ -220,25 +220,31 @@ TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
 }
 
 TEST(VerdictInWords, TellsOfStepsThatComeAgain) {
-  Diagnosis diagnosis = with({.effect = "zero_shift", .where = {"j4"}, .probability = 0.97});
-  diagnosis.candidates.clear();
+  CauseResult cause{.effect = "zero_shift", .where = {"j4"}, .probability = 0.97};
   const auto step = [&](const char* at, double moment) {
-    FoundEffect found;
-    found.what = {"zero_shift", at, {}};
-    found.what.shape.moment = moment;
-    diagnosis.found.push_back(found);
+    cause.correction.push_back({.what = {"zero_shift", at, {}}});
+    cause.correction.back().what.shape.moment = moment;
+    Diagnosis diagnosis = with(cause);
+    diagnosis.candidates.clear();
+    return verdict_in_words(diagnosis);
   };
-  step("j4", 1126);
-  step("j3", 900);
   const std::string once =
       "zero_shift at j4 causes the gap (97 % sure). Noise alone explains as "
       "much in 0.005 of cases";
-  EXPECT_EQ(verdict_in_words(diagnosis), once);
-  step("j4", 3758);
-  EXPECT_EQ(verdict_in_words(diagnosis),
-            once +
-                ". zero_shift at j4 steps 2 times: something there slips again and again, or "
-                "wanders");
+  EXPECT_EQ(step("j4", 1126), once);
+  EXPECT_EQ(step("j3", 900), once);
+  EXPECT_EQ(step("j4", 3758), once +
+                                  ". zero_shift at j4 steps 2 times: something there slips again "
+                                  "and again, or wanders");
+}
+
+TEST(ShareOfStructure, FallsWithTheLogarithmOfHowOftenNoiseShowsAsMuch) {
+  const double none = kDiagnosis.naming.no_structure;
+  EXPECT_EQ(share_of_structure(0.01, 0.025), 1);
+  EXPECT_EQ(share_of_structure(0.025, 0.025), 1);
+  EXPECT_NEAR(share_of_structure(std::sqrt(0.025 * none), 0.025), 0.5, 1e-12);
+  EXPECT_EQ(share_of_structure(none, 0.025), 0);
+  EXPECT_EQ(share_of_structure(0.93, 0.025), 0);
 }
 
 TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
@@ -262,6 +268,17 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   EXPECT_EQ(causes[3].probability, 0.01);
 }
 
+TEST(AllowForTheUnknown, SaysUnknownWhereTheCauseIsNoLongerMoreProbableThanNot) {
+  for (const double probability : {0.8, 0.95}) {
+    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = probability},
+                                       {.effect = kUnknown, .probability = 1}};
+    CauseResult verdict = causes.front();
+    std::vector<CauseResult> named = {causes[0]};
+    allow_for_the_unknown(causes, verdict, named, 0.3);
+    EXPECT_EQ(verdict.effect, probability > 0.9 ? "backlash" : kUnknown);
+  }
+}
+
 TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
   const auto kept = [](double left) {
     std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 0.9},
@@ -274,7 +291,7 @@ TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
   };
   const double most = kDiagnosis.naming.beside_unknown;
   const double all = 1 - kDiagnosis.naming.imitated;
-  EXPECT_NEAR(kept(0.5), all * (1 - most), 1e-12);
+  EXPECT_NEAR(kept(0.6), all * (1 - most), 1e-12);
   EXPECT_NEAR(kept(kDiagnosis.naming.hardly_left / 2), all * (1 - most / 2), 1e-12);
   EXPECT_NEAR(kept(-0.01), all, 1e-12) << "all is closed";
 }
@@ -309,10 +326,22 @@ TEST(DoubtRepeatedSteps, SaysUnknownOfWhatStepsAgainAtOnePlace) {
   doubt_repeated_steps(causes, verdict, named);
   const double half = 0.9 * kDiagnosis.naming.steps_again;
   EXPECT_EQ(verdict.effect, kUnknown);
-  EXPECT_NEAR(verdict.probability, 0.1 + 0.9 - half, 1e-12);
+  EXPECT_NEAR(verdict.probability, 0.1 + 0.9 * (0.9 - half), 1e-12);
   EXPECT_EQ(causes.front().effect, kUnknown) << "the most probable first";
   ASSERT_EQ(named.size(), 1u);
   EXPECT_NEAR(named.front().probability, half, 1e-12);
+}
+
+TEST(DoubtRepeatedSteps, AddsToAnUnknownThatLeadsAlready) {
+  std::vector<CauseResult> causes = {{.effect = kUnknown, .probability = 0.95},
+                                     stepping("zero_shift", {"j4", "j4"})};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {causes[1]};
+  doubt_repeated_steps(causes, verdict, named);
+  const double lost = 0.9 * (1 - kDiagnosis.naming.steps_again);
+  EXPECT_NEAR(causes.front().probability, 0.95 + 0.05 * lost, 1e-12);
+  EXPECT_EQ(verdict.effect, kUnknown);
+  EXPECT_EQ(verdict.probability, causes.front().probability) << "one thing, one probability";
 }
 
 TEST(DoubtRepeatedSteps, LetAnotherLeadThatIsNamed) {

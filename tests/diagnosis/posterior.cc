@@ -59,12 +59,21 @@ TEST_F(PosteriorOfSets, CountsASetOnceForEachOfItsCauses) {
 TEST_F(PosteriorOfSets, SharesAmongTheRestWhatStructureHad) {
   const Posterior all = posterior();
   const CauseNumbers numbers(candidates_);
-  const Posterior rest = without_structure(all, {candidates_, numbers, {0, 1}});
-  EXPECT_NEAR(rest.log_total, std::log(9.0), 1e-12);
+  const Posterior rest = with_less_structure(all, 0, {candidates_, numbers, {0, 1}});
   EXPECT_NEAR(rest.none, 1 / 9.0, 1e-12);
   EXPECT_NEAR(rest.cause.at({"backlash", "j1"}), 4 / 9.0, 1e-12);
   EXPECT_NEAR(rest.unknown, 1 / 9.0, 1e-12);  // the half of a drift that is none
   EXPECT_EQ(rest.hypotheses.size(), 4u);
+  EXPECT_NEAR(rest.log_total, all.log_total, 1e-12);
+}
+
+TEST_F(PosteriorOfSets, LeavesStructureTheShareThatIsKept) {
+  const Posterior all = posterior();
+  const CauseNumbers numbers(candidates_);
+  const Posterior some = with_less_structure(all, 0.4, {candidates_, numbers, {0, 1}});
+  EXPECT_NEAR(some.none, 0.4 * all.none + 0.6 / 9, 1e-12);
+  EXPECT_NEAR(some.cause.at({"backlash", "j1"}), 0.4 * 9 / 20 + 0.6 * 4 / 9, 1e-12);
+  EXPECT_NEAR(some.unknown, 0.4 * all.unknown + 0.6 / 9, 1e-12);
 }
 
 }  // namespace
