@@ -52,9 +52,10 @@ class Diagnostician {
     list_detectable(linearised_, *evaluator_, data_, options_, result_);
     tell("closing the gap", 0.85);
     validate_correction(linearised_, freedom_alone(), posterior_, data_, options_, result_);
+    // Without rows kept aside those that identify have told which is the larger part.
     const std::optional<double>& closed = result_.gap.closed.fraction;
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named,
-                          closed ? 1 - *closed : 1);
+                          closed ? 1 - *closed : kDiagnosis.naming.most_left);
     doubt_repeated_steps(result_.candidates, result_.verdict, result_.named);
     NextSteps next = next_steps(linearised_, data_, result_, options_);
     result_.next = std::move(next.steps);
@@ -317,6 +318,11 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   const bool kept_aside = std::ranges::count(data.rows.check, char{1}) > 0;
   if (!kept_aside) {
     cross_validate(robot, data, options, progress, diagnosis);
+    if (names_effect(diagnosis.verdict.effect)) {
+      if (const std::optional<double>& closed = diagnosis.gap.closed.fraction)
+        let_the_larger_lead(diagnosis.candidates, 1 - *closed, diagnosis.verdict);
+      diagnosis.why = verdict_in_words(diagnosis);
+    }
     if (const std::string doubt = closes_nothing(diagnosis); !doubt.empty())
       withdraw(doubt, options, diagnosis);
   }

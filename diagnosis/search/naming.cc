@@ -64,6 +64,21 @@ Shares shares(const EvidenceEvaluator& evaluator, const Posterior& posterior) {
   return {before - after, after - noise};
 }
 
+/// What may be a drift or go along with the rows' order is half unknown for that alone.
+bool may_be_order(const CauseResult& each) {
+  return std::ranges::count(each.confounded_with, kUnknown) > 0;
+}
+
+/// How probably the list of causes lacks one.
+double lacking(const std::vector<CauseResult>& causes) {
+  double by_order = 0, unknown = 0;
+  for (const CauseResult& each : causes) {
+    if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
+    if (each.effect == kUnknown) unknown = each.probability;
+  }
+  return std::max(unknown - by_order, 0.0);
+}
+
 /// At some place.
 bool steps_again(const CauseResult& cause) {
   return std::ranges::any_of(cause.correction, [&](const FoundEffect& found) {
@@ -175,19 +190,10 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named, double left) {
-  const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
-  if (unknown == causes.end()) return;
-  // What may be a drift or go along with the rows' order is half unknown for that alone.
-  const auto may_be_order = [](const CauseResult& each) {
-    return std::ranges::count(each.confounded_with, kUnknown) > 0;
-  };
-  double by_order = 0;
-  for (const CauseResult& each : causes)
-    if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
-  const double lacking = std::max(unknown->probability - by_order, 0.0);
+  if (std::ranges::find(causes, kUnknown, &CauseResult::effect) == causes.end()) return;
   const double beside = 1 - kDiagnosis.naming.beside_unknown *
                                 std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) *
-                                lacking;
+                                lacking(causes);
   const auto lower = [&](CauseResult& each) {
     if (!names_effect(each.effect)) return;
     const double kept = (1 - kDiagnosis.naming.imitated) * (may_be_order(each) ? 1 : beside);
@@ -197,11 +203,18 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
   std::ranges::for_each(causes, lower);
   std::ranges::for_each(named, lower);
   lower(verdict);
-  const bool hardly = verdict.of_its_kind() < kDiagnosis.naming.probable;
-  if (names_effect(verdict.effect) && (left > kDiagnosis.naming.most_left || hardly) &&
-      verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking))
-    verdict = {.effect = kUnknown, .probability = unknown->probability};
+  let_the_larger_lead(causes, left, verdict);
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
+}
+
+void let_the_larger_lead(const std::vector<CauseResult>& causes, double left,
+                         CauseResult& verdict) {
+  const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
+  if (unknown == causes.end() || !names_effect(verdict.effect)) return;
+  const bool hardly = verdict.of_its_kind() < kDiagnosis.naming.probable;
+  if ((left > kDiagnosis.naming.most_left || hardly) &&
+      verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking(causes)))
+    verdict = {.effect = kUnknown, .probability = unknown->probability};
 }
 
 std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at) {

@@ -58,12 +58,14 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
 
 /// Where structure of no known cause is probable, the list of causes lacks one, and those on it are
 /// the less sure: theirs among `causes`, `named` and of the verdict are lowered for it, by the less
-/// the less of the gap what is named leaves (`left`, a share; 1 where nothing tells); and by a
-/// twentieth throughout, for what no list has may look like what one has. The verdict is `unknown`
-/// where that is surer than its cause then, and more is left than that closes or the cause is no
-/// longer more probable than not.
+/// the less of the gap what is named leaves (`left`, a share); and by a twentieth throughout, for
+/// what no list has may look like what one has. Then the larger leads.
 void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
                            std::vector<CauseResult>& named, double left);
+
+/// The verdict is `unknown` where that is surer than its cause, and more of the gap is `left` than
+/// closed or the cause is not more probable than not.
+void let_the_larger_lead(const std::vector<CauseResult>& causes, double left, CauseResult& verdict);
 
 /// What steps again and again at one place is as often something that wanders, or comes and goes,
 /// and looks like it: so much of its probability is the unknown's, among `causes`, `named` and of
