@@ -78,6 +78,7 @@ class Adjustment {
     adjusted_.before.at = {};
     adjusted_.fitted = fit_all();
     multi_start();
+    find_balls_again();
     if (hold_scale(adjusted_.fitted.at.R, adjusted_.fitted.state.xi)) adjusted_.fitted = fit_all();
     widen_priors();
     place_scale();
@@ -192,6 +193,25 @@ class Adjustment {
       best_start = other;
     }
     start_ = best_start;
+  }
+
+  /// Balls were sought by the robot as it is thought to be; by the one that is found, those that
+  /// are touched a few times may lie on the other side of their touches.
+  void find_balls_again() {
+    const auto is_curved = [&](std::size_t s) {
+      return equations_.data().sets[s].method->touches() == TouchedSurface::curved &&
+             !equations_.plan(static_cast<int>(s)).items.empty();
+    };
+    bool any = false;
+    for (std::size_t s = 0; s < equations_.data().sets.size(); ++s) any = any || is_curved(s);
+    if (near_ || !any) return;
+    State found = adjusted_.fitted.state, again = found;
+    equations_.start(again);
+    for (std::size_t s = 0; s < found.nuisance.size(); ++s)
+      if (is_curved(s)) found.nuisance[s] = again.nuisance[s];
+    Fit tried = run_fit(found, adjusted_.prior, "identifying again");
+    if (tried.converged && tried.objective < adjusted_.fitted.objective - kClearlyBetter)
+      adjusted_.fitted = std::move(tried);
   }
 
   /// How much more the rows could weigh than in the placed fit, were their noise the least that it

@@ -172,5 +172,27 @@ TEST(Touches, OfKnownBallsAreFoundByAToolThatIsShorterThanThought) {
   }
 }
 
+// As the robot is thought to be, its tool 60 mm aside, six touches of a ball lie on no ball at all,
+// and its middle is sought on either side of them; the other balls tell where the tool is.
+TEST(Touches, OfABallThatIsTouchedAFewTimesAreFoundOnceTheToolIs) {
+  const auto robot = robot_of(kRx90);
+  int wrong = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    Eigen::VectorXd truth = rx90_truth(*robot, random, false);
+    truth[find_parameter(*robot, "d7")] += 0.06;
+    std::vector<SetPart> parts;
+    for (const char* name : {"few", "b", "c", "d"})
+      parts.push_back({name, entry({{"method", "sphere"}, {"radius", "0.06"}}), 60});
+    Session session = make_session(*robot, truth, parts, 20e-6, random);
+    if (!session.unreached.empty()) continue;
+    for (int row = 0, few = 0; row < session.data.rows.rows(); ++row)
+      if (session.data.rows.set[row] == 0) session.data.rows.check[row] = ++few > 6;
+    const Solution solution = identify(*robot, session.data);
+    wrong += !(solution.residual.check.rms_after < 0.2e-3);
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
 }  // namespace
 }  // namespace selfcal::recovery
