@@ -30,8 +30,8 @@ class Sphere final : public Method {
   }
 
   /// |P|^2 = 2 P . c + (rho^2 - |c|^2), linear in c and the constant.
-  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
-                        const Observations& data, const Eigen::VectorXd*,
+  Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>&,
+                        const Observations&, const Eigen::VectorXd*,
                         const Location&) const override {
     Eigen::MatrixXd A(X.size(), 4);
     Eigen::VectorXd b(X.size());
@@ -45,10 +45,7 @@ class Sphere final : public Method {
     const Eigen::Vector4d fit = least_squares(A, b);
     Eigen::VectorXd nuisance(4);
     nuisance.head<3>() = centre_.value_or(mean + fit.head<3>());
-    if (radius_ && !centre_) {
-      const std::optional<Eigen::Vector3d> side = away_from_normals(X, mean, rows, data);
-      nuisance.head<3>() = side ? *side : middle_of(X, mean, nuisance.head<3>());
-    }
+    if (radius_ && !centre_) nuisance.head<3>() = middle_of(X, mean, nuisance.head<3>());
     double radius = 0;
     for (const Location& each : X)
       radius += (each.p - nuisance.head<3>()).norm() / static_cast<double>(X.size());
@@ -108,24 +105,6 @@ class Sphere final : public Method {
   }
 
  private:
-  /// Middle of a ball of the known radius that is touched from where its normals point; nothing
-  /// without normals.
-  std::optional<Eigen::Vector3d> away_from_normals(const std::vector<Location>& X,
-                                                   const Eigen::Vector3d& mean,
-                                                   const std::vector<int>& rows,
-                                                   const Observations& data) const {
-    if (data.normal.rows() == 0 || !data.normal(rows, Eigen::all).allFinite()) return std::nullopt;
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    double outside = 0;  // above zero: the points lie where the normals point
-    for (const int row : rows)
-      normal += data.normal.row(row).transpose() / static_cast<double>(rows.size());
-    for (std::size_t i = 0; i < X.size(); ++i)
-      outside += (X[i].p - mean).dot(data.normal.row(rows[i]).transpose() - normal);
-    Eigen::Vector3d c = mean - (outside < 0 ? -1 : 1) * *radius_ * normal;
-    settle(X, c);
-    return c;
-  }
-
   /// Middle of a ball of the known radius that the points lie on: touches of a small part of it
   /// hardly tell the radius, and without it the ball may come to lie on their other side. Sought
   /// from `given`, and from either side of the plane that they lie nearest to.
