@@ -4,10 +4,8 @@
 #include <cmath>
 
 #include "diagnosis/constants.h"
-#include "diagnosis/evidence/discrepancy.h"
 #include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
-#include "diagnosis/evidence/visits.h"
 #include "diagnosis/report/attribution.h"
 #include "diagnosis/report/carry_over.h"
 #include "diagnosis/report/detectable.h"
@@ -22,8 +20,8 @@
 #include "diagnosis/search/naming.h"
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
+#include "diagnosis/search/weighing.h"
 #include "diagnosis/validation/folds.h"
-#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -40,10 +38,7 @@ class Diagnostician {
         linearised_(robot, data, options, progress) {}
 
   /// Why these rows cannot be diagnosed; empty where they can.
-  std::string problem() {
-    prepare();
-    return lacking();
-  }
+  std::string problem() { return lacking(*evidence_of(linearised_, data_, options_.search)); }
 
   Diagnosis run() {
     if (!named()) return std::move(result_);
@@ -77,7 +72,10 @@ class Diagnostician {
  private:
   /// The causes, and what of them is named; false where the rows are too few.
   bool named() {
-    weigh();
+    Weighed weighed = weigh(linearised_, data_, options_, progress_);
+    evaluator_ = std::move(weighed.evaluator);
+    posterior_ = std::move(weighed.posterior);
+    result_.problem = std::move(weighed.problem);
     if (!result_.problem.empty()) return false;
     result_.noise = linearised_.noise() * shared_noise();
     result_.candidates = cause_results(linearised_, *evaluator_, posterior_);
@@ -144,112 +142,6 @@ class Diagnostician {
     for (const Hypothesis& h : posterior_.hypotheses)
       if (evaluator_->structure(h.structure).kind > 0) return h;
     return {};
-  }
-
-  /// The evidence of the rows that are kept.
-  void prepare() {
-    const DenseEquations rows = linearised_.kept();
-    evaluator_.reset();  // before there is a second one
-    evaluator_ = std::make_unique<EvidenceEvaluator>(
-        linearised_.whitened(),
-        structures(data_.rows, rows, linearised_.ends(), size_of(linearised_.geometry()),
-                   linearised_.reading_errors(),
-                   comparable_readings(linearised_.geometry(), data_.rows.q),
-                   noise_of_visits(data_.rows, rows, linearised_.left())),
-        linearised_.candidates(), linearised_.parameters(), options_.search);
-  }
-
-  /// Why there are too few rows; empty where there are enough.
-  std::string lacking() const {
-    const double freedom = evaluator_->marginal_likelihood(0).freedom();
-    if (freedom >= kDiagnosis.rows.fewest_freedoms) return {};
-    return "too few rows for a diagnosis: beyond what calibration takes they leave " +
-           format_number(std::floor(freedom)) + " equations, at least " +
-           format_number(kDiagnosis.rows.fewest_freedoms) + " are needed";
-  }
-
-  /// Every cause on rows without the false ones, until neither these nor the noise change.
-  void weigh() {
-    offer_back();
-    for (int pass = 0; pass < kDiagnosis.rows.passes; ++pass) {
-      tell("weighing the causes", 0.2 + 0.2 * pass);
-      prepare();
-      result_.problem = lacking();
-      if (!result_.problem.empty()) return;
-      posterior_ = evaluator_->search();
-      // The evaluator and the linearised model must end up with the same rows.
-      if (pass + 1 == kDiagnosis.rows.passes) break;
-      const std::vector<char> aside = linearised_.outlier();
-      const bool refined = refine_by(posterior_.hypotheses.front());
-      const std::vector<ShapedEffect> steps = likely_steps();
-      const bool finer = linearised_.try_moments_near(steps);
-      if (finer) linearised_.take_back(wronged_by(steps, aside));
-      if (!finer && !refined) break;
-    }
-  }
-
-  bool refine_by(const Hypothesis& best) {
-    const auto [columns, sigma] = MarginalLikelihood::unfold(evaluator_->terms(best));
-    const double variance =
-        evaluator_->marginal_likelihood(best.structure).estimate(evaluator_->terms(best)).variance *
-        evaluator_->noise_variance(best.structure);
-    return linearised_.refine(linearised_.residuals(columns, sigma), variance);
-  }
-
-  /// A cause that acts in few rows has these put aside before it is looked for. Where one of all
-  /// rows leaves hardly any of them far, they take part.
-  void offer_back() {
-    const std::vector<char> aside = linearised_.outlier();
-    const auto count = std::ranges::count(aside, char{1});
-    if (count < kDiagnosis.rows.fewest_offered) return;
-    linearised_.start_with(std::vector<char>(aside.size(), 0));
-    prepare();
-    if (lacking().empty()) {
-      posterior_ = evaluator_->search();
-      const Hypothesis& best = posterior_.hypotheses.front();
-      if (!best.candidates.empty()) {
-        refine_by(best);
-        const auto left = std::ranges::count(linearised_.outlier(), char{1});
-        if (static_cast<double>(left) <= kDiagnosis.rows.hardly_any * static_cast<double>(count))
-          return;
-      }
-    }
-    linearised_.start_with(aside);
-  }
-
-  /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks
-  /// for another.
-  std::vector<ShapedEffect> likely_steps() const {
-    std::vector<ShapedEffect> steps;
-    for (const Hypothesis& h : posterior_.hypotheses) {
-      if (h.log_weight < std::log(kDiagnosis.shapes.likely)) break;
-      for (const int c : h.candidates)
-        if (const Candidate& each = linearised_.candidates().list[c]; each.shape.moment)
-          steps.push_back({each.effect, each.at, each.shape});
-      if (!steps.empty()) break;
-    }
-    return steps;
-  }
-
-  /// The rows that were not put `aside` until a step was supposed at one of few moments, and lie
-  /// between that and the next: they speak for another moment.
-  std::vector<char> wronged_by(const std::vector<ShapedEffect>& steps,
-                               const std::vector<char>& aside) const {
-    std::vector<char> rows(aside.size(), 0);
-    const std::vector<int> order = in_time(data_.rows);
-    const auto apart = static_cast<std::ptrdiff_t>(order.size()) / kDiagnosis.shapes.moments + 1;
-    const std::vector<char>& outlier = linearised_.outlier();
-    for (const ShapedEffect& step : steps) {
-      const auto behind = std::ranges::find_if(
-          order, [&](int row) { return data_.rows.time[row] >= *step.shape.moment; });
-      const auto from = behind - std::min(apart, behind - order.begin());
-      const auto to = behind + std::min(apart, order.end() - behind);
-      for (auto at = from; at != to; ++at) {
-        const auto row = static_cast<std::size_t>(*at);
-        if (outlier[row] && !aside[row]) rows[row] = 1;
-      }
-    }
-    return rows;
   }
 
   /// Noise of a new configuration over that of an immediate repeat.

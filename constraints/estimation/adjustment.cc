@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "constraints/estimation/few_rows.h"
 #include "constraints/estimation/shrinkage.h"
 #include "constraints/identifiability/gauge.h"
 
@@ -15,28 +16,6 @@ namespace {
 
 constexpr int kOtherStarts = 4;
 constexpr double kClearlyBetter = 6;  // of -2 log posterior
-/// Rows of a set without groups from which a fit goes over few of them first, and these few.
-constexpr int kManyRows = 20000, kFewRows = 4000;
-
-/// Some of the rows that identify, taken as chance has it: the same ones every time, and none of a
-/// rhythm that the rows may have. Sets with groups keep all of theirs.
-DataSet few_of(const DataSet& data) {
-  std::vector<int> in_set(data.sets.size(), 0);
-  for (int row = 0; row < data.rows.rows(); ++row)
-    in_set[data.rows.set[row]] += !data.rows.check[row];
-  std::mt19937 random(1);
-  std::vector<int> rows;
-  for (int row = 0; row < data.rows.rows(); ++row) {
-    const int set = data.rows.set[row];
-    const Method& method = *data.sets[set].method;
-    const bool whole = method.group_freedom() > 0 || method.paired() || in_set[set] < kManyRows;
-    if (!data.rows.check[row] &&
-        (whole || random() % static_cast<unsigned>(in_set[set]) < static_cast<unsigned>(kFewRows)))
-      rows.push_back(row);
-  }
-  return {data.sets,   taken(data.rows, rows), data.speeds, data.order_is_time,
-          data.target, data.workspace};
-}
 
 class Adjustment {
  public:
@@ -56,10 +35,8 @@ class Adjustment {
     adjusted_.prior.sigma.tail(effects) =
         Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
     choose_free();
-    if (equations.data().rows.rows() < kManyRows) return;
     few_ = few_of(equations.data());
-    if (2 * few_.rows.rows() < equations.data().rows.rows())
-      few_equations_.emplace(robot_, few_, Use::fit);
+    if (few_) few_equations_.emplace(robot_, *few_, Use::fit);
   }
 
   Adjusted run() {
@@ -299,7 +276,7 @@ class Adjustment {
   const State* near_;
   Adjusted adjusted_;
   State start_;
-  DataSet few_;  ///< of many rows
+  std::optional<DataSet> few_;
   std::optional<Equations> few_equations_;
 };
 

@@ -21,7 +21,7 @@ namespace selfcal {
 namespace {
 
 /// Halves of rows with independent noise differ by up to so much more than is expected.
-constexpr double kChance = 1.5;
+constexpr double kMoreThanChance = 1.5;
 
 Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
   const Eigen::MatrixXd& C = adjusted.fitted.covariance;
@@ -135,7 +135,7 @@ Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjust
   const HalfSamples halves = half_samples(equations, adjusted);
   const double seen = squared(weight, halves.seen);
   const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);
-  return std::max(0.0, 1 - kChance * expected / seen) * halves.seen;
+  return std::max(0.0, 1 - kMoreThanChance * expected / seen) * halves.seen;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ constexpr double kDifference = 1e-5;  ///< units of a reading, for derivatives
 constexpr double kRegular = 1e-12;    ///< of its squares, that regularises a motion
 
 /// Least squares of a rigid motion over some rows: normal equations that add up.
-struct Sums {
+struct MotionSums {
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   Vector6d b = Vector6d::Zero();
   double squares = 0;
@@ -41,7 +41,7 @@ struct Sums {
     b += J.transpose() * way;
     squares += way.squaredNorm();
   }
-  Sums operator-(const Sums& other) const {
+  MotionSums operator-(const MotionSums& other) const {
     return {A - other.A, b - other.b, squares - other.squares};
   }
   Vector6d motion() const {
@@ -157,10 +157,10 @@ class SetSteps {
  private:
   Split best_of(std::size_t first, std::size_t last, std::size_t stride) const {
     Split best{0, HUGE_VAL, {}, {}};
-    Sums before;
+    MotionSums before;
     for (std::size_t at = 0; at <= last; ++at) {
       if (at >= first && (at - first) % stride == 0) {
-        const Sums after = all_ - before;
+        const MotionSums after = all_ - before;
         if (const double left = before.left() + after.left(); left < best.left)
           best = {at, left, before.motion(), after.motion() - before.motion()};
       }
@@ -182,7 +182,7 @@ class SetSteps {
 
   std::vector<const RowFigure*> rows_;
   Vector3d middle_ = Vector3d::Zero();
-  Sums all_;
+  MotionSums all_;
 };
 
 std::optional<FrameStep> step_of_set(const Robot& robot, const Eigen::VectorXd& xi,

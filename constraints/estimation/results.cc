@@ -6,7 +6,9 @@
 #include <set>
 
 #include "constraints/identifiability/observability.h"
+#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -58,7 +60,7 @@ constexpr double kMisstated = 3;  // of the data sheet's noise that rows scatter
 constexpr double kMoreThanSheet = 1.5, kMoreThanRepeats = 2;
 constexpr int kFewestFar = 3;     // rows kept aside beyond the noise, and their share,
 constexpr double kOften = 0.1;    // that are no false rows
-constexpr double kChance = 0.01;  // of as much, where the data sheet is right
+constexpr double kRarely = 0.01;  // of as much, where the data sheet is right
 
 double unknowns(const Fit& fit, const Solution& solution) {
   double count = static_cast<double>(
@@ -95,7 +97,7 @@ struct Scatter {
 
 bool beyond_sheet(const Scatter& scatter, double stated, int rows) {
   return stated > 0 && scatter.found > kMoreThanSheet * stated &&
-         chi_square_exceeds(rows * std::pow(scatter.found / stated, 2), rows) < kChance;
+         chi_square_exceeds(rows * std::pow(scatter.found / stated, 2), rows) < kRarely;
 }
 
 /// What the rows have beside the noise that was expected, in each direction measured.

@@ -11,7 +11,7 @@
 namespace selfcal {
 namespace {
 
-constexpr double kChance = 1e-6;
+constexpr double kMaskedByChance = 1e-6;
 constexpr double kLeastOfNoise = 1e-9;            ///< that rows which fit exactly have: rounding
 constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the fit alone
 constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
@@ -281,7 +281,7 @@ std::optional<int> masked_outlier(const Equations& equations, const State& state
   std::ranges::sort(deletions, std::greater(), &Deletion::drop);
   if (deletions.size() > kMostTried) deletions.resize(kMostTried);
   std::optional<int> row;
-  double least = kChance;
+  double least = kMaskedByChance;
   for (const Deletion& each : deletions)
     if (const double chance = all.chance(each); chance < least) {
       least = chance;

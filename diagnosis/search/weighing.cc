@@ -1,0 +1,147 @@
+#include "diagnosis/search/weighing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/constants.h"
+#include "diagnosis/evidence/discrepancy.h"
+#include "diagnosis/evidence/visits.h"
+#include "kinematics/size.h"
+
+namespace selfcal {
+namespace {
+
+class Weighing {
+ public:
+  Weighing(LinearisedModel& linearised, const DataSet& data, const DiagnosisOptions& options,
+           const Progress& progress)
+      : linearised_(linearised), data_(data), options_(options), progress_(progress) {}
+
+  Weighed run() {
+    offer_back();
+    for (int pass = 0; pass < kDiagnosis.rows.passes; ++pass) {
+      if (progress_) progress_("weighing the causes", 0.2 + 0.2 * pass);
+      prepare();
+      if (std::string problem = lacking(*evaluator_); !problem.empty())
+        return {std::move(evaluator_), {}, std::move(problem)};
+      posterior_ = evaluator_->search();
+      // The evaluator and the linearised model must end up with the same rows.
+      if (pass + 1 == kDiagnosis.rows.passes) break;
+      const std::vector<char> aside = linearised_.outlier();
+      const bool refined = refine_by(posterior_.hypotheses.front());
+      const std::vector<ShapedEffect> steps = likely_steps();
+      const bool finer = linearised_.try_moments_near(steps);
+      if (finer) linearised_.take_back(wronged_by(steps, aside));
+      if (!finer && !refined) break;
+    }
+    return {std::move(evaluator_), std::move(posterior_), {}};
+  }
+
+ private:
+  void prepare() {
+    evaluator_.reset();  // before there is a second one
+    evaluator_ = evidence_of(linearised_, data_, options_.search);
+  }
+
+  bool refine_by(const Hypothesis& best) {
+    const auto [columns, sigma] = MarginalLikelihood::unfold(evaluator_->terms(best));
+    const double variance =
+        evaluator_->marginal_likelihood(best.structure).estimate(evaluator_->terms(best)).variance *
+        evaluator_->noise_variance(best.structure);
+    return linearised_.refine(linearised_.residuals(columns, sigma), variance);
+  }
+
+  /// A cause that acts in few rows has these put aside before it is looked for. Where one of all
+  /// rows leaves hardly any of them far, they take part.
+  void offer_back() {
+    const std::vector<char> aside = linearised_.outlier();
+    const auto count = std::ranges::count(aside, char{1});
+    if (count < kDiagnosis.rows.fewest_offered) return;
+    linearised_.start_with(std::vector<char>(aside.size(), 0));
+    prepare();
+    if (lacking(*evaluator_).empty()) {
+      posterior_ = evaluator_->search();
+      const Hypothesis& best = posterior_.hypotheses.front();
+      if (!best.candidates.empty()) {
+        refine_by(best);
+        const auto left = std::ranges::count(linearised_.outlier(), char{1});
+        if (static_cast<double>(left) <= kDiagnosis.rows.hardly_any * static_cast<double>(count))
+          return;
+      }
+    }
+    linearised_.start_with(aside);
+  }
+
+  /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks
+  /// for another.
+  std::vector<ShapedEffect> likely_steps() const {
+    std::vector<ShapedEffect> steps;
+    for (const Hypothesis& h : posterior_.hypotheses) {
+      if (h.log_weight < std::log(kDiagnosis.shapes.likely)) break;
+      for (const int c : h.candidates)
+        if (const Candidate& each = linearised_.candidates().list[c]; each.shape.moment)
+          steps.push_back({each.effect, each.at, each.shape});
+      if (!steps.empty()) break;
+    }
+    return steps;
+  }
+
+  /// The rows that were not put `aside` until a step was supposed at one of few moments, and lie
+  /// between that and the next: they speak for another moment.
+  std::vector<char> wronged_by(const std::vector<ShapedEffect>& steps,
+                               const std::vector<char>& aside) const {
+    std::vector<char> rows(aside.size(), 0);
+    const std::vector<int> order = in_time(data_.rows);
+    const auto apart = static_cast<std::ptrdiff_t>(order.size()) / kDiagnosis.shapes.moments + 1;
+    const std::vector<char>& outlier = linearised_.outlier();
+    for (const ShapedEffect& step : steps) {
+      const auto behind = std::ranges::find_if(
+          order, [&](int row) { return data_.rows.time[row] >= *step.shape.moment; });
+      const auto from = behind - std::min(apart, behind - order.begin());
+      const auto to = behind + std::min(apart, order.end() - behind);
+      for (auto at = from; at != to; ++at) {
+        const auto row = static_cast<std::size_t>(*at);
+        if (outlier[row] && !aside[row]) rows[row] = 1;
+      }
+    }
+    return rows;
+  }
+
+  LinearisedModel& linearised_;
+  const DataSet& data_;
+  const DiagnosisOptions& options_;
+  const Progress& progress_;
+  std::unique_ptr<EvidenceEvaluator> evaluator_;
+  Posterior posterior_;
+};
+
+}  // namespace
+
+std::unique_ptr<EvidenceEvaluator> evidence_of(const LinearisedModel& linearised,
+                                               const DataSet& data, const SearchRule& rule) {
+  const DenseEquations rows = linearised.kept();
+  return std::make_unique<EvidenceEvaluator>(
+      linearised.whitened(),
+      structures(data.rows, rows, linearised.ends(), size_of(linearised.geometry()),
+                 linearised.reading_errors(),
+                 comparable_readings(linearised.geometry(), data.rows.q),
+                 noise_of_visits(data.rows, rows, linearised.left())),
+      linearised.candidates(), linearised.parameters(), rule);
+}
+
+std::string lacking(const EvidenceEvaluator& evaluator) {
+  const double freedom = evaluator.marginal_likelihood(0).freedom();
+  if (freedom >= kDiagnosis.rows.fewest_freedoms) return {};
+  return "too few rows for a diagnosis: beyond what calibration takes they leave " +
+         format_number(std::floor(freedom)) + " equations, at least " +
+         format_number(kDiagnosis.rows.fewest_freedoms) + " are needed";
+}
+
+Weighed weigh(LinearisedModel& linearised, const DataSet& data, const DiagnosisOptions& options,
+              const Progress& progress) {
+  return Weighing(linearised, data, options, progress).run();
+}
+
+}  // namespace selfcal
