@@ -1,6 +1,8 @@
 // From contact to stop request, while others do their worst: commands by the hundred, a slow disk,
 // readers that never read, busy processors. tests/sessions/README.md has the table.
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -22,21 +24,49 @@ namespace {
 constexpr double kDebounce = 0.002;  // s, as the example's configuration has it
 // Beyond the debounce: the goal that the service is held to, on a computer that has time for it.
 constexpr double kMost = 0.005;
+// Of the stops, how many keep it where the kernel wakes somebody late now and then.
+constexpr double kNearlyAll = 0.9;
 
-/// How late the kernel wakes a thread of ordinary priority here (s), over `count` sleeps.
-std::vector<double> wake_ups(int count) {
-  std::vector<double> late;
-  for (int i = 0; i < count; ++i) {
-    const Nanoseconds began = monotonic_now();
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    late.push_back(seconds(monotonic_now() - began) - 0.002);
+/// How late the kernel wakes threads of ordinary priority, one on each core, while it lives: as
+/// late as the robot's own process may send what it has stamped.
+class KernelWatch {
+ public:
+  KernelWatch() {
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    late_.resize(cores);
+    for (unsigned core = 0; core < cores; ++core)
+      threads_.emplace_back([this, core] { watch(core); });
   }
-  return late;
-}
+  ~KernelWatch() {
+    if (!ending_) end();
+  }
 
-/// What 99.9 % of the stops must keep: the goal, and without leave for real-time priority besides
-/// what three wake-ups of the kernel's take at worst here and now.
-double bound() { return may_become_urgent() ? kMost : kMost + 3 * quantile(wake_ups(300), 0.999); }
+  /// The lateness of each wake-up so far (s).
+  std::vector<double> end() {
+    ending_ = true;
+    for (std::thread& each : threads_) each.join();
+    std::vector<double> all;
+    for (const std::vector<double>& each : late_) all.insert(all.end(), each.begin(), each.end());
+    return all;
+  }
+
+ private:
+  void watch(unsigned core) {
+    cpu_set_t only;
+    CPU_ZERO(&only);
+    CPU_SET(core, &only);
+    (void)pthread_setaffinity_np(pthread_self(), sizeof only, &only);  // or wherever it may run
+    while (!ending_) {
+      const Nanoseconds began = monotonic_now();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      late_[core].push_back(seconds(monotonic_now() - began) - 0.002);
+    }
+  }
+
+  std::atomic<bool> ending_ = false;
+  std::vector<std::vector<double>> late_;
+  std::vector<std::thread> threads_;
+};
 
 /// A cell whose robot, in a process of its own, is touched many times.
 class Stop : public testing::Test {
@@ -58,6 +88,7 @@ class Stop : public testing::Test {
   void watch(const std::string& what, const std::function<void()>& meddle = {}) {
     const auto wanted = static_cast<std::size_t>(repetitions("SELFCAL_STOPS", 40));
     Nanoseconds meddled = 0;
+    KernelWatch watching;
     ASSERT_TRUE(cell.until([&] {
       if (meddle && monotonic_now() - meddled > 10 * kMillisecond) {
         meddled = monotonic_now();
@@ -69,9 +100,23 @@ class Stop : public testing::Test {
     }));
     ASSERT_FALSE(cell.in_state("fault")) << cell.statuses.back().why;
     for (double& each : took = stop_watch.took()) each -= kDebounce;
-    std::printf("%-44s %5zu stops: median %7.2f ms, 99 %% %7.2f ms, 99.9 %% %7.2f ms\n",
-                what.c_str(), took.size(), 1e3 * quantile(took, 0.5), 1e3 * quantile(took, 0.99),
-                1e3 * quantile(took, 0.999));
+    kernel = watching.end();
+    tell(what, "stops", took);
+    tell("  the kernel's own wake-ups meanwhile", "times", kernel);
+  }
+
+  static void tell(const std::string& what, const char* unit, const std::vector<double>& late) {
+    std::printf("%-52s %6zu %s: median %7.2f ms, 99 %% %7.2f ms, 99.9 %% %7.2f ms\n", what.c_str(),
+                late.size(), unit, 1e3 * quantile(late, 0.5), 1e3 * quantile(late, 0.99),
+                1e3 * quantile(late, 0.999));
+  }
+
+  /// Nearly all within the goal, and the last no later than the kernel explains. Without leave for
+  /// real-time priority three wake-ups stand in the way of each.
+  void expect_at_once() const {
+    const bool urgent = may_become_urgent();
+    EXPECT_LT(quantile(took, kNearlyAll), kMost + (urgent ? 0 : 3 * quantile(kernel, kNearlyAll)));
+    EXPECT_LT(quantile(took, 1), kMost + (urgent ? 1 : 3) * quantile(kernel, 1));
   }
 
   /// Another session, when one has ended before enough was seen.
@@ -83,7 +128,8 @@ class Stop : public testing::Test {
   Cell cell{options()};
   DdsParticipant participant = must(DdsParticipant::open(cell.domain, "stop watch"));
   StopWatch stop_watch{participant, "cell"};
-  std::vector<double> took;
+  std::vector<double> took;    // s, from contact to stop, less the debounce
+  std::vector<double> kernel;  // s, how late the kernel's wake-ups were meanwhile
 };
 
 /// Sends commands that are refused, as fast as it is called.
@@ -106,14 +152,14 @@ class Nuisance {
 TEST_F(Stop, ComesAtOnceWhenNothingElseHappens) {
   begin();
   watch("quiet");
-  EXPECT_LT(quantile(took, 0.999), bound());
+  expect_at_once();
 }
 
 TEST_F(Stop, ComesAtOnceUnderAHundredCommandsASecondOnASlowDisk) {
   begin(SELFCAL_SLOW_DISK);
   Nuisance nuisance(participant);
   watch("100 commands a second, 10 ms a disk sync", [&] { nuisance.ask(); });
-  EXPECT_LT(quantile(took, 0.999), bound());
+  expect_at_once();
 }
 
 /// A process that subscribes to all that the service writes and takes nothing: once it is full it
@@ -170,7 +216,7 @@ TEST_F(Stop, ComesAtOnceWhileAReaderOfEveryTopicTakesNothing) {
   watch("500 commands a second, a reader that takes nothing", [&] {
     for (int i = 0; i < 5; ++i) nuisance.ask();
   });
-  EXPECT_LT(quantile(took, 0.999), bound());
+  expect_at_once();
 }
 
 /// Keeps every core busy, at this process's priority.
@@ -195,15 +241,9 @@ class BusyCores {
 
 TEST_F(Stop, ComesWithinTwoMillisecondsOfTheKernelsOwnWakeUpOnBusyCores) {
   begin();
-  std::vector<double> kernel;
-  {
-    const BusyCores busy;
-    kernel = wake_ups(500);
-    watch("every core busy");
-  }
-  std::printf("%-44s %5zu times: median %7.2f ms, 99.9 %% %7.2f ms\n", "the kernel's own wake-up",
-              kernel.size(), 1e3 * quantile(kernel, 0.5), 1e3 * quantile(kernel, 0.999));
-  EXPECT_LT(quantile(took, 0.999), (may_become_urgent() ? 1 : 3) * quantile(kernel, 0.999) + 0.002);
+  const BusyCores busy;
+  watch("every core busy");
+  EXPECT_LT(quantile(took, 1), (may_become_urgent() ? 1 : 3) * quantile(kernel, 1) + 0.002);
 }
 
 }  // namespace
