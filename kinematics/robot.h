@@ -47,6 +47,14 @@ struct MeasurementConditions {
 struct Location {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< m
+
+  // Friends, so that no product of matrices looks at them: that doubles the time to compile one.
+  friend Location operator*(const Location& a, const Location& b) {
+    return {a.R * b.R, a.p + a.R * b.p};
+  }
+  friend Eigen::Vector3d operator*(const Location& X, const Eigen::Vector3d& p) {
+    return X.p + X.R * p;
+  }
 };
 
 /// The same lane by lane.

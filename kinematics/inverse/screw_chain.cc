@@ -34,11 +34,7 @@ bool same_machine(const Robot& robot, const Eigen::VectorXd& xi, const ScrewChai
 
 }  // namespace
 
-Location operator*(const Location& a, const Location& b) { return {a.R * b.R, a.p + a.R * b.p}; }
-
 Location inverse_of(const Location& X) { return {X.R.transpose(), -X.R.transpose() * X.p}; }
-
-Eigen::Vector3d operator*(const Location& X, const Eigen::Vector3d& p) { return X.p + X.R * p; }
 
 Location moved_by(const Screw& screw, double t) {
   if (!screw.turns) return {Eigen::Matrix3d::Identity(), t * screw.axis};

@@ -32,9 +32,7 @@ struct ScrewChain {
 
 /// T_j(t) of a screw.
 Location moved_by(const Screw& screw, double t);
-Location operator*(const Location& a, const Location& b);
 Location inverse_of(const Location& X);
-Eigen::Vector3d operator*(const Location& X, const Eigen::Vector3d& p);
 
 /// Of the robot with parameters `xi`; nothing of one with loops, with effects, with joints that
 /// move each other or with more of them than kMostJoints.
