@@ -42,12 +42,13 @@ struct SetResult {
   std::string name, method;
   int rows = 0;  ///< `fit` rows that give an equation, or `check` rows when there are no others
   int used = 0;  ///< of them, not put aside
-  bool identifies = false;       ///< has `fit` rows
-  bool aligned = false;          ///< nuisance parameters fitted to `check` rows, robot held
-  double noise_sigma = 0;        ///< m, one scalar residual; 0 when the method has no lengths
-  double noise_angle_sigma = 0;  ///< rad; 0 when the method has no angles
-  double repeat_sigma = -1;      ///< m, from immediate repeats alone; negative without
-  bool unexplained = false;      ///< scatters more than its data sheet or its repeats say
+  bool identifies = false;         ///< has `fit` rows
+  bool aligned = false;            ///< nuisance parameters fitted to `check` rows, robot held
+  double noise_sigma = 0;          ///< m, one scalar residual; 0 when the method has no lengths
+  double noise_angle_sigma = 0;    ///< rad; 0 when the method has no angles
+  double repeat_sigma = -1;        ///< m, from immediate repeats alone; negative without
+  double repeat_angle_sigma = -1;  ///< rad, the same
+  bool unexplained = false;        ///< scatters more than its data sheet or its repeats say
   std::vector<NuisanceResult> nuisance;
 };
 

@@ -144,6 +144,9 @@ std::string set_line(const SetResult& set) {
   if (set.noise_angle_sigma > 0)
     text += (set.noise_sigma > 0 ? " and " : ", noise ") + small_angle(set.noise_angle_sigma);
   if (set.repeat_sigma >= 0) text += ", of repeats alone " + small_length(set.repeat_sigma);
+  if (set.repeat_angle_sigma >= 0)
+    text += (set.repeat_sigma >= 0 ? " and " : ", of repeats alone ") +
+            small_angle(set.repeat_angle_sigma);
   return text;
 }
 

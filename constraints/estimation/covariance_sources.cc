@@ -47,26 +47,34 @@ double rows_of_a_configuration(const Equations& equations, int set,
   return all > 0 ? squares / all : 1;
 }
 
+/// Of the lengths, or of the angles where the set has no lengths.
+double of_set(const DataSet& data, size_t set, const Scale& scale) {
+  return data.sets[set].method->has_lengths() ? scale.length : scale.angle;
+}
+
 /// Of the set's noise, so many times more: repeats, which differ by `spread`, have the rest of what
 /// is left of the rows in common (the design effect of Kish, 1 + (n - 1) rho).
 double shared_by_repeats(const Equations& equations, const Fit& fitted, int set, double spread) {
-  const double left = fitted.noise.estimated[static_cast<size_t>(set)].length;
-  const double used = fitted.noise.used[static_cast<size_t>(set)].length;
+  const auto s = static_cast<size_t>(set);
+  const double left = of_set(equations.data(), s, fitted.noise.estimated[s]);
+  const double used = of_set(equations.data(), s, fitted.noise.used[s]);
   const double rho = std::max(0.0, 1 - std::pow(spread / left, 2));
   const double n = rows_of_a_configuration(equations, set, fitted.noise.outlier);
   return std::max(0.0, std::pow(left / used, 2) * (1 + (n - 1) * rho) - 1);
 }
 
-/// What immediate repeats differ by, by set (m); negative without any.
+/// What immediate repeats differ by, by set (m, or rad without lengths); negative without any.
 std::vector<double> spreads_of_repeats(const Equations& equations, const Fit& fitted) {
   const DataSet& data = equations.data();
   std::vector<double> spreads(data.sets.size(), -1);
   if (data.rows.repeat.empty()) return spreads;
   const std::vector<RowResidual> residuals = equations.residuals(fitted.state);
   for (size_t s = 0; s < spreads.size(); ++s)
-    if (!equations.plan(static_cast<int>(s)).items.empty())
-      spreads[s] =
-          repeat_spread(data, static_cast<int>(s), residuals, fitted.noise.outlier).sigma();
+    if (!equations.plan(static_cast<int>(s)).items.empty()) {
+      const RepeatSpreads each =
+          repeat_spreads(data, static_cast<int>(s), residuals, fitted.noise.outlier);
+      spreads[s] = of_set(data, s, {each.length.sigma(), each.angle.sigma()});
+    }
   return spreads;
 }
 
@@ -77,9 +85,11 @@ double over_stated(const Equations& equations, const Fit& fitted,
   double sum = 0, count = 0;
   for (size_t s = 0; s < spreads.size(); ++s) {
     const int set = static_cast<int>(s);
+    const DataSet& data = equations.data();
     const auto rows = static_cast<double>(equations.plan(set).items.size());
-    const double told = std::max(equations.stated(set).length, spreads[s]);
-    const double over = told > 0 ? std::pow(fitted.noise.estimated[s].length / told, 2) : 1;
+    const double told = std::max(of_set(data, s, equations.stated(set)), spreads[s]);
+    const double left = of_set(data, s, fitted.noise.estimated[s]);
+    const double over = told > 0 ? std::pow(left / told, 2) : 1;
     sum += rows * std::max(1.0, over);
     count += rows;
   }
@@ -102,8 +112,8 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
     const double spread = std::max(0.0, told);
     const double in_common = told < 0 ? 0 : shared_by_repeats(equations, fitted, s, spread);
     const double coarse = std::min(1.0, rounding[s]);
-    const double repeated =
-        std::clamp(std::pow(spread / fitted.noise.used[s].length, 2) - coarse, 0.0, 1 - coarse);
+    const double used = of_set(equations.data(), static_cast<size_t>(s), fitted.noise.used[s]);
+    const double repeated = std::clamp(std::pow(spread / used, 2) - coarse, 0.0, 1 - coarse);
     if (coarse + repeated + in_common == 0) continue;
     Weighting alone{fitted.noise.used, fitted.noise.outlier};
     alone.passed_over = true;

@@ -107,14 +107,15 @@ double beside(double found, double expected) {
 
 Scatter rows_of(const SetResult& set) { return {"rows", set.noise_sigma, "mm"}; }
 
+Scatter angles_of(const SetResult& set) { return {"angles", set.noise_angle_sigma, "mrad"}; }
+
 /// The rows that identify placed all of the set.
 bool is_placed_by_rows(const SetResult& set, const Method& method) {
   return !set.aligned || method.group_freedom() > 0;
 }
 
-bool beyond_repeats(const SetResult& set, const Method& method) {
-  return is_placed_by_rows(set, method) && set.repeat_sigma > 0 &&
-         set.noise_sigma > kMoreThanRepeats * set.repeat_sigma;
+bool beyond_repeats(const Scatter& scatter, double repeats) {
+  return repeats > 0 && scatter.found > kMoreThanRepeats * repeats;
 }
 
 /// It is the robot's, and in no figure of it.
@@ -205,8 +206,10 @@ std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
     if (identifies || each.aligned) {
       if (set.method->has_lengths()) each.noise_sigma = noise.length;
       if (set.method->has_angles()) each.noise_angle_sigma = noise.angle;
-      each.repeat_sigma =
-          repeat_spread(data, s, identifies ? after.fit : after.check, fit.noise.outlier).sigma();
+      const RepeatSpreads repeats =
+          repeat_spreads(data, s, identifies ? after.fit : after.check, fit.noise.outlier);
+      each.repeat_sigma = repeats.length.sigma();
+      each.repeat_angle_sigma = repeats.angle.sigma();
     }
     if (identifies) {
       const Eigen::VectorXd* reference =
@@ -237,8 +240,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
                                   ": what is left of its rows is larger than the " +
                                   "end-position accuracy wanted");
     for (const auto& [scatter, noise] :
-         {std::pair(rows_of(set), stated.length),
-          std::pair(Scatter{"angles", set.noise_angle_sigma, "mrad"}, stated.angle)})
+         {std::pair(rows_of(set), stated.length), std::pair(angles_of(set), stated.angle)})
       if (beyond_sheet(scatter, noise, set.used)) {
         set.unexplained = true;
         solution.warnings.push_back(unexplained(set, scatter, noise, "its data sheet says",
@@ -250,14 +252,16 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
           ratio(stated.length, set.noise_sigma) +
           " times what its rows scatter by: is `noise` in metres, and 1 sigma?");
     const Method& method = *data.sets[s].method;
-    if (beyond_repeats(set, method)) {
-      set.unexplained = true;
-      solution.warnings.push_back(
-          unexplained(set, rows_of(set), set.repeat_sigma, "their repeats", ""));
-    }
+    const bool placed = is_placed_by_rows(set, method);
+    for (const auto& [scatter, repeats] : {std::pair(rows_of(set), set.repeat_sigma),
+                                           std::pair(angles_of(set), set.repeat_angle_sigma)})
+      if (placed && beyond_repeats(scatter, repeats)) {
+        set.unexplained = true;
+        solution.warnings.push_back(unexplained(set, scatter, repeats, "their repeats", ""));
+      }
     if (std::string often = often_beyond(set, solution); !often.empty())
       solution.warnings.push_back(std::move(often));
-    if (!is_placed_by_rows(set, method))
+    if (!placed)
       solution.warnings.push_back(
           "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +
           "judge the robot alone, where they place it best");
@@ -270,7 +274,8 @@ double strays(const Equations& equations, const std::vector<SetResult>& sets) {
     const SetResult& set = sets[s];
     const double stated = equations.stated(static_cast<int>(s)).length;
     if (!set.identifies) continue;
-    if (beyond_repeats(set, *equations.data().sets[s].method))
+    if (is_placed_by_rows(set, *equations.data().sets[s].method) &&
+        beyond_repeats(rows_of(set), set.repeat_sigma))
       most = std::max(most, beside(set.noise_sigma, set.repeat_sigma));
     else if (beyond_sheet(rows_of(set), stated, set.used))
       most = std::max(most, beside(set.noise_sigma, stated));

@@ -186,16 +186,19 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
   return noise;
 }
 
-RepeatSpread repeat_spread(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
-                           const std::vector<char>& outlier) {
-  RepeatSpread spread;
-  if (data.rows.repeat.empty()) return spread;
+RepeatSpreads repeat_spreads(const DataSet& data, int set,
+                             const std::vector<RowResidual>& residuals,
+                             const std::vector<char>& outlier) {
+  RepeatSpreads spreads;
+  if (data.rows.repeat.empty()) return spreads;
   std::map<int, std::vector<const RowResidual*>> repeats;
   for (const RowResidual& r : residuals)
     if (r.set == set && data.rows.repeat[r.row] >= 0 && !outlier[r.row])
       repeats[data.rows.repeat[r.row]].push_back(&r);
-  for (const auto& [id, rows] : repeats)
-    for (int a = 0; a < rows.front()->lengths; ++a) {
+  for (const auto& [id, rows] : repeats) {
+    const int lengths = rows.front()->lengths;
+    for (int a = 0; a < lengths + rows.front()->angles; ++a) {
+      RepeatSpread& spread = a < lengths ? spreads.length : spreads.angle;
       double mean = 0, weight = 0;
       for (const RowResidual* r : rows) {
         mean += r->scalars[a] / (r->factor * r->factor);
@@ -206,7 +209,8 @@ RepeatSpread repeat_spread(const DataSet& data, int set, const std::vector<RowRe
         spread.squares += std::pow((r->scalars[a] - mean) / r->factor, 2);
       spread.freedom += static_cast<double>(rows.size()) - 1;
     }
-  return spread;
+  }
+  return spreads;
 }
 
 }  // namespace selfcal

@@ -41,17 +41,21 @@ Scale least_noise(const Robot& robot);
 Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& norms,
                      const NoiseRule& rule);
 
-/// What the spread of immediate repeats says of the noise of length residuals.
+/// What the spread of immediate repeats says of the noise of residuals of one unit.
 struct RepeatSpread {
-  double squares = 0;  ///< m^2
+  double squares = 0;  ///< m^2 or rad^2
   double freedom = 0;
-  /// 1 sigma of one residual (m); negative without repeats.
+  /// 1 sigma of one residual (m or rad); negative without repeats.
   double sigma() const { return freedom > 0 ? std::sqrt(squares / freedom) : -1; }
+};
+struct RepeatSpreads {
+  RepeatSpread length, angle;
 };
 /// Of `set`, from immediate repeats alone. The pure error of a regression with replicates: the
 /// residuals of one configuration and approach differ by the measurement's own noise only.
 /// `outlier` rows are left out.
-RepeatSpread repeat_spread(const DataSet& data, int set, const std::vector<RowResidual>& residuals,
-                           const std::vector<char>& outlier);
+RepeatSpreads repeat_spreads(const DataSet& data, int set,
+                             const std::vector<RowResidual>& residuals,
+                             const std::vector<char>& outlier);
 
 }  // namespace selfcal

@@ -40,8 +40,9 @@ std::vector<Scatter> scatter_of_sets(const LinearisedModel& linearised, const Da
       alike = list.insert(alike,
                           {.sets = {}, .lengths = lengths, .declared = declared, .found = found});
     alike->sets.push_back(static_cast<int>(s));
-    const RepeatSpread repeats =
-        repeat_spread(data, static_cast<int>(s), residuals, linearised.outlier());
+    const RepeatSpreads spreads =
+        repeat_spreads(data, static_cast<int>(s), residuals, linearised.outlier());
+    const RepeatSpread& repeats = lengths ? spreads.length : spreads.angle;
     alike->repeats.squares += repeats.squares;
     alike->repeats.freedom += repeats.freedom;
   }

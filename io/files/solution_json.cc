@@ -51,6 +51,7 @@ Json of_set(const SetResult& set) {
                             {"noise_sigma", finite(set.noise_sigma)}});
   if (set.noise_angle_sigma > 0) json["noise_angle_sigma"] = finite(set.noise_angle_sigma);
   if (set.repeat_sigma >= 0) json["repeat_sigma"] = finite(set.repeat_sigma);
+  if (set.repeat_angle_sigma >= 0) json["repeat_angle_sigma"] = finite(set.repeat_angle_sigma);
   json["own"] = array_of(set.nuisance, nuisance);
   return json;
 }

@@ -4,6 +4,7 @@
 
 #include "constraints/estimation/identification.h"
 #include "constraints/fitting/noise.h"
+#include "kinematics/rotation.h"
 #include "tests/sim/simulated_robot.h"
 #include "tests/support/end_position.h"
 
@@ -84,7 +85,7 @@ TEST(NoiseFactor, IsTakenOffWhatRepeatsDifferBy) {
     r.scalars.set(0, kSigma * r.factor * normal(random));
   }
   // 120 freedoms tell a sigma to 6 %, three times which is allowed.
-  EXPECT_NEAR(repeat_spread(data, 0, residuals, std::vector<char>(rows, 0)).sigma(), kSigma,
+  EXPECT_NEAR(repeat_spreads(data, 0, residuals, std::vector<char>(rows, 0)).length.sigma(), kSigma,
               0.19 * kSigma);
 }
 
@@ -107,6 +108,38 @@ TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
                              HasSubstr("the robot strays by 0.02 mm in each direction"))));
   EXPECT_TRUE(found_with(2e-6).sets[0].unexplained);
   EXPECT_FALSE(found_with(2e-5).sets[0].unexplained);
+}
+
+/// Orientations that stray by 400 urad from pose to pose and by 40 from repeat to repeat.
+TEST(Repeats, TellAnglesThatScatterMoreThanTheyDiffer) {
+  constexpr double kPose = 4e-4, kRepeat = 4e-5;
+  const Simulated simulated = made(
+      "robot: rx90.robot.yaml\nseed: 4\nerrors: {length: 1.0e-3, angle: 1.0e-3}\n"
+      "sets: {arm: {method: location, rows: 60, noise_true: 2.0e-5, noise_angle_true: 4.0e-4}}\n");
+  const DataSet& once = simulated.data;
+  std::vector<int> thrice;
+  for (int row = 0; row < once.rows.rows(); ++row) thrice.insert(thrice.end(), 3, row);
+  DataSet data = once;
+  data.rows = taken(once.rows, thrice);
+  data.rows.repeat = thrice;
+  Random random(7);
+  std::normal_distribution<double> normal;
+  for (int row = 0; row < data.rows.rows(); ++row) {
+    const Eigen::Vector3d turn(normal(random), normal(random), normal(random));
+    const Eigen::Vector4d read = data.rows.orientation.row(row);
+    const Eigen::Quaterniond turned = Eigen::Quaterniond(exp_rotation(kRepeat * turn)) *
+                                      Eigen::Quaterniond(read[0], read[1], read[2], read[3]);
+    data.rows.orientation.row(row) << turned.w(), turned.x(), turned.y(), turned.z();
+  }
+  const Solution solution = identify(rx90(), data, {}, {});
+  const SetResult& arm = solution.sets[0];
+  // 360 freedoms tell a sigma to 4 %, three times which is allowed; 60 poses to 8 %.
+  EXPECT_NEAR(arm.repeat_angle_sigma, kRepeat, 0.12 * kRepeat);
+  EXPECT_NEAR(arm.noise_angle_sigma, kPose, 0.24 * kPose);
+  EXPECT_TRUE(arm.unexplained);
+  EXPECT_THAT(solution.warnings,
+              testing::Contains(testing::AllOf(testing::HasSubstr("set arm: the angles scatter"),
+                                               testing::HasSubstr("as their repeats"))));
 }
 
 }  // namespace
