@@ -135,6 +135,7 @@ struct DenseEquations {
   Eigen::VectorXd y;      ///< Delta Y
   Eigen::MatrixXd shift;  ///< equations x 3, derivative to a shift of the world (1/sigma per m)
   std::vector<int> row;   ///< of the data set, by equation; -1 of an equation that no row carries
+  std::vector<Quantity> quantity;  ///< by equation; a length where no row carries it
 };
 
 /// Rows of one set in the order of evaluation, and how its groups hang together.

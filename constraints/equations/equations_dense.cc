@@ -10,14 +10,15 @@ namespace {
 class Collector {
  public:
   Collector(Eigen::Index most, Eigen::Index columns)
-      : columns_(columns), row_(columns + 4), out_{{}, Eigen::VectorXd(most), {}, {}} {
+      : columns_(columns), row_(columns + 4), out_{{}, Eigen::VectorXd(most), {}, {}, {}} {
     out_.W.resize(most, columns);
     out_.shift.resize(most, 3);
   }
   /// A row of zeros [W | Delta Y | shift], which is taken at the next call.
-  Eigen::RowVectorXd& add(int row) {
+  Eigen::RowVectorXd& add(int row, Quantity quantity = Quantity::length) {
     take();
     out_.row.push_back(row);
+    out_.quantity.push_back(quantity);
     return row_.setZero();
   }
   DenseEquations finish() {
@@ -83,7 +84,7 @@ DenseEquations Equations::dense(const State& state, const std::vector<Scale>& sc
       for (int lane = 0; lane < count; ++lane) {
         if (outlier[block.rows[lane]] || !block.closure.closes(lane)) continue;
         for (int a = 0; a < static_cast<int>(quantities_[s].size()); ++a) {
-          Eigen::RowVectorXd& row = collector.add(block.rows[lane]);
+          Eigen::RowVectorXd& row = collector.add(block.rows[lane], quantities_[s][a]);
           row.head(columns()) = W.row(a * kLanes + lane).head(columns());
           row[all] = W(a * kLanes + lane, W.cols() - 1);
           row.tail<3>() = W.row(a * kLanes + lane).segment<3>(columns());

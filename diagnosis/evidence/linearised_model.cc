@@ -98,7 +98,7 @@ void LinearisedModel::bound_noise() {
     noise_[s] = {std::max(noise_[s].length, declared[s].length),
                  std::max(noise_[s].angle, declared[s].angle)};
   }
-  relative_.assign(noise_.size(), 1);
+  relative_.assign(noise_.size(), {});
 }
 
 double LinearisedModel::least() const {
@@ -106,9 +106,10 @@ double LinearisedModel::least() const {
   double sum = 0, rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
     if (adjusted_.fitted.rows[s] == 0) continue;
-    const double share = data_.sets[s].method->has_lengths() ? declared[s].length / noise_[s].length
-                                                             : declared[s].angle / noise_[s].angle;
-    sum += adjusted_.fitted.rows[s] * std::pow(share / relative_[s], 2);
+    const double share = data_.sets[s].method->has_lengths()
+                             ? declared[s].length / (relative_[s].length * noise_[s].length)
+                             : declared[s].angle / (relative_[s].angle * noise_[s].angle);
+    sum += adjusted_.fitted.rows[s] * std::pow(share, 2);
     rows += adjusted_.fitted.rows[s];
   }
   return rows > 0 ? sum / rows / (scale_ * scale_) : 0;
@@ -117,8 +118,10 @@ double LinearisedModel::least() const {
 Eigen::VectorXd LinearisedModel::scales(const std::vector<int>& equations) const {
   Eigen::VectorXd scales(static_cast<Eigen::Index>(equations.size()));
   for (Eigen::Index i = 0; i < scales.size(); ++i) {
-    const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
-    scales[i] = row < 0 ? scale_ : scale_ * relative_[data_.rows.set[row]];
+    const auto at = static_cast<size_t>(equations[static_cast<size_t>(i)]);
+    const int row = all_.row[at];
+    scales[i] = scale_;
+    if (row >= 0) scales[i] *= relative_[data_.rows.set[row]].of(all_.quantity[at]);
   }
   return scales;
 }
@@ -141,8 +144,8 @@ std::vector<char> LinearisedModel::taking_part() const {
 
 DenseEquations LinearisedModel::kept() const {
   const std::vector<int> equations = equations_of(all_, taking_part());
-  DenseEquations some{{}, all_.y(equations), all_.shift(equations, Eigen::all), {}};
-  for (const int i : equations) some.row.push_back(all_.row[static_cast<size_t>(i)]);
+  DenseEquations some{{}, all_.y(equations), all_.shift(equations, Eigen::all), {}, {}};
+  add_labels(all_, equations, some);
   return some;
 }
 
@@ -198,8 +201,8 @@ Eigen::MatrixXd LinearisedModel::by_joint() const {
 std::vector<Scale> LinearisedModel::noise_of_sets() const {
   std::vector<Scale> noise = declared_noise(data_);
   for (size_t s = 0; s < noise.size(); ++s)
-    noise[s] = {std::max(noise[s].length, scale_ * relative_[s] * noise_[s].length),
-                std::max(noise[s].angle, scale_ * relative_[s] * noise_[s].angle)};
+    noise[s] = {std::max(noise[s].length, scale_ * relative_[s].length * noise_[s].length),
+                std::max(noise[s].angle, scale_ * relative_[s].angle * noise_[s].angle)};
   return noise;
 }
 
@@ -208,7 +211,8 @@ double LinearisedModel::noise() const {
   int rows = 0;
   for (size_t s = 0; s < noise_.size(); ++s) {
     if (!data_.sets[s].method->has_lengths()) continue;
-    squares += adjusted_.fitted.rows[s] * std::pow(scale_ * relative_[s] * noise_[s].length, 2);
+    squares +=
+        adjusted_.fitted.rows[s] * std::pow(scale_ * relative_[s].length * noise_[s].length, 2);
     rows += adjusted_.fitted.rows[s];
   }
   return std::sqrt(squares / std::max(rows, 1));
@@ -247,7 +251,7 @@ void LinearisedModel::start_with(std::vector<char> outlier) {
   outlier_ = std::move(outlier);
   left_ = all_.y;
   scale_ = 1;
-  relative_.assign(relative_.size(), 1);
+  relative_.assign(relative_.size(), {});
 }
 
 void LinearisedModel::take_back(const std::vector<char>& rows) {
@@ -256,14 +260,16 @@ void LinearisedModel::take_back(const std::vector<char>& rows) {
 }
 
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
-  const std::vector<double> unlike =
-      unlike_noise(data_, kept().row, residuals(equations_of(all_, taking_part())),
+  const DenseEquations rows = kept();
+  const std::vector<Scale> unlike =
+      unlike_noise(data_, rows, residuals(equations_of(all_, taking_part())),
                    geometry_leaves(whitened_geometry()));
-  const bool alike = std::ranges::all_of(unlike, [](double each) { return each == 1; });
+  const bool alike = std::ranges::all_of(
+      unlike, [](const Scale& each) { return each.length == 1 && each.angle == 1; });
   Eigen::VectorXd left = residuals;
   for (Eigen::Index i = 0; i < left.size(); ++i)
     if (const int row = all_.row[static_cast<size_t>(i)]; row >= 0)
-      left[i] /= std::sqrt(unlike[data_.rows.set[row]]);
+      left[i] /= unlike[data_.rows.set[row]].of(all_.quantity[static_cast<size_t>(i)]);
   std::vector<char> outlier = outliers_among(
       all_, left, static_cast<double>(nuisance_.columns.size()), outlier_.size(), most_outliers_);
   for (size_t row = 0; row < held_.size(); ++row)
@@ -271,7 +277,10 @@ bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) 
   if (outlier == outlier_ && alike && std::abs(variance - 1) < 0.1) return false;
   outlier_ = std::move(outlier);
   left_ = std::move(left);
-  for (size_t s = 0; s < relative_.size(); ++s) relative_[s] *= std::sqrt(unlike[s]);
+  for (size_t s = 0; s < relative_.size(); ++s) {
+    relative_[s].length *= unlike[s].length;
+    relative_[s].angle *= unlike[s].angle;
+  }
   scale_ *= std::sqrt(variance);
   return true;
 }

@@ -73,9 +73,9 @@ class LinearisedModel {
   /// What the best explanation so far leaves, by equation of kept(); at first
   /// the geometry's fit.
   Eigen::VectorXd left() const;
-  /// Takes the noise from the variance of the best explanation, of methods that it leaves unlike
-  /// each by its own rows, and puts aside the rows whose
-  /// `residuals` lie beyond one in a hundred thousand. True when that changed anything.
+  /// Takes the noise from the variance of the best explanation, of sets and quantities that it
+  /// leaves unlike each by its own rows, and puts aside the rows whose `residuals` lie beyond one
+  /// in a hundred thousand. True when that changed anything.
   bool refine(const Eigen::VectorXd& residuals, double variance);
   /// Puts aside these of the held rows (by row of the data set), no others, with the noise that the
   /// geometry's fit has.
@@ -129,7 +129,7 @@ class LinearisedModel {
   Eigen::VectorXd steps_;      ///< that each joint's readings are rounded to; 0: not known
   Eigen::VectorXd left_;       ///< by equation of all()
   double scale_ = 1;
-  std::vector<double> relative_;  ///< scale of a set's noise over that, by set
+  std::vector<Scale> relative_;  ///< of a set's lengths and angles over that, by set
 };
 
 }  // namespace selfcal

@@ -1,9 +1,11 @@
 #include "diagnosis/evidence/rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "constraints/methods/instrument.h"
 #include "constraints/statistics.h"
@@ -73,28 +75,34 @@ struct LeftOfRows {
 
 }  // namespace
 
-std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& row,
-                                 const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves) {
-  std::vector<LeftOfRows> of_set(data.sets.size());
-  for (size_t i = 0; i < row.size(); ++i) {
-    if (row[i] < 0) continue;
-    LeftOfRows& left = of_set[static_cast<size_t>(data.rows.set[row[i]])];
+std::vector<Scale> unlike_noise(const DataSet& data, const DenseEquations& rows,
+                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves) {
+  struct LeftOfSet {
+    LeftOfRows lengths, angles;
+    LeftOfRows& of(Quantity quantity) { return quantity == Quantity::angle ? angles : lengths; }
+  };
+  std::vector<LeftOfSet> of_set(data.sets.size());
+  for (size_t i = 0; i < rows.row.size(); ++i) {
+    if (rows.row[i] < 0) continue;
+    LeftOfRows& left = of_set[static_cast<size_t>(data.rows.set[rows.row[i]])].of(rows.quantity[i]);
     left.sizes.push_back(std::abs(residuals[static_cast<Eigen::Index>(i)]));
     left.freedom += leaves[static_cast<Eigen::Index>(i)];
   }
   // Sets of few rows stand together.
-  using Key = std::pair<Instrument, int>;
-  const auto key_of = [&](size_t s) {
-    const bool alone = of_set[s].freedom >= kDiagnosis.rows.fewest_of_set;
-    return Key(instrument_of(data.sets[s]), alone ? static_cast<int>(s) : -1);
+  using Key = std::tuple<Instrument, int, Quantity>;
+  const auto key_of = [&](size_t s, Quantity quantity) {
+    const bool alone = of_set[s].of(quantity).freedom >= kDiagnosis.rows.fewest_of_set;
+    return Key(instrument_of(data.sets[s]), alone ? static_cast<int>(s) : -1, quantity);
   };
+  constexpr std::array kQuantities = {Quantity::length, Quantity::angle};
   std::map<Key, LeftOfRows> alike;
-  for (size_t s = 0; s < of_set.size(); ++s) alike[key_of(s)] += of_set[s];
+  for (size_t s = 0; s < of_set.size(); ++s)
+    for (const Quantity each : kQuantities) alike[key_of(s, each)] += of_set[s].of(each);
   // Those that their own unknowns meet tell nothing.
   std::erase_if(alike, [](const auto& each) {
     return each.second.freedom < kDiagnosis.rows.fewest_freedoms;
   });
-  std::vector<double> unlike(data.sets.size(), 1);
+  std::vector<Scale> unlike(data.sets.size());
   const LeftOfRows *least = nullptr, *most = nullptr;
   double squares = 0, freedom = 0;
   for (auto& [key, left] : alike) {
@@ -110,9 +118,12 @@ std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& ro
       std::log(most->variance / least->variance) <=
           kDiagnosis.rows.unlike * std::hypot(least->log_sigma(), most->log_sigma()))
     return unlike;
+  const auto over_all = [&](size_t s, Quantity quantity) {
+    const auto found = alike.find(key_of(s, quantity));
+    return found == alike.end() ? 1 : std::sqrt(found->second.variance * freedom / squares);
+  };
   for (size_t s = 0; s < unlike.size(); ++s)
-    if (const auto found = alike.find(key_of(s)); found != alike.end())
-      unlike[s] = found->second.variance * freedom / squares;
+    unlike[s] = {over_all(s, Quantity::length), over_all(s, Quantity::angle)};
   return unlike;
 }
 
@@ -168,10 +179,17 @@ std::vector<int> equations_of(const DenseEquations& all, const std::vector<char>
   return rows;
 }
 
+void add_labels(const DenseEquations& all, const std::vector<int>& equations, DenseEquations& to) {
+  for (const int i : equations) {
+    to.row.push_back(all.row[static_cast<size_t>(i)]);
+    to.quantity.push_back(all.quantity[static_cast<size_t>(i)]);
+  }
+}
+
 DenseEquations kept(const DenseEquations& all, const std::vector<char>& take) {
   const std::vector<int> rows = equations_of(all, take);
-  DenseEquations some{all.W(rows, Eigen::all), all.y(rows), all.shift(rows, Eigen::all), {}};
-  for (const int i : rows) some.row.push_back(all.row[i]);
+  DenseEquations some{all.W(rows, Eigen::all), all.y(rows), all.shift(rows, Eigen::all), {}, {}};
+  add_labels(all, rows, some);
   return some;
 }
 

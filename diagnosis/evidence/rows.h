@@ -12,12 +12,12 @@ namespace selfcal {
 /// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one;
 /// of a set whose rows all judge, with no other of its kind, what its data sheet says. By set.
 std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
-/// Variance of the noise of each set over that of all, from what the best explanation leaves
-/// (`residuals`) of equations of `row`, each of which keeps the share `leaves` beyond the geometry:
-/// one for all sets of a method and stated noise but for those with rows enough for their own. 1
-/// where the rows do not tell them apart.
-std::vector<double> unlike_noise(const DataSet& data, const std::vector<int>& row,
-                                 const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves);
+/// Noise of each set's lengths and angles over that of all, by set, from what the best explanation
+/// leaves (`residuals`) of `rows` (without their columns), each of which keeps the share `leaves`
+/// beyond the geometry: one for all sets of a method and stated noise but for those with rows
+/// enough for their own. 1 where the rows do not tell them apart.
+std::vector<Scale> unlike_noise(const DataSet& data, const DenseEquations& rows,
+                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves);
 /// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
 /// repeats of the rows tell what the noise really is.
 std::vector<Scale> declared_noise(const DataSet& data);
@@ -28,6 +28,8 @@ std::vector<char> weighed_rows(const Observations& rows, double equations, doubl
 
 /// Those of the rows that `take` (by row) holds, and those that no row carries.
 std::vector<int> equations_of(const DenseEquations& all, const std::vector<char>& take);
+/// Of these equations of `all`, which row and quantity they are of.
+void add_labels(const DenseEquations& all, const std::vector<int>& equations, DenseEquations& to);
 /// The equations of the rows that `take` (by row) holds, and those that no row carries.
 DenseEquations kept(const DenseEquations& all, const std::vector<char>& take);
 

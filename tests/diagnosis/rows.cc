@@ -55,17 +55,24 @@ DataSet three_sets(const std::array<const char*, 3>& methods, int rows,
   return data;
 }
 
+bool are_alike(const std::vector<Scale>& noise) {
+  return std::ranges::all_of(noise,
+                             [](const Scale& each) { return each.length == 1 && each.angle == 1; });
+}
+
 class UnlikeNoise : public testing::Test {
  protected:
   static constexpr int kRows = 300;
   UnlikeNoise() {
-    std::iota(row.begin(), row.end(), 0);
+    rows.row.resize(kRows);
+    std::iota(rows.row.begin(), rows.row.end(), 0);
+    rows.quantity.assign(kRows, Quantity::length);
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
     for (double& each : noise) each = normal(random);
   }
 
-  std::vector<int> row = std::vector<int>(kRows);
+  DenseEquations rows;
   Eigen::VectorXd noise{kRows}, leaves = Eigen::VectorXd::Ones(kRows);
 };
 
@@ -73,19 +80,19 @@ TEST_F(UnlikeNoise, IsToldOfSetsThatTheRowsTellApart) {
   for (const char* method : {"sphere", "plane"}) {
     const DataSet data =
         three_sets({"plane", "plane", method}, kRows, [](int each) { return each % 3; });
-    EXPECT_EQ(unlike_noise(data, row, noise, leaves), std::vector<double>(3, 1.0));
+    EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves)));
 
     Eigen::VectorXd unlike = noise;
     for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] *= 4;
-    const std::vector<double> told = unlike_noise(data, row, unlike, leaves);
-    // The log of a variance that 100 freedoms tell by the median, to three sigma: 3 (5.4/100)^1/2.
-    EXPECT_NEAR(std::log(told[2] / told[0]), std::log(16), 0.7) << method;
-    EXPECT_NEAR(std::log(told[1] / told[0]), 0, 0.7) << method;
+    const std::vector<Scale> told = unlike_noise(data, rows, unlike, leaves);
+    // The log of a sigma that 100 freedoms tell by the median, to three sigma: 3/2 (5.4/100)^1/2.
+    EXPECT_NEAR(std::log(told[2].length / told[0].length), std::log(4), 0.35) << method;
+    EXPECT_NEAR(std::log(told[1].length / told[0].length), 0, 0.35) << method;
 
     // Sets that their own unknowns meet exactly say nothing of the others' noise.
     Eigen::VectorXd leave = leaves;
     for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] = leave[i] = 1e-9;
-    EXPECT_EQ(unlike_noise(data, row, unlike, leave), std::vector<double>(3, 1.0)) << method;
+    EXPECT_TRUE(are_alike(unlike_noise(data, rows, unlike, leave))) << method;
   }
 }
 
@@ -93,9 +100,22 @@ TEST_F(UnlikeNoise, IsOneForSetsOfFewRows) {
   const DataSet data = three_sets({"plane", "plane", "plane"}, kRows,
                                   [](int each) { return each < 30 ? each % 2 : 2; });
   noise.head(30) *= 4;
-  const std::vector<double> told = unlike_noise(data, row, noise, leaves);
-  EXPECT_EQ(told[0], told[1]);
-  EXPECT_GT(told[0], 4 * told[2]);
+  const std::vector<Scale> told = unlike_noise(data, rows, noise, leaves);
+  EXPECT_EQ(told[0].length, told[1].length);
+  EXPECT_GT(told[0].length, 2 * told[2].length);
+}
+
+TEST_F(UnlikeNoise, IsToldOfAnglesBesideTheLengthsOfTheSameRows) {
+  const DataSet data =
+      three_sets({"location", "location", "location"}, kRows, [](int each) { return each / 50; });
+  for (int i = 0; i < kRows; ++i) {
+    rows.row[static_cast<size_t>(i)] = i / 2;
+    if (i % 2 == 0) rows.quantity[static_cast<size_t>(i)] = Quantity::angle;
+  }
+  EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves)));
+  for (Eigen::Index i = 0; i < kRows; i += 2) noise[i] /= 4;
+  for (const Scale& each : unlike_noise(data, rows, noise, leaves))
+    EXPECT_NEAR(std::log(each.length / each.angle), std::log(4), 0.5);
 }
 
 TEST(PooledNoise, IsOneForSetsOfAKindAndTheDataSheetsWhereAllRowsJudge) {
@@ -128,10 +148,12 @@ TEST(Kept, HoldsWhatNoRowCarries) {
   all.y = Eigen::Vector3d(1, 2, 3);
   all.shift.setZero(3, 3);
   all.row = {0, 1, -1};
+  all.quantity = {Quantity::length, Quantity::angle, Quantity::length};
   const DenseEquations some = kept(all, {0, 1});
   EXPECT_EQ(some.row, (std::vector<int>{1, -1}));
   EXPECT_EQ(some.y, Eigen::Vector2d(2, 3));
   EXPECT_EQ(some.W(1, 2), 1);
+  EXPECT_EQ(some.quantity, (std::vector{Quantity::angle, Quantity::length}));
 }
 
 }  // namespace
