@@ -1,5 +1,6 @@
 #include "diagnosis/report/warnings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnosis/constants.h"
@@ -28,21 +29,16 @@ std::string of_undecided(const HoldoutValidation& validation) {
 
 /// With everything found in the model, which may be what a gear alone would have stood for.
 std::string of_gears(const HoldoutValidation& validation) {
-  std::string gears;
-  const std::vector<Parameter>& parameters = validation.model->parameters();
   const Fit& fitted = validation.all.fitted;
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    const double off = fitted.state.xi[at] - parameters[i].nominal;
-    if (parameters[i].part == Part::gear &&
-        std::abs(off) > kDiagnosis.report.gear_sigmas * std::sqrt(fitted.covariance(at, at)))
-      gears += (gears.empty() ? "" : ", ") + parameters[i].name + " " +
-               format_number(std::round(1e6 * off)) + " ppm";
-  }
-  if (gears.empty()) return {};
-  return "gear ratios are free here, so that none that is off is taken for a cause; off by more "
-         "than three sigma: " +
-         gears;
+  const auto parameters = static_cast<Eigen::Index>(validation.model->parameters().size());
+  return warning_of_gears(*validation.model, fitted.state.xi,
+                          fitted.covariance.diagonal().head(parameters).cwiseSqrt());
+}
+
+bool slides(const Robot& robot, const std::string& frame) {
+  return std::ranges::any_of(robot.joints(), [&](const Joint& each) {
+    return each.name == frame && each.quantity == Quantity::length;
+  });
 }
 
 std::string stated_noise(const Set& set) {
@@ -90,6 +86,36 @@ std::string of_order(const DataSet& data) {
 }
 
 }  // namespace
+
+std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
+                             const Eigen::VectorXd& sigma) {
+  const double sigmas = kDiagnosis.report.gear_sigmas;
+  std::string gears;
+  std::vector<Eigen::Index> sliding;
+  bool alike = true;
+  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
+    const Parameter& gear = robot.parameters()[static_cast<std::size_t>(i)];
+    if (gear.part != Part::gear) continue;
+    const double off = xi[i] - gear.nominal;
+    const bool is_off = std::abs(off) > sigmas * sigma[i];
+    if (is_off)
+      gears += (gears.empty() ? "" : ", ") + gear.name + " " +
+               format_number(std::round(1e6 * off)) + " ppm";
+    if (!slides(robot, gear.frame)) continue;
+    for (const Eigen::Index other : sliding)
+      alike = alike && std::abs(off - (xi[other] - robot.parameters()[other].nominal)) <
+                           sigmas * std::hypot(sigma[i], sigma[other]);
+    alike = alike && is_off;
+    sliding.push_back(i);
+  }
+  if (gears.empty()) return {};
+  return "gear ratios are free here, so that none that is off is taken for a cause; off by more "
+         "than three sigma: " +
+         gears +
+         (alike && sliding.size() > 1 ? "; those of all sliding joints by as much: an instrument "
+                                        "whose scale is off looks the same"
+                                      : "");
+}
 
 std::string warning_of_own_effects(const Robot& robot) {
   std::string names;

@@ -20,6 +20,12 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
 /// That the effects of the robot's own file are not used; empty where it has none.
 std::string warning_of_own_effects(const Robot& robot);
 
+/// Gear ratios that `xi` puts off the maker's by more than three `sigma` (both by parameter), and
+/// whether all sliding joints' are off alike, as the scale of an instrument would be; empty where
+/// none is.
+std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
+                             const Eigen::VectorXd& sigma);
+
 /// What the validation rows say of the named cause, and of the corrected model with everything
 /// found, where that is not plain; empty where it is.
 std::string warning_of_gap(const Diagnosis& diagnosis);

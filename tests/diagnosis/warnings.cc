@@ -7,6 +7,7 @@
 #include "diagnosis/findings.h"
 #include "kinematics/corrected_robot.h"
 #include "tests/diagnosis/two_sessions.h"
+#include "tests/kinematics/parsed_robot.h"
 
 namespace selfcal {
 namespace {
@@ -27,6 +28,27 @@ TEST(Warnings, NameTheEffectsOfTheRobotsFileThatAreNotUsed) {
   const auto corrected = correct(sessions.robot, {entry}, {}, problems);
   ASSERT_NE(corrected, nullptr);
   EXPECT_THAT(warning_of_own_effects(*corrected), HasSubstr("not used (joint_coupling@j3)"));
+}
+
+TEST(Warnings, TakeSlidingJointsThatAreOffAlikeForAnInstrumentsScale) {
+  const auto robot = robot_of(
+      "{robot: r, kind: serial, frames: [{name: base, joint: fixed}, {name: a, joint: prismatic, "
+      "alpha: 1.5, limits: [0, 1]}, {name: b, joint: prismatic, alpha: 1.5, limits: [0, 1]}, "
+      "{name: c, joint: revolute, alpha: 1.5, limits: [-3, 3]}, {name: tool, joint: fixed, d: "
+      "0.1}]}");
+  const auto warning = [&](double a, double b, double c) {
+    Eigen::VectorXd xi = values(*robot);
+    for (const auto& [name, off] :
+         {std::pair("a.gear", a), std::pair("b.gear", b), std::pair("c.gear", c)})
+      xi[find_parameter(*robot, name)] += off;
+    return warning_of_gears(*robot, xi, Eigen::VectorXd::Constant(xi.size(), 1e-5));
+  };
+  EXPECT_THAT(warning(2e-5, 0, 2e-5), IsEmpty());
+  EXPECT_THAT(warning(1e-4, 1.2e-4, 0), AllOf(HasSubstr("K1 100 ppm, K2 120 ppm"),
+                                              HasSubstr("all sliding joints by as much")));
+  EXPECT_THAT(warning(1e-4, 2e-4, 0), Not(HasSubstr("sliding")));
+  EXPECT_THAT(warning(1e-4, 2e-5, 0), Not(HasSubstr("sliding")));
+  EXPECT_THAT(warning(0, 0, 1e-4), AllOf(HasSubstr("K3 100 ppm"), Not(HasSubstr("sliding"))));
 }
 
 Diagnosis named(double before, double after, double least) {
