@@ -11,6 +11,13 @@ namespace selfcal {
 namespace {
 
 constexpr double kPlainLeast = 1e-6, kPlainMost = 1e9;
+constexpr std::size_t kMostShown = 2000, kFirstShown = 1000, kLastShown = 300;  // bytes
+
+/// The first byte at or behind `at` that begins a character (UTF-8).
+std::size_t start_of_character(std::string_view text, std::size_t at) {
+  while (at < text.size() && (text[at] & 0xC0) == 0x80) ++at;
+  return at;
+}
 
 /// The text with each number that has a positive power of ten below kPlainMost written out.
 std::string written_out(std::string text) {
@@ -106,6 +113,12 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string shown(std::string_view text) {
+  if (text.size() > kMostShown) {
+    const std::size_t end = start_of_character(text, kFirstShown);
+    const std::size_t on = start_of_character(text, text.size() - kLastShown);
+    return shown(text.substr(0, end)) + " … (" + std::to_string(on - end) + " bytes left out) … " +
+           shown(text.substr(on));
+  }
   std::string harmless;
   while (!text.empty()) {
     const std::size_t control = text.front() == '\n' ? 0 : length_of_control(text);

@@ -35,7 +35,8 @@ std::string listed(const std::vector<std::string>& names);
 /// an escape. No name has one.
 bool has_control(std::string_view text);
 
-/// `text` as a terminal may have it: lines kept, other control characters as '?'.
+/// `text` as a terminal may have it: lines kept, other control characters as '?', and of more than
+/// 2000 bytes the first thousand and the last three hundred.
 std::string shown(std::string_view text);
 
 }  // namespace selfcal

@@ -51,5 +51,18 @@ TEST(Readable, HidesWhatATerminalWouldObey) {
             "a?[31mb\nc?d");
 }
 
+TEST(Readable, LeavesOutTheMiddleOfWhatNobodyReads) {
+  std::string text = "row 2: no set is called '";
+  for (int i = 0; i < 5000; ++i) text += "ä";
+  text += "'; known: table";
+  const std::string told = shown(text);
+  EXPECT_LT(told.size(), 1400U);
+  EXPECT_TRUE(told.starts_with("row 2: no set is called 'ää"));
+  EXPECT_TRUE(told.ends_with("ä'; known: table"));
+  EXPECT_NE(told.find("ä … (8740 bytes left out) … ä"), std::string::npos) << told;
+  const std::string whole(2000, 'x');
+  EXPECT_EQ(shown(whole), whole);
+}
+
 }  // namespace
 }  // namespace selfcal
