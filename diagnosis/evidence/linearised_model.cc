@@ -102,17 +102,14 @@ void LinearisedModel::bound_noise() {
 }
 
 double LinearisedModel::least() const {
-  const std::vector<Scale> declared = declared_noise(data_);
+  const std::vector<Scale> least = least_of_sets();
   double sum = 0, rows = 0;
-  for (size_t s = 0; s < noise_.size(); ++s) {
-    if (adjusted_.fitted.rows[s] == 0) continue;
-    const double share = data_.sets[s].method->has_lengths()
-                             ? declared[s].length / (relative_[s].length * noise_[s].length)
-                             : declared[s].angle / (relative_[s].angle * noise_[s].angle);
-    sum += adjusted_.fitted.rows[s] * std::pow(share, 2);
+  for (size_t s = 0; s < least.size(); ++s) {
+    const double share = data_.sets[s].method->has_lengths() ? least[s].length : least[s].angle;
+    sum += adjusted_.fitted.rows[s] * share * share;
     rows += adjusted_.fitted.rows[s];
   }
-  return rows > 0 ? sum / rows / (scale_ * scale_) : 0;
+  return rows > 0 ? sum / rows : 0;
 }
 
 Eigen::VectorXd LinearisedModel::scales(const std::vector<int>& equations) const {
@@ -259,11 +256,20 @@ void LinearisedModel::take_back(const std::vector<char>& rows) {
     if (held_[row] && rows[row]) outlier_[row] = 0;
 }
 
+std::vector<Scale> LinearisedModel::least_of_sets() const {
+  std::vector<Scale> least = declared_noise(data_);
+  for (size_t s = 0; s < least.size(); ++s) {
+    if (least[s].length > 0) least[s].length /= scale_ * relative_[s].length * noise_[s].length;
+    if (least[s].angle > 0) least[s].angle /= scale_ * relative_[s].angle * noise_[s].angle;
+  }
+  return least;
+}
+
 bool LinearisedModel::refine(const Eigen::VectorXd& residuals, double variance) {
   const DenseEquations rows = kept();
   const std::vector<Scale> unlike =
       unlike_noise(data_, rows, residuals(equations_of(all_, taking_part())),
-                   geometry_leaves(whitened_geometry()));
+                   geometry_leaves(whitened_geometry()), least_of_sets());
   const bool alike = std::ranges::all_of(
       unlike, [](const Scale& each) { return each.length == 1 && each.angle == 1; });
   Eigen::VectorXd left = residuals;

@@ -105,6 +105,8 @@ class LinearisedModel {
   Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.
   void bound_noise();
+  /// The least that the data sheets allow of each set's noise, over what it is taken for.
+  std::vector<Scale> least_of_sets() const;
   /// Variance of the noise, at least, over what it is taken for.
   double least() const;
   /// What the noise of these equations of all() is taken for, at a scale of one.

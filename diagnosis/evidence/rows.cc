@@ -64,11 +64,12 @@ namespace {
 /// What is left of rows that have one noise.
 struct LeftOfRows {
   std::vector<double> sizes;
-  double freedom = 0, variance = 1;
+  double freedom = 0, least = 0, variance = 1;
 
   void operator+=(const LeftOfRows& other) {
     sizes.insert(sizes.end(), other.sizes.begin(), other.sizes.end());
     freedom += other.freedom;
+    least = std::max(least, other.least);
   }
   double log_sigma() const { return std::sqrt(kOfMedian / freedom); }
 };
@@ -76,7 +77,8 @@ struct LeftOfRows {
 }  // namespace
 
 std::vector<Scale> unlike_noise(const DataSet& data, const DenseEquations& rows,
-                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves) {
+                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves,
+                                const std::vector<Scale>& least) {
   struct LeftOfSet {
     LeftOfRows lengths, angles;
     LeftOfRows& of(Quantity quantity) { return quantity == Quantity::angle ? angles : lengths; }
@@ -97,26 +99,30 @@ std::vector<Scale> unlike_noise(const DataSet& data, const DenseEquations& rows,
   constexpr std::array kQuantities = {Quantity::length, Quantity::angle};
   std::map<Key, LeftOfRows> alike;
   for (size_t s = 0; s < of_set.size(); ++s)
-    for (const Quantity each : kQuantities) alike[key_of(s, each)] += of_set[s].of(each);
+    for (const Quantity each : kQuantities) {
+      of_set[s].of(each).least = least[s].of(each);
+      alike[key_of(s, each)] += of_set[s].of(each);
+    }
   // Those that their own unknowns meet tell nothing.
   std::erase_if(alike, [](const auto& each) {
     return each.second.freedom < kDiagnosis.rows.fewest_freedoms;
   });
   std::vector<Scale> unlike(data.sets.size());
-  const LeftOfRows *least = nullptr, *most = nullptr;
+  const LeftOfRows *quietest = nullptr, *loudest = nullptr;
   double squares = 0, freedom = 0;
   for (auto& [key, left] : alike) {
     const double share = left.freedom / static_cast<double>(left.sizes.size());
-    left.variance =
-        std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(left.sizes)), 2) / share;
+    left.variance = std::max(
+        std::pow(left.least, 2),
+        std::pow(kDiagnosis.rows.median_to_sigma * median(std::move(left.sizes)), 2) / share);
     squares += left.freedom * left.variance;
     freedom += left.freedom;
-    if (!least || left.variance < least->variance) least = &left;
-    if (!most || left.variance > most->variance) most = &left;
+    if (!quietest || left.variance < quietest->variance) quietest = &left;
+    if (!loudest || left.variance > loudest->variance) loudest = &left;
   }
-  if (!least || least->variance <= 0 ||
-      std::log(most->variance / least->variance) <=
-          kDiagnosis.rows.unlike * std::hypot(least->log_sigma(), most->log_sigma()))
+  if (!quietest || quietest->variance <= 0 ||
+      std::log(loudest->variance / quietest->variance) <=
+          kDiagnosis.rows.unlike * std::hypot(quietest->log_sigma(), loudest->log_sigma()))
     return unlike;
   const auto over_all = [&](size_t s, Quantity quantity) {
     const auto found = alike.find(key_of(s, quantity));

@@ -15,9 +15,11 @@ std::vector<Scale> pooled_noise(const DataSet& data, const Fit& fitted);
 /// Noise of each set's lengths and angles over that of all, by set, from what the best explanation
 /// leaves (`residuals`) of `rows` (without their columns), each of which keeps the share `leaves`
 /// beyond the geometry: one for all sets of a method and stated noise but for those with rows
-/// enough for their own. 1 where the rows do not tell them apart.
+/// enough for their own, and none below `least` (by set, in what the residuals are whitened by). 1
+/// where the rows do not tell them apart.
 std::vector<Scale> unlike_noise(const DataSet& data, const DenseEquations& rows,
-                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves);
+                                const Eigen::VectorXd& residuals, const Eigen::VectorXd& leaves,
+                                const std::vector<Scale>& least);
 /// What the data sheet says, by set, which the noise is at least; 0 where it says nothing and where
 /// repeats of the rows tell what the noise really is.
 std::vector<Scale> declared_noise(const DataSet& data);

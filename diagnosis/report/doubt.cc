@@ -67,9 +67,16 @@ std::string impossible_sign(const std::vector<CauseResult>& named) {
   return {};
 }
 
-std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
-  if (diagnosis.noise <= gross_misfit(linearised.geometry(), true)) return {};
-  return "calibration and all effects leave " + millimetres(diagnosis.noise) +
+std::string beyond_tolerances(const LinearisedModel& linearised, const DataSet& data,
+                              const Diagnosis& diagnosis) {
+  double angle = 0;
+  const std::vector<Scale> noise = linearised.noise_of_sets();
+  for (std::size_t s = 0; s < noise.size(); ++s)
+    if (data.sets[s].method->has_angles()) angle = std::max(angle, noise[s].angle);
+  const bool lengths = diagnosis.noise > gross_misfit(linearised.geometry(), true);
+  if (!lengths && angle <= gross_misfit(linearised.geometry(), false)) return {};
+  return "calibration and all effects leave " +
+         (lengths ? millimetres(diagnosis.noise) : in_readable_unit(angle, "rad")) +
          ", which no tolerance of the maker explains";
 }
 
@@ -197,12 +204,11 @@ std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& r
   return same;
 }
 
-/// The files state a noise far beyond what is left.
+}  // namespace
+
 bool may_state_millimetres(const Gap& gap) {
   return gap.noise_floor > kDiagnosis.report.beyond_sheet * gap.rms_before;
 }
-
-}  // namespace
 
 std::string closes_nothing(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
@@ -226,7 +232,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;
-  if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
+  if (std::string why = beyond_tolerances(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
   if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = forces_that_never_were(linearised, data, diagnosis); !why.empty())

@@ -29,6 +29,9 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
 /// no less of them. Empty where it is worth more.
 std::string closes_nothing(const Diagnosis& diagnosis);
 
+/// The files state a noise far beyond what calibration leaves.
+bool may_state_millimetres(const Gap& gap);
+
 /// Of what is named beside the verdict, springs of the wrong sign are left out: the shape of the
 /// verdict's own law makes such. Says which and why; nothing where the verdict is one itself.
 std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict);

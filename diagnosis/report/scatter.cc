@@ -27,24 +27,26 @@ std::vector<Scatter> scatter_of_sets(const LinearisedModel& linearised, const Da
   const std::vector<Scale> noise = linearised.noise_of_sets();
   const std::vector<RowResidual> residuals = linearised.residuals_of_rows();
   std::vector<Scatter> list;
-  for (std::size_t s = 0; s < data.sets.size(); ++s) {
-    const Set& set = data.sets[s];
-    const bool lengths = set.method->has_lengths();
-    const double declared = lengths ? set.noise : set.noise_angle;
-    const double found = lengths ? noise[s].length : noise[s].angle;
-    if (declared <= 0 || set.noise_joints > 0) continue;
+  const auto add = [&](int set, bool lengths, double declared, double found,
+                       const RepeatSpread& repeats) {
+    if (declared <= 0) return;
     auto alike = std::ranges::find_if(list, [&](const Scatter& each) {
       return each.lengths == lengths && each.declared == declared && each.found == found;
     });
     if (alike == list.end())
       alike = list.insert(alike,
                           {.sets = {}, .lengths = lengths, .declared = declared, .found = found});
-    alike->sets.push_back(static_cast<int>(s));
-    const RepeatSpreads spreads =
-        repeat_spreads(data, static_cast<int>(s), residuals, linearised.outlier());
-    const RepeatSpread& repeats = lengths ? spreads.length : spreads.angle;
+    alike->sets.push_back(set);
     alike->repeats.squares += repeats.squares;
     alike->repeats.freedom += repeats.freedom;
+  };
+  for (std::size_t s = 0; s < data.sets.size(); ++s) {
+    const Set& set = data.sets[s];
+    if (set.noise_joints > 0) continue;
+    const int at = static_cast<int>(s);
+    const RepeatSpreads repeats = repeat_spreads(data, at, residuals, linearised.outlier());
+    if (set.method->has_lengths()) add(at, true, set.noise, noise[s].length, repeats.length);
+    if (set.method->has_angles()) add(at, false, set.noise_angle, noise[s].angle, repeats.angle);
   }
   return list;
 }
@@ -55,7 +57,11 @@ std::string scatter_in_words(const Scatter& scatter, const DataSet& data) {
   };
   std::vector<std::string> names;
   for (const int s : scatter.sets) names.push_back(data.sets[static_cast<std::size_t>(s)].name);
-  return "the rows of " + listed(names) + " scatter by " + figure(scatter.found) +
+  const bool beside =
+      !scatter.lengths &&
+      data.sets[static_cast<std::size_t>(scatter.sets.front())].method->has_lengths();
+  return (beside ? "the angles of " : "the rows of ") + listed(names) + " scatter by " +
+         figure(scatter.found) +
          " around the model that explains them best, and their files state a noise of " +
          figure(scatter.declared) +
          (scatter.repeats.freedom > 0

@@ -24,7 +24,8 @@ struct Scatter {
   RepeatSpread repeats = {};  ///< by immediate repeats alone
 };
 
-/// Of the sets whose files state a noise, and none of the joints' readings besides.
+/// Of the sets whose files state a noise, and none of the joints' readings besides; lengths and
+/// angles of one set are two.
 std::vector<Scatter> scatter_of_sets(const LinearisedModel& linearised, const DataSet& data);
 
 /// "the rows of table and wall scatter by 0.2 mm around the model that explains them best, and

@@ -5,6 +5,7 @@
 
 #include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
+#include "diagnosis/report/doubt.h"
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/report/uneven_noise.h"
 #include "diagnosis/search/causes.h"
@@ -49,7 +50,7 @@ std::string stated_noise(const Set& set) {
   return text;
 }
 
-std::string of_noise(const LinearisedModel& linearised, const DataSet& data) {
+std::string of_noise(const LinearisedModel& linearised, const DataSet& data, const Gap& gap) {
   std::string sets;
   for (const int s : linearised.quieter())
     sets +=
@@ -57,7 +58,8 @@ std::string of_noise(const LinearisedModel& linearised, const DataSet& data) {
   if (sets.empty()) return {};
   return "the noise is taken from the data sheet, of " + sets +
          ": calibration leaves less there, and no row is repeated that would tell what it really "
-         "is";
+         "is" +
+         (may_state_millimetres(gap) ? "; is it in metres, and 1 sigma?" : "");
 }
 
 std::string of_masses(const LinearisedModel& linearised) {
@@ -158,7 +160,7 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
   std::vector<std::string> list;
   for (const std::string& each :
        {of_fits(validation), of_undecided(validation), of_gears(validation),
-        of_noise(linearised, data), warning_of_scatter(linearised, data, diagnosis),
+        of_noise(linearised, data, diagnosis.gap), warning_of_scatter(linearised, data, diagnosis),
         warning_of_uneven_noise(linearised, data, diagnosis), of_order(data),
         of_masses(linearised)})
     if (!each.empty()) list.push_back(each);

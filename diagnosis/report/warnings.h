@@ -12,7 +12,7 @@ namespace selfcal {
 struct Diagnosis;
 
 /// Fits that failed, gear ratios that were off, noise that only a data sheet tells or that is
-/// beyond it, rows without a time. `diagnosis` is read for its verdict alone.
+/// beyond it, rows without a time. `diagnosis` is read for its verdict and gap alone.
 std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
                                      const HoldoutValidation& validation,
                                      const Diagnosis& diagnosis);

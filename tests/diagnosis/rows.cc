@@ -73,6 +73,7 @@ class UnlikeNoise : public testing::Test {
   }
 
   DenseEquations rows;
+  std::vector<Scale> none = std::vector<Scale>(3, Scale{0, 0});
   Eigen::VectorXd noise{kRows}, leaves = Eigen::VectorXd::Ones(kRows);
 };
 
@@ -80,11 +81,11 @@ TEST_F(UnlikeNoise, IsToldOfSetsThatTheRowsTellApart) {
   for (const char* method : {"sphere", "plane"}) {
     const DataSet data =
         three_sets({"plane", "plane", method}, kRows, [](int each) { return each % 3; });
-    EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves)));
+    EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves, none)));
 
     Eigen::VectorXd unlike = noise;
     for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] *= 4;
-    const std::vector<Scale> told = unlike_noise(data, rows, unlike, leaves);
+    const std::vector<Scale> told = unlike_noise(data, rows, unlike, leaves, none);
     // The log of a sigma that 100 freedoms tell by the median, to three sigma: 3/2 (5.4/100)^1/2.
     EXPECT_NEAR(std::log(told[2].length / told[0].length), std::log(4), 0.35) << method;
     EXPECT_NEAR(std::log(told[1].length / told[0].length), 0, 0.35) << method;
@@ -92,7 +93,7 @@ TEST_F(UnlikeNoise, IsToldOfSetsThatTheRowsTellApart) {
     // Sets that their own unknowns meet exactly say nothing of the others' noise.
     Eigen::VectorXd leave = leaves;
     for (Eigen::Index i = 2; i < kRows; i += 3) unlike[i] = leave[i] = 1e-9;
-    EXPECT_TRUE(are_alike(unlike_noise(data, rows, unlike, leave))) << method;
+    EXPECT_TRUE(are_alike(unlike_noise(data, rows, unlike, leave, none))) << method;
   }
 }
 
@@ -100,7 +101,7 @@ TEST_F(UnlikeNoise, IsOneForSetsOfFewRows) {
   const DataSet data = three_sets({"plane", "plane", "plane"}, kRows,
                                   [](int each) { return each < 30 ? each % 2 : 2; });
   noise.head(30) *= 4;
-  const std::vector<Scale> told = unlike_noise(data, rows, noise, leaves);
+  const std::vector<Scale> told = unlike_noise(data, rows, noise, leaves, none);
   EXPECT_EQ(told[0].length, told[1].length);
   EXPECT_GT(told[0].length, 2 * told[2].length);
 }
@@ -112,10 +113,12 @@ TEST_F(UnlikeNoise, IsToldOfAnglesBesideTheLengthsOfTheSameRows) {
     rows.row[static_cast<size_t>(i)] = i / 2;
     if (i % 2 == 0) rows.quantity[static_cast<size_t>(i)] = Quantity::angle;
   }
-  EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves)));
+  EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves, none)));
   for (Eigen::Index i = 0; i < kRows; i += 2) noise[i] /= 4;
-  for (const Scale& each : unlike_noise(data, rows, noise, leaves))
+  for (const Scale& each : unlike_noise(data, rows, noise, leaves, none))
     EXPECT_NEAR(std::log(each.length / each.angle), std::log(4), 0.5);
+  // Data sheets that say that the angles are as noisy.
+  EXPECT_TRUE(are_alike(unlike_noise(data, rows, noise, leaves, std::vector<Scale>(3, {1, 1}))));
 }
 
 TEST(PooledNoise, IsOneForSetsOfAKindAndTheDataSheetsWhereAllRowsJudge) {

@@ -54,7 +54,7 @@ std::map<std::string, Figure> figures_of(const json& diagnosis, const json& effe
       std::ranges::any_of(diagnosis.at("verdict").at("named"),
                           [&](const json& each) { return each.at("effect") == effect; });
   for (const json& each : diagnosis.at("candidates")) {
-    const bool there = std::ranges::all_of(each.at("where"), [&](const json& place) {
+    const bool there = std::ranges::any_of(each.at("where"), [&](const json& place) {
       return std::ranges::find(places, place) != places.end();
     });
     if (each.at("effect") != effect || !there) continue;
@@ -73,6 +73,15 @@ bool is_the_same(const Figure& spoiled, const Figure& sound) {
   return (sound.named || sound.probability >= 0.5) &&
          (off < kSigmas * std::hypot(spoiled.sigma, sound.sigma) ||
           off < kShare * std::max(std::abs(spoiled.value), std::abs(sound.value)));
+}
+
+/// Whether the sound set's cause has other figures of the same place: another wave of one gear is
+/// no other cause.
+bool is_there(const std::map<std::string, Figure>& sound, const std::string& name) {
+  const std::string place = name.substr(0, name.find('.') + 1);
+  return std::ranges::any_of(sound, [&](const auto& each) {
+    return each.first.starts_with(place) && (each.second.named || each.second.probability >= 0.5);
+  });
 }
 
 json json_of(const std::filesystem::path& path) { return json::parse(text_of(path)); }
@@ -197,6 +206,7 @@ TEST_P(Slips, NeverNameACauseThatIsNotThere) {
     if (gives_way(effect) && names_what_gives_way(sound)) continue;
     const auto truly = figures_of(sound, effect, named.at("where"));
     for (const auto& [name, figure] : figures_of(diagnosis, effect, named.at("where"))) {
+      if (!truly.contains(name) && is_there(truly, name)) continue;
       ASSERT_TRUE(truly.contains(name)) << effect << ": " << name << "\n" << ran.out;
       EXPECT_TRUE(is_the_same(figure, truly.at(name)))
           << effect << ": " << name << " of " << figure.value << " (" << figure.sigma << "), p "
