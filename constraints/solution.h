@@ -183,9 +183,11 @@ struct RobotScale {
 };
 
 /// Sources of doubt: what the rows' noise makes, and what halves of the rows differ by beyond that,
-/// which no geometry explains.
+/// which no geometry explains: halves in time, and of the configurations, whose laws the geometry
+/// imitates.
 inline constexpr std::string_view kNoiseOfRows = "noise of the rows";
 inline constexpr std::string_view kSharedErrors = "rows that share errors";
+inline constexpr std::string_view kImitatedLaws = "laws that the geometry imitates";
 inline constexpr std::string_view kWhatWasGiven = "what was given";
 
 /// A part of the end position's doubt in the workspace, 1 sigma (m); the squares add up.

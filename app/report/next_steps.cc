@@ -19,9 +19,14 @@ double doubt_from(const Solution& solution, std::string_view source) {
   return found == budget.end() ? 0 : found->sigma;
 }
 
+/// What halves of the rows differ by.
+double doubt_of_structure(const Solution& solution) {
+  return std::hypot(doubt_from(solution, kSharedErrors), doubt_from(solution, kImitatedLaws));
+}
+
 /// Rows near each other err alike, more than by chance, or scatter more than they should.
 bool structured(const Solution& solution) {
-  return doubt_from(solution, kSharedErrors) > doubt_from(solution, kNoiseOfRows) ||
+  return doubt_of_structure(solution) > doubt_from(solution, kNoiseOfRows) ||
          std::ranges::any_of(solution.sets, &SetResult::unexplained);
 }
 
@@ -54,7 +59,7 @@ std::string rows_to_add(const std::vector<Note>& unexcited) {
 
 /// Against the largest part of the end position's doubt.
 std::string what_helps(const Solution& solution) {
-  const double shared = doubt_from(solution, kSharedErrors);
+  const double shared = doubt_of_structure(solution);
   const bool of_rows = std::ranges::all_of(
       solution.uncertainty.budget, [&](const BudgetLine& each) { return each.sigma <= shared; });
   if (shared > 0 && of_rows)

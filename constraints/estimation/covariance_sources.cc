@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "constraints/equations/resolution.h"
 #include "constraints/estimation/half_samples.h"
@@ -138,14 +139,33 @@ double squared(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
   return std::pow(endpoint_rms(weight, C.topLeftCorner(weight.rows(), weight.cols())), 2);
 }
 
-/// What halves of the rows differ by more than they should, `by_repeats` being known.
-Eigen::MatrixXd shared_errors(const Equations& equations, const Adjusted& adjusted,
-                              const Eigen::MatrixXd& weight, const Eigen::MatrixXd& by_repeats) {
-  if (weight.isZero(0)) return Eigen::MatrixXd::Zero(by_repeats.rows(), by_repeats.cols());
-  const HalfSamples halves = half_samples(equations, adjusted);
-  const double seen = squared(weight, halves.seen);
-  const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);
-  return std::max(0.0, 1 - kMoreThanChance * expected / seen) * halves.seen;
+/// What halves of the rows differ by more than they should.
+struct BeyondChance {
+  Eigen::MatrixXd in_time;
+  Eigen::MatrixXd beside;  ///< what those of the configurations show more of than these
+};
+
+/// `by_repeats` being known.
+BeyondChance beyond_chance(const Equations& equations, const Adjusted& adjusted,
+                           const Eigen::MatrixXd& weight, const Eigen::MatrixXd& by_repeats) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(by_repeats.rows(), by_repeats.cols());
+  BeyondChance found{none, none};
+  if (weight.isZero(0)) return found;
+  double most = 0;
+  bool in_time = true;
+  for (const HalfSamples& halves : half_samples(equations, adjusted)) {
+    const double seen = squared(weight, halves.seen);
+    const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);
+    const double beyond = seen - kMoreThanChance * expected;
+    if (std::exchange(in_time, false)) {
+      if (beyond > 0) found.in_time = beyond / seen * halves.seen;
+      most = squared(weight, found.in_time);
+    } else if (beyond > most) {
+      found.beside = (beyond - squared(weight, found.in_time)) / seen * halves.seen;
+      most = beyond;
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -160,15 +180,16 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   const std::vector<double> spreads = spreads_of_repeats(equations, adjusted.fitted);
   std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, spreads, noise);
   const Eigen::MatrixXd& by_repeats = sources.back().C;
-  Eigen::MatrixXd shared = shared_errors(equations, adjusted, weight, by_repeats);
+  BeyondChance halves = beyond_chance(equations, adjusted, weight, by_repeats);
   const double apart = squared(weight, noise);
-  const double together = squared(weight, shared) + squared(weight, by_repeats);
+  const double together = squared(weight, halves.in_time) + squared(weight, by_repeats);
   const Structure structure{apart > 0 ? 1 + together / apart : 1,
                             over_stated(equations, adjusted.fitted, spreads)};
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
   sources.push_back({kWhatWasGiven, posterior(equations, adjusted, R, true, structure) - exact});
-  sources.push_back({kSharedErrors, std::move(shared)});
+  sources.push_back({kSharedErrors, std::move(halves.in_time)});
+  sources.push_back({kImitatedLaws, std::move(halves.beside)});
   return sources;
 }
 

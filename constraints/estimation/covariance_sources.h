@@ -17,9 +17,9 @@ struct CovarianceSource {
 
 /// Noise of the rows (beside the rounding of the encoders and what repeats differ by, and what
 /// these have in common), the maker's tolerances, the scale where a length is held for it, what was
-/// given (see posterior.h), and what halves of the rows differ by beside all that, judged by the
-/// end position with `weight` (see endpoint_deviations()). `R` is whitened, with the columns beside
-/// the unknowns.
+/// given (see posterior.h), and what halves of the rows differ by beside all that, in time and by
+/// configuration, judged by the end position with `weight` (see endpoint_deviations()). `R` is
+/// whitened, with the columns beside the unknowns.
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
                                                  const Eigen::MatrixXd& weight);

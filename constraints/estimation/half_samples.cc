@@ -4,20 +4,26 @@
 //   s_h = C_h (R_h^T z_h + pull),   C_h = (R_h^T R_h + Lambda)^-1,   difference (s_1 - s_2) / 2,
 // whose square is expected to be, where the rows err apart and the truth is as the priors say,
 //   ((C_2 - C_1) Lambda (C_2 - C_1) + sum_h (C_h - C_h Lambda C_h)) / 4.
-// Rows soon after each other share what the model lacks (a region of the cell, a temperature, a
-// series); in a stretch they do so all together, and the halves show by how much.
+// Rows soon after each other, or near each other in the readings of a joint or in the cell, share
+// what the model lacks (a temperature, a series; a link that bends, a beam); in a half they do so
+// all together, and the halves show by how much.
 #include "constraints/estimation/half_samples.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
 constexpr int kStretches = 4;
+constexpr double kHardlyMoves = 0.02;  // of a joint's range
 /// The stretches that make the first half with the first one.
 constexpr std::array kSplits = {1, 2, 3};
 
@@ -37,6 +43,43 @@ std::vector<int> stretches(const Equations& equations) {
         of_row[static_cast<size_t>(row)] = kStretches * k++ / count;
   }
   return of_row;
+}
+
+/// By row of the data set, 0 or 1 as its `value` is less or more than in the middle of its set; a
+/// group stays whole. -1 of other rows.
+std::vector<int> sides(const Equations& equations, const Eigen::VectorXd& value) {
+  const Observations& rows = equations.data().rows;
+  std::vector<int> of_row(static_cast<size_t>(rows.rows()), -1);
+  for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s) {
+    const std::vector<SetPlan::Item>& items = equations.plan(s).items;
+    if (items.empty()) continue;
+    std::map<int, std::pair<double, double>> of_group;  // sum and count
+    for (const SetPlan::Item& item : items) {
+      auto& [sum, count] = of_group[rows.group[item.row]];
+      sum += value[item.row];
+      count += 1;
+    }
+    std::vector<double> mine;
+    for (const SetPlan::Item& item : items) {
+      const int group = rows.group[item.row];
+      mine.push_back(group < 0 ? value[item.row] : of_group[group].first / of_group[group].second);
+    }
+    const double middle = median(mine);
+    for (size_t i = 0; i < items.size(); ++i)
+      of_row[static_cast<size_t>(items[i].row)] = mine[i] > middle;
+  }
+  return of_row;
+}
+
+/// By row of the data set, where its body was (m, world); zero of rows that identify nothing.
+Eigen::MatrixXd where_rows_were(const Equations& equations, const State& state) {
+  Eigen::MatrixXd where = Eigen::MatrixXd::Zero(equations.data().rows.rows(), 3);
+  const std::vector<RowPlace> places = equations.places(state);
+  auto place = places.begin();
+  for (size_t s = 0; s < equations.data().sets.size(); ++s)
+    for (const SetPlan::Item& item : equations.plan(static_cast<int>(s)).items)
+      where.row(item.row) = (place++)->at.transpose();
+  return where;
 }
 
 /// What one half of the rows and the priors give.
@@ -64,10 +107,21 @@ HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Eigen
   return fit;
 }
 
-/// The systems of parts of the rows.
-class Parts {
+/// The system of the rows whose part is `taken`, not yet triangular.
+template <class Taken>
+Eigen::MatrixXd system_of(const Equations& equations, const Adjusted& adjusted,
+                          const std::vector<int>& part, Taken taken) {
+  Weighting weighting{adjusted.fitted.noise.used, adjusted.fitted.noise.outlier};
+  weighting.passed_over = true;
+  for (size_t row = 0; row < part.size(); ++row)
+    if (!taken(part[row])) weighting.outlier[row] = 1;
+  return equations.linearise(adjusted.fitted.state, weighting).R;
+}
+
+/// The systems of stretches of the rows.
+class Stretches {
  public:
-  Parts(const Equations& equations, const Adjusted& adjusted)
+  Stretches(const Equations& equations, const Adjusted& adjusted)
       : equations_(equations), adjusted_(adjusted), stretch_(stretches(equations)) {
     for (int k = 0; apart() && k < kStretches; ++k)
       each_.push_back(of([k](int stretch) { return stretch == k; }));
@@ -92,11 +146,7 @@ class Parts {
 
   template <class Taken>
   Eigen::MatrixXd of(Taken taken) const {
-    Weighting part{adjusted_.fitted.noise.used, adjusted_.fitted.noise.outlier};
-    part.passed_over = true;
-    for (size_t row = 0; row < stretch_.size(); ++row)
-      if (!taken(stretch_[row])) part.outlier[row] = 1;
-    return equations_.linearise(adjusted_.fitted.state, part).R;
+    return system_of(equations_, adjusted_, stretch_, taken);
   }
 
   const Equations& equations_;
@@ -105,29 +155,68 @@ class Parts {
   std::vector<Eigen::MatrixXd> each_;  ///< by stretch, where these are apart
 };
 
+/// Adds up splits of one kind.
+class Splits {
+ public:
+  Splits(const Equations& equations, const Adjusted& adjusted)
+      : equations_(equations),
+        adjusted_(adjusted),
+        lambda_(prior_precision(equations, adjusted.prior)) {}
+
+  /// The mean over pairs of systems of either half.
+  HalfSamples over(const std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>& splits) const {
+    const Eigen::Index n = equations_.columns(), of_robot = equations_.robot_columns();
+    HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
+    const auto count = static_cast<double>(splits.size());
+    for (const auto& [one, other] : splits) {
+      const HalfFit a = fit_of(equations_, adjusted_, one),
+                    b = fit_of(equations_, adjusted_, other);
+      const Eigen::VectorXd difference = (a.step - b.step) / 2;
+      result.seen += difference * difference.transpose() / count;
+      result.expected += (explained(b.C - a.C) + a.C.topRows(of_robot) - explained(a.C) +
+                          b.C.topRows(of_robot) - explained(b.C)) /
+                         (4 * count);
+    }
+    return result;
+  }
+
+ private:
+  Eigen::MatrixXd explained(const Eigen::MatrixXd& C) const {
+    return C.transpose() * lambda_.asDiagonal() * C;
+  }
+
+  const Equations& equations_;
+  const Adjusted& adjusted_;
+  Eigen::VectorXd lambda_;
+};
+
 }  // namespace
 
-HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted) {
-  const Eigen::Index n = equations.columns(), of_robot = equations.robot_columns();
-  const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
-  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
-  const auto explained = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
-    return C.transpose() * lambda.asDiagonal() * C;
-  };
-  const Parts parts(equations, adjusted);
+std::vector<HalfSamples> half_samples(const Equations& equations, const Adjusted& adjusted) {
+  const Splits splits(equations, adjusted);
+  const Stretches parts(equations, adjusted);
+  std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>> in_time;
   for (const int with : kSplits) {
     std::vector<int> left = {1, 2, 3};
     std::erase(left, with);
-    const HalfFit a = fit_of(equations, adjusted, parts.half(left[0], left[1])),
-                  b = fit_of(equations, adjusted, parts.half(0, with));
-    const Eigen::VectorXd difference = (a.step - b.step) / 2;
-    const Eigen::MatrixXd shrunk = b.C - a.C;
-    result.seen += difference * difference.transpose() / kSplits.size();
-    result.expected += (explained(shrunk) + a.C.topRows(of_robot) - explained(a.C) +
-                        b.C.topRows(of_robot) - explained(b.C)) /
-                       (4.0 * kSplits.size());
+    in_time.emplace_back(parts.half(left[0], left[1]), parts.half(0, with));
   }
-  return result;
+  std::vector<HalfSamples> list = {splits.over(in_time)};
+  const auto part_by = [&](const Eigen::VectorXd& value) {
+    const std::vector<int> side = sides(equations, value);
+    const auto half = [&](int which) {
+      return system_of(equations, adjusted, side, [which](int each) { return each == which; });
+    };
+    list.push_back(splits.over({{half(0), half(1)}}));
+  };
+  const Eigen::MatrixXd& q = equations.data().rows.q;
+  for (Eigen::Index j = 0; j < q.cols(); ++j)
+    if (q.col(j).maxCoeff() - q.col(j).minCoeff() >=
+        kHardlyMoves * equations.robot().joints()[static_cast<size_t>(j)].range())
+      part_by(q.col(j));
+  const Eigen::MatrixXd where = where_rows_were(equations, adjusted.fitted.state);
+  for (Eigen::Index a = 0; a < where.cols(); ++a) part_by(where.col(a));
+  return list;
 }
 
 }  // namespace selfcal

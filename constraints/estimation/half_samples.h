@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <vector>
 
 #include "constraints/estimation/adjustment.h"
 
@@ -16,8 +17,10 @@ struct HalfSamples {
   Eigen::MatrixXd expected;
 };
 
-/// Linearised at `adjusted.fitted`. Each set's rows are taken as four stretches in the order of
-/// their times, and every way to make two halves of them is one split.
-HalfSamples half_samples(const Equations& equations, const Adjusted& adjusted);
+/// Linearised at `adjusted.fitted`. The first parts each set's rows in four stretches in the order
+/// of their times, and every way to make two halves of them is one split. The others are one split
+/// each, where a joint's reading, or a coordinate of where the body was, is less or more than in
+/// the middle of the set; a group stays whole.
+std::vector<HalfSamples> half_samples(const Equations& equations, const Adjusted& adjusted);
 
 }  // namespace selfcal

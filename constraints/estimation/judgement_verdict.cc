@@ -2,6 +2,7 @@
 // Where the end position is not known to the target, but the check rows are no better and the
 // fitted rows do not contradict the maker's figures either, there is nothing to improve: that is an
 // answer too.
+#include <cmath>
 #include <vector>
 
 #include "constraints/estimation/check_comparison.h"
@@ -23,9 +24,24 @@ std::string certainty(const Grounds& grounds) {
       with_figures("end position in the workspace known to %.3g mm", 1e3 * grounds.workspace.rms);
   if (grounds.orientation_seen)
     text += with_figures(" and %.3g mrad", 1e3 * grounds.workspace.angle);
-  return text + " (over the whole range of the joints" +
-         (grounds.beyond_rows ? ", most of it beyond these rows," : "") +
-         with_figures(" %.3g mm)", 1e3 * grounds.endpoint.rms);
+  text += " (over the whole range of the joints";
+  if (grounds.beyond_rows) text += ", most of it beyond these rows,";
+  text += with_figures(" %.3g mm)", 1e3 * grounds.endpoint.rms);
+  if (!known_to(grounds.workspace, grounds.target))
+    text += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
+  return text;
+}
+
+/// Where the robot is elsewhere than any geometry says by more than is not known of its geometry.
+std::string straying(const Grounds& grounds) {
+  const double in_space = std::sqrt(3) * grounds.strays;
+  if (in_space <= grounds.workspace.rms || grounds.workspace.poses < kFewestPoses) return {};
+  return with_figures(
+             "; beside that the robot strays by %.2g mm in each direction from any geometry",
+             1e3 * grounds.strays) +
+         (grounds.strays > grounds.target
+              ? with_figures(", more than the %.3g mm wanted", 1e3 * grounds.target)
+              : "");
 }
 
 /// Of what a check row was met by before: what is left of it where it is no better for any use; and
@@ -63,7 +79,7 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
   }
   const CheckComparison compared = compare_check_rows(check_rows(before), residual.check_rows);
   v.p_value = compared.p_value;
-  v.why = change(residual.check, v.p_value) + "; " + certainty(grounds);
+  v.why = change(residual.check, v.p_value) + "; " + certainty(grounds) + straying(grounds);
   if (!grounds.converged) {
     v.why = "the identification did not converge; " + v.why;
   } else if (!grounds.contradictions.empty()) {
@@ -75,14 +91,7 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
     v.answer = compared.better() && !hardly ? Answer::improved : Answer::not_improved;
     if (hardly) v.why += "; by less than a hundredth, which is of no use to anyone";
     if (compared.angles_rise) v.why += "; the angles are met worse than before";
-    if (grounds.strays > grounds.target)
-      v.why += with_figures(
-          "; beside that the robot strays by %.2g mm in each direction from any geometry, more "
-          "than the %.3g mm wanted",
-          1e3 * grounds.strays, 1e3 * grounds.target);
   } else {
-    if (grounds.workspace.poses >= kFewestPoses)
-      v.why += with_figures(", %.3g mm wanted", 1e3 * grounds.target);
     if (compared.better() || !grounds.nominal_explains) return v;
     v.answer = Answer::not_improved;
     v.why += "; the rows ask for no other robot than the maker's";

@@ -154,7 +154,8 @@ PoseRepeats pose_repeats(const DataSet& data, const Judged& after) {
 /// What more rows of the same kind would not make less: all but the noise of the rows.
 bool stays(const CovarianceSource& source) {
   return source.name == "the maker's tolerances" || source.name == "held scale" ||
-         source.name == kWhatWasGiven || source.name == kSharedErrors;
+         source.name == kWhatWasGiven || source.name == kSharedErrors ||
+         source.name == kImitatedLaws;
 }
 
 /// Cells of the box that the poses span: 1 sigma, and the mean of the residual vectors there; where
