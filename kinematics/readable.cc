@@ -13,9 +13,10 @@ namespace {
 constexpr double kPlainLeast = 1e-6, kPlainMost = 1e9;
 constexpr std::size_t kMostShown = 2000, kFirstShown = 1000, kLastShown = 300;  // bytes
 
-/// The first byte at or behind `at` that begins a character (UTF-8).
+/// The first byte at or behind `at` that begins a character (UTF-8, of at most four bytes).
 std::size_t start_of_character(std::string_view text, std::size_t at) {
-  while (at < text.size() && (text[at] & 0xC0) == 0x80) ++at;
+  const std::size_t last = std::min(at + 3, text.size());
+  while (at < last && (text[at] & 0xC0) == 0x80) ++at;
   return at;
 }
 
@@ -113,19 +114,20 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string shown(std::string_view text) {
-  if (text.size() > kMostShown) {
-    const std::size_t end = start_of_character(text, kFirstShown);
-    const std::size_t on = start_of_character(text, text.size() - kLastShown);
-    return shown(text.substr(0, end)) + " … (" + std::to_string(on - end) + " bytes left out) … " +
-           shown(text.substr(on));
-  }
-  std::string harmless;
-  while (!text.empty()) {
-    const std::size_t control = text.front() == '\n' ? 0 : length_of_control(text);
-    harmless += control > 0 ? '?' : text.front();
-    text.remove_prefix(std::max<std::size_t>(control, 1));
-  }
-  return harmless;
+  const auto without_control = [](std::string_view part) {
+    std::string harmless;
+    while (!part.empty()) {
+      const std::size_t control = part.front() == '\n' ? 0 : length_of_control(part);
+      harmless += control > 0 ? '?' : part.front();
+      part.remove_prefix(std::max<std::size_t>(control, 1));
+    }
+    return harmless;
+  };
+  if (text.size() <= kMostShown) return without_control(text);
+  const std::size_t end = start_of_character(text, kFirstShown);
+  const std::size_t on = start_of_character(text, text.size() - kLastShown);
+  return without_control(text.substr(0, end)) + " … (" + std::to_string(on - end) +
+         " bytes left out) … " + without_control(text.substr(on));
 }
 
 }  // namespace selfcal

@@ -24,7 +24,8 @@ double doubt_of_structure(const Solution& solution) {
   return std::hypot(doubt_from(solution, kSharedErrors), doubt_from(solution, kImitatedLaws));
 }
 
-/// Rows near each other err alike, more than by chance, or scatter more than they should.
+/// Rows that are near each other, in time or by configuration, err alike more than by chance, or
+/// scatter more than they should.
 bool structured(const Solution& solution) {
   return doubt_of_structure(solution) > doubt_from(solution, kNoiseOfRows) ||
          std::ranges::any_of(solution.sets, &SetResult::unexplained);

@@ -16,13 +16,16 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/identifiability/endpoint_sigma.h"
 #include "constraints/solution.h"
+#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
 namespace {
 
-/// Halves of rows with independent noise differ by up to so much more than is expected.
+/// Halves in time of rows with independent noise differ by up to so much more than is expected.
 constexpr double kMoreThanChance = 1.5;
+/// How often any of the halves by configuration shows a law where there is none.
+constexpr double kByChance = 0.05;
 
 Eigen::MatrixXd prior_part(const Equations& equations, const Adjusted& adjusted) {
   const Eigen::MatrixXd& C = adjusted.fitted.covariance;
@@ -123,10 +126,10 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
     const Eigen::MatrixXd R = equations.linearise(fitted.state, alone).R;
     const Eigen::MatrixXd half =
         R.leftCols(equations.columns()) * fitted.covariance.topLeftCorner(all.rows(), all.cols());
-    const Eigen::MatrixXd of_set = transposed_product(half, half);
-    encoders += coarse * of_set;
-    repeats += repeated * of_set;
-    shared += in_common * of_set;
+    const Eigen::MatrixXd of_its_rows = transposed_product(half, half);
+    encoders += coarse * of_its_rows;
+    repeats += repeated * of_its_rows;
+    shared += in_common * of_its_rows;
   }
   return {{kNoiseOfRows, all - encoders - repeats},
           {"resolution of the encoders", encoders},
@@ -145,25 +148,36 @@ struct BeyondChance {
   Eigen::MatrixXd beside;  ///< what those of the configurations show more of than these
 };
 
-/// `by_repeats` being known.
+/// `noise` is what the rows' noise makes, and `by_repeats` what repeats share makes more of it: of
+/// halves in proportion.
 BeyondChance beyond_chance(const Equations& equations, const Adjusted& adjusted,
-                           const Eigen::MatrixXd& weight, const Eigen::MatrixXd& by_repeats) {
+                           const Eigen::MatrixXd& weight, const Eigen::MatrixXd& noise,
+                           const Eigen::MatrixXd& by_repeats) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(by_repeats.rows(), by_repeats.cols());
   BeyondChance found{none, none};
   if (weight.isZero(0)) return found;
-  double most = 0;
-  bool in_time = true;
-  for (const HalfSamples& halves : half_samples(equations, adjusted)) {
-    const double seen = squared(weight, halves.seen);
-    const double expected = squared(weight, halves.expected) + squared(weight, by_repeats);
-    const double beyond = seen - kMoreThanChance * expected;
-    if (std::exchange(in_time, false)) {
-      if (beyond > 0) found.in_time = beyond / seen * halves.seen;
-      most = squared(weight, found.in_time);
-    } else if (beyond > most) {
-      found.beside = (beyond - squared(weight, found.in_time)) / seen * halves.seen;
-      most = beyond;
-    }
+  const double of_noise = squared(weight, noise);
+  const double more = of_noise > 0 ? 1 + squared(weight, by_repeats) / of_noise : 1;
+  const HalfSampling halves = half_samples(equations, adjusted);
+  const double in_time = squared(weight, halves.in_time.seen);
+  const double of_time =
+      std::max(0.0, in_time - kMoreThanChance * more * squared(weight, halves.in_time.expected));
+  if (of_time > 0) found.in_time = of_time / in_time * halves.in_time.seen;
+  double most = of_time;
+  for (const HalfSamples& each : halves.by_configuration) {
+    const double seen = squared(weight, each.seen);
+    const double expected = more * squared(weight, each.expected);
+    // A sum of squares of normal variables is nearly a chi-square of these freedoms
+    // (Satterthwaite).
+    const Eigen::MatrixXd of_normal = product(weight, each.expected);
+    const double freedoms =
+        std::pow(of_normal.trace(), 2) / of_normal.cwiseProduct(of_normal.transpose()).sum();
+    const double tries = static_cast<double>(halves.by_configuration.size());
+    if (seen - expected <= most ||
+        chi_square_exceeds(freedoms * seen / expected, freedoms) > kByChance / tries)
+      continue;
+    found.beside = (seen - expected - of_time) / seen * each.seen;
+    most = seen - expected;
   }
   return found;
 }
@@ -180,7 +194,7 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   const std::vector<double> spreads = spreads_of_repeats(equations, adjusted.fitted);
   std::vector<CovarianceSource> sources = noise_parts(equations, adjusted, spreads, noise);
   const Eigen::MatrixXd& by_repeats = sources.back().C;
-  BeyondChance halves = beyond_chance(equations, adjusted, weight, by_repeats);
+  BeyondChance halves = beyond_chance(equations, adjusted, weight, noise, by_repeats);
   const double apart = squared(weight, noise);
   const double together = squared(weight, halves.in_time) + squared(weight, by_repeats);
   const Structure structure{apart > 0 ? 1 + together / apart : 1,

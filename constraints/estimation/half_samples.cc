@@ -1,6 +1,5 @@
-// Balanced half-samples (McCarthy 1969) of rows in the order of their times. With [R_h | z_h] the
-// rows of half h at the fitted parameters and Lambda, pull the precision of the priors and what
-// they ask for,
+// Balanced half-samples (McCarthy 1969) of the rows. With [R_h | z_h] the rows of half h at the
+// fitted parameters and Lambda, pull the precision of the priors and what they ask for,
 //   s_h = C_h (R_h^T z_h + pull),   C_h = (R_h^T R_h + Lambda)^-1,   difference (s_1 - s_2) / 2,
 // whose square is expected to be, where the rows err apart and the truth is as the priors say,
 //   ((C_2 - C_1) Lambda (C_2 - C_1) + sum_h (C_h - C_h Lambda C_h)) / 4.
@@ -16,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
@@ -45,30 +43,59 @@ std::vector<int> stretches(const Equations& equations) {
   return of_row;
 }
 
-/// By row of the data set, 0 or 1 as its `value` is less or more than in the middle of its set; a
-/// group stays whole. -1 of other rows.
+/// What stays in one half: a group's rows, or the repeats of one configuration, or one row.
+std::pair<int, int> whole_of(const Observations& rows, int row) {
+  if (rows.group[row] >= 0) return {0, rows.group[row]};
+  if (!rows.repeat.empty() && rows.repeat[row] >= 0) return {1, rows.repeat[row]};
+  return {2, row};
+}
+
+/// By row of the data set, 0 for the half of its set with the less `value` and 1 for the rest; by
+/// turns where the set has but one. -1 of other rows.
 std::vector<int> sides(const Equations& equations, const Eigen::VectorXd& value) {
   const Observations& rows = equations.data().rows;
   std::vector<int> of_row(static_cast<size_t>(rows.rows()), -1);
   for (int s = 0; s < static_cast<int>(equations.data().sets.size()); ++s) {
-    const std::vector<SetPlan::Item>& items = equations.plan(s).items;
-    if (items.empty()) continue;
-    std::map<int, std::pair<double, double>> of_group;  // sum and count
-    for (const SetPlan::Item& item : items) {
-      auto& [sum, count] = of_group[rows.group[item.row]];
-      sum += value[item.row];
-      count += 1;
+    struct Whole {
+      double sum = 0;
+      std::vector<int> rows;
+      double mean() const { return sum / static_cast<double>(rows.size()); }
+    };
+    std::map<std::pair<int, int>, Whole> wholes;
+    for (const SetPlan::Item& item : equations.plan(s).items) {
+      Whole& whole = wholes[whole_of(rows, item.row)];
+      whole.sum += value[item.row];
+      whole.rows.push_back(item.row);
     }
-    std::vector<double> mine;
-    for (const SetPlan::Item& item : items) {
-      const int group = rows.group[item.row];
-      mine.push_back(group < 0 ? value[item.row] : of_group[group].first / of_group[group].second);
+    std::vector<const Whole*> order;
+    for (const auto& [key, whole] : wholes) order.push_back(&whole);
+    std::ranges::stable_sort(order, {}, &Whole::mean);
+    // The cut between two values that is nearest to the middle of the rows.
+    const size_t all = equations.plan(s).items.size();
+    size_t cut = 0, before = 0, least = all;
+    for (size_t i = 0; i + 1 < order.size(); ++i) {
+      before += order[i]->rows.size();
+      const size_t off = 2 * before > all ? 2 * before - all : all - 2 * before;
+      if (order[i]->mean() == order[i + 1]->mean() || off >= least) continue;
+      least = off;
+      cut = i + 1;
     }
-    const double middle = median(mine);
-    for (size_t i = 0; i < items.size(); ++i)
-      of_row[static_cast<size_t>(items[i].row)] = mine[i] > middle;
+    for (size_t i = 0; i < order.size(); ++i)
+      for (const int row : order[i]->rows)
+        of_row[static_cast<size_t>(row)] = cut > 0 ? i >= cut : static_cast<int>(i % 2);
   }
   return of_row;
+}
+
+/// Whether the rows that identify move joint `j` at all.
+bool moves(const Equations& equations, int j) {
+  double least = INFINITY, most = -INFINITY;
+  for (size_t s = 0; s < equations.data().sets.size(); ++s)
+    for (const SetPlan::Item& item : equations.plan(static_cast<int>(s)).items) {
+      least = std::min(least, equations.data().rows.q(item.row, j));
+      most = std::max(most, equations.data().rows.q(item.row, j));
+    }
+  return most - least >= kHardlyMoves * equations.robot().joints()[static_cast<size_t>(j)].range();
 }
 
 /// By row of the data set, where its body was (m, world); zero of rows that identify nothing.
@@ -155,45 +182,31 @@ class Stretches {
   std::vector<Eigen::MatrixXd> each_;  ///< by stretch, where these are apart
 };
 
-/// Adds up splits of one kind.
-class Splits {
- public:
-  Splits(const Equations& equations, const Adjusted& adjusted)
-      : equations_(equations),
-        adjusted_(adjusted),
-        lambda_(prior_precision(equations, adjusted.prior)) {}
-
-  /// The mean over pairs of systems of either half.
-  HalfSamples over(const std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>& splits) const {
-    const Eigen::Index n = equations_.columns(), of_robot = equations_.robot_columns();
-    HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
-    const auto count = static_cast<double>(splits.size());
-    for (const auto& [one, other] : splits) {
-      const HalfFit a = fit_of(equations_, adjusted_, one),
-                    b = fit_of(equations_, adjusted_, other);
-      const Eigen::VectorXd difference = (a.step - b.step) / 2;
-      result.seen += difference * difference.transpose() / count;
-      result.expected += (explained(b.C - a.C) + a.C.topRows(of_robot) - explained(a.C) +
-                          b.C.topRows(of_robot) - explained(b.C)) /
-                         (4 * count);
-    }
-    return result;
+/// The mean over `splits`: pairs of the systems of either half.
+HalfSamples over(const Equations& equations, const Adjusted& adjusted,
+                 const std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>& splits) {
+  const Eigen::Index n = equations.columns(), of_robot = equations.robot_columns();
+  const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
+  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
+  const auto explained = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    return C.transpose() * lambda.asDiagonal() * C;
+  };
+  const auto count = static_cast<double>(splits.size());
+  for (const auto& [one, other] : splits) {
+    const HalfFit a = fit_of(equations, adjusted, one), b = fit_of(equations, adjusted, other);
+    const Eigen::VectorXd difference = (a.step - b.step) / 2;
+    const Eigen::MatrixXd shrunk = b.C - a.C;
+    result.seen += difference * difference.transpose() / count;
+    result.expected += (explained(shrunk) + a.C.topRows(of_robot) - explained(a.C) +
+                        b.C.topRows(of_robot) - explained(b.C)) /
+                       (4 * count);
   }
-
- private:
-  Eigen::MatrixXd explained(const Eigen::MatrixXd& C) const {
-    return C.transpose() * lambda_.asDiagonal() * C;
-  }
-
-  const Equations& equations_;
-  const Adjusted& adjusted_;
-  Eigen::VectorXd lambda_;
-};
+  return result;
+}
 
 }  // namespace
 
-std::vector<HalfSamples> half_samples(const Equations& equations, const Adjusted& adjusted) {
-  const Splits splits(equations, adjusted);
+HalfSampling half_samples(const Equations& equations, const Adjusted& adjusted) {
   const Stretches parts(equations, adjusted);
   std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>> in_time;
   for (const int with : kSplits) {
@@ -201,22 +214,20 @@ std::vector<HalfSamples> half_samples(const Equations& equations, const Adjusted
     std::erase(left, with);
     in_time.emplace_back(parts.half(left[0], left[1]), parts.half(0, with));
   }
-  std::vector<HalfSamples> list = {splits.over(in_time)};
+  HalfSampling sampling{over(equations, adjusted, in_time), {}};
   const auto part_by = [&](const Eigen::VectorXd& value) {
     const std::vector<int> side = sides(equations, value);
     const auto half = [&](int which) {
       return system_of(equations, adjusted, side, [which](int each) { return each == which; });
     };
-    list.push_back(splits.over({{half(0), half(1)}}));
+    sampling.by_configuration.push_back(over(equations, adjusted, {{half(0), half(1)}}));
   };
   const Eigen::MatrixXd& q = equations.data().rows.q;
-  for (Eigen::Index j = 0; j < q.cols(); ++j)
-    if (q.col(j).maxCoeff() - q.col(j).minCoeff() >=
-        kHardlyMoves * equations.robot().joints()[static_cast<size_t>(j)].range())
-      part_by(q.col(j));
+  for (int j = 0; j < static_cast<int>(q.cols()); ++j)
+    if (moves(equations, j)) part_by(q.col(j));
   const Eigen::MatrixXd where = where_rows_were(equations, adjusted.fitted.state);
   for (Eigen::Index a = 0; a < where.cols(); ++a) part_by(where.col(a));
-  return list;
+  return sampling;
 }
 
 }  // namespace selfcal

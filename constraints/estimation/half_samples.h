@@ -17,10 +17,17 @@ struct HalfSamples {
   Eigen::MatrixXd expected;
 };
 
-/// Linearised at `adjusted.fitted`. The first parts each set's rows in four stretches in the order
-/// of their times, and every way to make two halves of them is one split. The others are one split
-/// each, where a joint's reading, or a coordinate of where the body was, is less or more than in
-/// the middle of the set; a group stays whole.
-std::vector<HalfSamples> half_samples(const Equations& equations, const Adjusted& adjusted);
+struct HalfSampling {
+  /// Each set's rows in four stretches in the order of their times: every way to make two halves of
+  /// these is a split.
+  HalfSamples in_time;
+  /// One split each, by the reading of a joint that moves or a coordinate of where the body was:
+  /// the less half of each set's rows and the rest. Groups and repeats stay whole.
+  std::vector<HalfSamples> by_configuration;
+};
+
+/// Linearised at `adjusted.fitted`. What no row carries (links between groups) is in both halves,
+/// which makes them the blunter.
+HalfSampling half_samples(const Equations& equations, const Adjusted& adjusted);
 
 }  // namespace selfcal

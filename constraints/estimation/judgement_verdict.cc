@@ -32,16 +32,17 @@ std::string certainty(const Grounds& grounds) {
   return text;
 }
 
-/// Where the robot is elsewhere than any geometry says by more than is not known of its geometry.
+/// Where the robot strays from any geometry by more than the doubt of its own, or than is wanted.
 std::string straying(const Grounds& grounds) {
-  const double in_space = std::sqrt(3) * grounds.strays;
-  if (in_space <= grounds.workspace.rms || grounds.workspace.poses < kFewestPoses) return {};
-  return with_figures(
-             "; beside that the robot strays by %.2g mm in each direction from any geometry",
-             1e3 * grounds.strays) +
-         (grounds.strays > grounds.target
-              ? with_figures(", more than the %.3g mm wanted", 1e3 * grounds.target)
-              : "");
+  const bool beyond = grounds.strays > grounds.target;
+  if (!grounds.converged || grounds.workspace.poses < kFewestPoses ||
+      (!beyond && std::sqrt(3) * grounds.strays <= grounds.workspace.rms))
+    return {};
+  std::string text =
+      with_figures("; beside that the robot strays by %.2g mm in each direction from any geometry",
+                   1e3 * grounds.strays);
+  if (beyond) text += with_figures(", more than the %.3g mm wanted", 1e3 * grounds.target);
+  return text;
 }
 
 /// Of what a check row was met by before: what is left of it where it is no better for any use; and

@@ -104,11 +104,14 @@ void LinearisedModel::bound_noise() {
 double LinearisedModel::least() const {
   const std::vector<Scale> least = least_of_sets();
   double sum = 0, rows = 0;
-  for (size_t s = 0; s < least.size(); ++s) {
-    const double share = data_.sets[s].method->has_lengths() ? least[s].length : least[s].angle;
-    sum += adjusted_.fitted.rows[s] * share * share;
-    rows += adjusted_.fitted.rows[s];
-  }
+  for (size_t s = 0; s < least.size(); ++s)
+    for (const auto& [has, share] :
+         {std::pair(data_.sets[s].method->has_lengths(), least[s].length),
+          std::pair(data_.sets[s].method->has_angles(), least[s].angle)}) {
+      if (!has) continue;
+      sum += adjusted_.fitted.rows[s] * share * share;
+      rows += adjusted_.fitted.rows[s];
+    }
   return rows > 0 ? sum / rows : 0;
 }
 
@@ -201,6 +204,19 @@ std::vector<Scale> LinearisedModel::noise_of_sets() const {
     noise[s] = {std::max(noise[s].length, scale_ * relative_[s].length * noise_[s].length),
                 std::max(noise[s].angle, scale_ * relative_[s].angle * noise_[s].angle)};
   return noise;
+}
+
+double LinearisedModel::angles_left() const {
+  std::vector<double> angles;
+  const DenseEquations rows = kept();
+  const Eigen::VectorXd left = this->left();
+  for (size_t i = 0; i < rows.row.size(); ++i) {
+    if (rows.row[i] < 0 || rows.quantity[i] != Quantity::angle) continue;
+    const auto set = static_cast<size_t>(data_.rows.set[rows.row[i]]);
+    angles.push_back(std::abs(left[static_cast<Eigen::Index>(i)]) * scale_ * relative_[set].angle *
+                     noise_[set].angle);
+  }
+  return angles.empty() ? 0 : kDiagnosis.rows.median_to_sigma * median(std::move(angles));
 }
 
 double LinearisedModel::noise() const {

@@ -63,6 +63,9 @@ class LinearisedModel {
   std::vector<Scale> noise_of_sets() const;
   /// 1 sigma of one scalar (m), pooled over the sets that measure lengths; 0 without such.
   double noise() const;
+  /// What the best explanation so far leaves of the angles that take part: from the middle of them,
+  /// 1 sigma (rad), whatever the data sheets say; 0 without any.
+  double angles_left() const;
   /// Sets whose rows the geometry meets better than their data sheet's noise allows, with no
   /// repeats that would tell it better.
   const std::vector<int>& quieter() const { return quieter_; }

@@ -67,12 +67,8 @@ std::string impossible_sign(const std::vector<CauseResult>& named) {
   return {};
 }
 
-std::string beyond_tolerances(const LinearisedModel& linearised, const DataSet& data,
-                              const Diagnosis& diagnosis) {
-  double angle = 0;
-  const std::vector<Scale> noise = linearised.noise_of_sets();
-  for (std::size_t s = 0; s < noise.size(); ++s)
-    if (data.sets[s].method->has_angles()) angle = std::max(angle, noise[s].angle);
+std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
+  const double angle = linearised.angles_left();
   const bool lengths = diagnosis.noise > gross_misfit(linearised.geometry(), true);
   if (!lengths && angle <= gross_misfit(linearised.geometry(), false)) return {};
   return "calibration and all effects leave " +
@@ -204,6 +200,15 @@ std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& r
   return same;
 }
 
+/// Nothing is told of a gap far below the noise that the files state.
+std::string far_below_sheet(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  if (diagnosis.named.empty() || !may_state_millimetres(gap)) return {};
+  return "calibration leaves " + millimetres(gap.rms_before) +
+         " of the rows that no choice has seen, where the files state a noise of " +
+         millimetres(gap.noise_floor) + ": is it in metres, and 1 sigma?";
+}
+
 }  // namespace
 
 bool may_state_millimetres(const Gap& gap) {
@@ -217,13 +222,9 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
   if (told ? gap.closed.most >= kDiagnosis.report.closes_little
            : gap.rms_after < gap.rms_before || gap.validated_on != "check")
     return {};
-  std::string why = "what would be named leaves " + millimetres(gap.rms_after) +
-                    " of the rows that no choice has seen, and calibration alone " +
-                    millimetres(gap.rms_before);
-  if (may_state_millimetres(gap))
-    why += ", where the files state a noise of " + millimetres(gap.noise_floor) +
-           ": is it in metres, and 1 sigma?";
-  return why;
+  return "what would be named leaves " + millimetres(gap.rms_after) +
+         " of the rows that no choice has seen, and calibration alone " +
+         millimetres(gap.rms_before);
 }
 
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
@@ -232,7 +233,8 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;
-  if (std::string why = beyond_tolerances(linearised, data, diagnosis); !why.empty()) return why;
+  if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
+  if (std::string why = far_below_sheet(diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
   if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = forces_that_never_were(linearised, data, diagnosis); !why.empty())
@@ -255,7 +257,7 @@ std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseRes
 
 void withdraw(const std::string& doubt, const DiagnosisOptions& options, Diagnosis& diagnosis) {
   const std::string names = names_in_words(diagnosis.named);
-  const bool idle = doubt == closes_nothing(diagnosis) && !may_state_millimetres(diagnosis.gap);
+  const bool idle = doubt == closes_nothing(diagnosis);
   const double unknown = idle ? kDiagnosis.report.withdrawn_idle : kDiagnosis.report.withdrawn;
   diagnosis.named.clear();
   if (!names.empty() && diagnosis.next.empty())

@@ -60,6 +60,7 @@ TEST(Readable, LeavesOutTheMiddleOfWhatNobodyReads) {
   EXPECT_TRUE(told.starts_with("row 2: no set is called 'ää"));
   EXPECT_TRUE(told.ends_with("ä'; known: table"));
   EXPECT_NE(told.find("ä … (8740 bytes left out) … ä"), std::string::npos) << told;
+  EXPECT_LT(shown("x" + std::string(4000, '\x80')).size(), 1400U);  // no text at all
   const std::string whole(2000, 'x');
   EXPECT_EQ(shown(whole), whole);
 }

@@ -48,8 +48,8 @@ TEST(Uncertainty, HasTheDoubtOfAGivenPlaneInItUnlessItIsExact) {
     poses += cell.poses;
   }
   double lasting = 0;
-  for (const char* source :
-       {"the maker's tolerances", "held scale", "what was given", "rows that share errors"})
+  for (const char* source : {"the maker's tolerances", "held scale", "what was given",
+                             "rows that share errors", "laws that the geometry imitates"})
     lasting += std::pow(budget(rough, source), 2);
   // A part that is the difference of two covariances counts by what of it is positive.
   EXPECT_NEAR(std::sqrt(squares / poses / lasting), 1, 0.02);
