@@ -21,12 +21,15 @@ namespace selfcal {
 namespace {
 
 constexpr int kStretches = 4;
+/// Of a column's squares, that another one is told apart by at least.
+constexpr double kUntold = 1e-10;
 constexpr double kHardlyMoves = 0.02;  // of a joint's range
 /// The stretches that make the first half with the first one.
 constexpr std::array kSplits = {1, 2, 3};
 
-/// By row of the data set, the stretch of its set's rows that it is in; -1 of other rows.
-std::vector<int> stretches(const Equations& equations) {
+/// By row of the data set, 0 in the first of four stretches of its set's rows in the order of their
+/// times and in stretch `with`, 1 in the other two; -1 of other rows.
+std::vector<int> in_time_with(int with, const Equations& equations) {
   const Observations& rows = equations.data().rows;
   const std::vector<int> order = in_time(rows);
   std::vector<int> of_row(static_cast<size_t>(rows.rows()), -1);
@@ -36,9 +39,11 @@ std::vector<int> stretches(const Equations& equations) {
       here[static_cast<size_t>(item.row)] = 1;
     const auto count = static_cast<int>(equations.plan(s).items.size());
     int k = 0;
-    for (const int row : order)
-      if (here[static_cast<size_t>(row)])
-        of_row[static_cast<size_t>(row)] = kStretches * k++ / count;
+    for (const int row : order) {
+      if (!here[static_cast<size_t>(row)]) continue;
+      const int stretch = kStretches * k++ / count;
+      of_row[static_cast<size_t>(row)] = stretch == 0 || stretch == with ? 0 : 1;
+    }
   }
   return of_row;
 }
@@ -109,118 +114,101 @@ Eigen::MatrixXd where_rows_were(const Equations& equations, const State& state) 
   return where;
 }
 
-/// What one half of the rows and the priors give.
-struct HalfFit {
-  Eigen::VectorXd step;  ///< columns() entries
-  Eigen::MatrixXd C;     ///< of their posterior, the robot's columns
-};
-
-/// `R` is the system of the half's rows.
-HalfFit fit_of(const Equations& equations, const Adjusted& adjusted, const Eigen::MatrixXd& R) {
-  const std::vector<int> columns = free_columns(equations, adjusted.prior);
-  const Eigen::MatrixXd A =
-      triangle_with_priors(equations, adjusted.prior, columns, R, adjusted.fitted.state.xi, true);
-  const auto n = static_cast<Eigen::Index>(columns.size());
-  const Eigen::MatrixXd C = inverse_of_square(A.topLeftCorner(n, n));
-  HalfFit fit{Eigen::VectorXd::Zero(equations.columns()),
-              Eigen::MatrixXd::Zero(equations.columns(), equations.robot_columns())};
-  const Eigen::VectorXd step =
-      A.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(A.col(n).head(n));
-  fit.step(columns) = step;
-  const auto of_robot = static_cast<Eigen::Index>(std::ranges::count_if(
-      columns, [&](int column) { return column < equations.robot_columns(); }));
-  for (Eigen::Index j = 0; j < of_robot; ++j)  // they lead
-    fit.C(columns, columns[static_cast<size_t>(j)]) = C.col(j);
-  return fit;
-}
-
-/// The system of the rows whose part is `taken`, not yet triangular.
-template <class Taken>
-Eigen::MatrixXd system_of(const Equations& equations, const Adjusted& adjusted,
-                          const std::vector<int>& part, Taken taken) {
-  Weighting weighting{adjusted.fitted.noise.used, adjusted.fitted.noise.outlier};
-  weighting.passed_over = true;
-  for (size_t row = 0; row < part.size(); ++row)
-    if (!taken(part[row])) weighting.outlier[row] = 1;
-  return equations.linearise(adjusted.fitted.state, weighting).R;
-}
-
-/// The systems of stretches of the rows.
-class Stretches {
+/// Fits of halves of the rows.
+class HalfFits {
  public:
-  Stretches(const Equations& equations, const Adjusted& adjusted)
-      : equations_(equations), adjusted_(adjusted), stretch_(stretches(equations)) {
-    for (int k = 0; apart() && k < kStretches; ++k)
-      each_.push_back(of([k](int stretch) { return stretch == k; }));
+  HalfFits(const Equations& equations, const Adjusted& adjusted)
+      : equations_(equations),
+        fitted_(adjusted.fitted),
+        columns_(free_columns(equations, adjusted.prior)) {
+    const Eigen::MatrixXd R = fitted_.at.R(Eigen::all, columns_);
+    all_ = {transposed_product(R, R), R.transpose() * fitted_.at.R.rightCols<1>()};
+    lambda_ = prior_precision(equations, adjusted.prior)(columns_);
+    robot_ = static_cast<Eigen::Index>(std::ranges::count_if(
+        columns_, [&](int column) { return column < equations_.robot_columns(); }));  // they lead
+    apart_ = std::ranges::all_of(equations.data().sets, [](const Set& set) {
+      return set.reference < 0 && set.method->group_freedom() == 0 && !set.method->shares_touches();
+    });
+    pull_.setZero(lambda_.size());
+    for (Eigen::Index i = 0; i < robot_; ++i) {
+      const int column = columns_[static_cast<size_t>(i)];
+      pull_[i] = lambda_[i] * (adjusted.prior.centre[column] - fitted_.state.xi[column]);
+    }
   }
 
-  /// Of two stretches, not yet triangular.
-  Eigen::MatrixXd half(int one, int other) const {
-    if (each_.empty()) return of([=](int stretch) { return stretch == one || stretch == other; });
-    const Eigen::MatrixXd& first = each_[static_cast<size_t>(one)];
-    Eigen::MatrixXd both(2 * first.rows(), first.cols());
-    both << first, each_[static_cast<size_t>(other)];
-    return both;
+  /// The mean over ways to make two halves.
+  HalfSamples over(const std::vector<std::vector<int>>& splits) const {
+    const Eigen::Index n = equations_.columns(), of_robot = equations_.robot_columns();
+    HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
+    const auto explained = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+      return transposed_product(C, lambda_.asDiagonal() * C);
+    };
+    const std::vector<int> robot(columns_.begin(), columns_.begin() + robot_);
+    const auto count = static_cast<double>(splits.size());
+    for (const std::vector<int>& side : splits) {
+      const Products first = of(side, 0);
+      const Products second = apart_ ? Products{all_.N - first.N, all_.g - first.g} : of(side, 1);
+      const HalfFit a = fit_of(first), b = fit_of(second);
+      Eigen::VectorXd difference = Eigen::VectorXd::Zero(n);
+      difference(columns_) = (a.step - b.step) / 2;
+      result.seen += difference * difference.transpose() / count;
+      result.expected(robot, robot) += (explained(b.C - a.C) + a.C.topRows(robot_) -
+                                        explained(a.C) + b.C.topRows(robot_) - explained(b.C)) /
+                                       (4 * count);
+    }
+    return result;
   }
 
  private:
-  /// Rows of a stretch share nothing with those of another but the system's unknowns.
-  bool apart() const {
-    return std::ranges::all_of(equations_.data().sets, [](const Set& set) {
-      return set.reference < 0 && set.method->group_freedom() == 0 && !set.method->shares_touches();
-    });
+  struct Products {
+    Eigen::MatrixXd N;  ///< R^T R
+    Eigen::VectorXd g;  ///< R^T z
+  };
+  struct HalfFit {
+    Eigen::VectorXd step;
+    Eigen::MatrixXd C;  ///< of the posterior, the robot's columns
+  };
+
+  Products of(const std::vector<int>& side, int which) const {
+    Weighting weighting{fitted_.noise.used, fitted_.noise.outlier};
+    weighting.passed_over = true;
+    for (size_t row = 0; row < side.size(); ++row)
+      if (side[row] != which) weighting.outlier[row] = 1;
+    const Eigen::MatrixXd H = equations_.normal_equations(fitted_.state, weighting, columns_).H;
+    const Eigen::Index n = H.cols() - 1;
+    return {H.topLeftCorner(n, n), H.col(n).head(n)};
   }
 
-  template <class Taken>
-  Eigen::MatrixXd of(Taken taken) const {
-    return system_of(equations_, adjusted_, stretch_, taken);
+  /// What a half does not tell of a set's own unknowns is left where it is.
+  HalfFit fit_of(const Products& half) const {
+    Eigen::MatrixXd A = half.N;
+    A.diagonal() += lambda_;
+    const Eigen::VectorXd unit =
+        A.diagonal().unaryExpr([](double each) { return each > 0 ? 1 / std::sqrt(each) : 0; });
+    A = unit.asDiagonal() * A * unit.asDiagonal();
+    A.diagonal().array() += kUntold;
+    const Eigen::MatrixXd C = unit.asDiagonal() * inverse_of_positive(A) * unit.asDiagonal();
+    return {C * (half.g + pull_), C.leftCols(robot_)};
   }
 
   const Equations& equations_;
-  const Adjusted& adjusted_;
-  std::vector<int> stretch_;
-  std::vector<Eigen::MatrixXd> each_;  ///< by stretch, where these are apart
+  const Fit& fitted_;
+  std::vector<int> columns_;
+  bool apart_ = true;       ///< rows of one half share nothing with the other's but these unknowns
+  Eigen::Index robot_ = 0;  ///< of them, how many are the robot's
+  Products all_;
+  Eigen::VectorXd lambda_, pull_;
 };
-
-/// The mean over `splits`: pairs of the systems of either half.
-HalfSamples over(const Equations& equations, const Adjusted& adjusted,
-                 const std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>& splits) {
-  const Eigen::Index n = equations.columns(), of_robot = equations.robot_columns();
-  const Eigen::VectorXd lambda = prior_precision(equations, adjusted.prior);
-  HalfSamples result{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(of_robot, of_robot)};
-  const auto explained = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
-    return C.transpose() * lambda.asDiagonal() * C;
-  };
-  const auto count = static_cast<double>(splits.size());
-  for (const auto& [one, other] : splits) {
-    const HalfFit a = fit_of(equations, adjusted, one), b = fit_of(equations, adjusted, other);
-    const Eigen::VectorXd difference = (a.step - b.step) / 2;
-    const Eigen::MatrixXd shrunk = b.C - a.C;
-    result.seen += difference * difference.transpose() / count;
-    result.expected += (explained(shrunk) + a.C.topRows(of_robot) - explained(a.C) +
-                        b.C.topRows(of_robot) - explained(b.C)) /
-                       (4 * count);
-  }
-  return result;
-}
 
 }  // namespace
 
 HalfSampling half_samples(const Equations& equations, const Adjusted& adjusted) {
-  const Stretches parts(equations, adjusted);
-  std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>> in_time;
-  for (const int with : kSplits) {
-    std::vector<int> left = {1, 2, 3};
-    std::erase(left, with);
-    in_time.emplace_back(parts.half(left[0], left[1]), parts.half(0, with));
-  }
-  HalfSampling sampling{over(equations, adjusted, in_time), {}};
+  const HalfFits fits(equations, adjusted);
+  std::vector<std::vector<int>> in_time;
+  for (const int with : kSplits) in_time.push_back(in_time_with(with, equations));
+  HalfSampling sampling{fits.over(in_time), {}};
   const auto part_by = [&](const Eigen::VectorXd& value) {
-    const std::vector<int> side = sides(equations, value);
-    const auto half = [&](int which) {
-      return system_of(equations, adjusted, side, [which](int each) { return each == which; });
-    };
-    sampling.by_configuration.push_back(over(equations, adjusted, {{half(0), half(1)}}));
+    sampling.by_configuration.push_back(fits.over({sides(equations, value)}));
   };
   const Eigen::MatrixXd& q = equations.data().rows.q;
   for (int j = 0; j < static_cast<int>(q.cols()); ++j)
