@@ -6,6 +6,7 @@
 #include "constraints/equations/equations.h"
 #include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/judgement.h"
+#include "constraints/measurement_context.h"
 #include "diagnosis/options.h"
 #include "diagnosis/validation/correction.h"
 #include "kinematics/robot.h"
