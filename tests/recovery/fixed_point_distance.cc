@@ -53,8 +53,10 @@ TEST(CableEncoders, PutTheErrorsOfARobotWithinTheirOwnSigma) {
     EXPECT_LT(std::sqrt(square), 2 * solution.endpoint.rms) << seed;
   }
   std::printf("%d errors: rms %.3f sigma\n", errors, std::sqrt(squares / errors));
-  // Errors of one robot hang together: some 24 x 10 independent ones leave 5 %, 3 sigma.
-  EXPECT_NEAR(std::sqrt(squares / errors), 1, 0.15);
+  // Errors of one robot hang together: some 24 x 10 independent ones leave 5 %, 3 sigma. The gear
+  // ratios are exact, and stated as in doubt, which alone makes 0.85 of what noise leaves.
+  EXPECT_GT(std::sqrt(squares / errors), 0.85 * 0.85);
+  EXPECT_LT(std::sqrt(squares / errors), 1.15);
 }
 
 TEST(CableEncoders, FindEveryParameterToOneNanometreOrNanoradianFromExactRowsWithoutPriors) {
