@@ -39,10 +39,11 @@ struct EncoderSample {
   bool follows = true;  ///< false: something broke off before it, and nothing lies between the two
 };
 
-/// What a count of one joint means: reading = (counts - zero) * step (rad or m); step < 0 turns it.
+/// What a count of one joint means (rad or m); step < 0 turns it.
 struct EncoderScale {
   double step = 1e-9;
   std::int64_t zero = 0;
+  double reading(std::int64_t counts) const { return static_cast<double>(counts - zero) * step; }
 };
 
 /// What a port has met, and how often.

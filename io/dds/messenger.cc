@@ -97,7 +97,7 @@ void DdsMessenger::take(std::vector<CommandMessage>& out) {
       send(reply);
       return;
     }
-    remember(std::move(reply), false);
+    remember(std::move(reply));
     out.push_back(std::move(command));
   });
 }
@@ -114,9 +114,9 @@ bool DdsMessenger::known(const CommandMessage& command) {
   return false;
 }
 
-void DdsMessenger::remember(CommandReplyMessage reply, bool replied) {
+void DdsMessenger::remember(CommandReplyMessage reply) {
   if (known_.size() >= kMostKnown) known_.pop_front();
-  known_.push_back({std::move(reply), replied, monotonic_now()});
+  known_.push_back({.reply = std::move(reply), .taken = monotonic_now()});
 }
 
 void DdsMessenger::send(const CommandReplyMessage& reply) {

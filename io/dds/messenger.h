@@ -66,7 +66,7 @@ class DdsMessenger : public Messenger {
   DdsMessenger(std::string robot, Endpoints endpoints)
       : robot_(std::move(robot)), dds_(std::move(endpoints)) {}
   bool known(const CommandMessage& command);
-  void remember(CommandReplyMessage reply, bool replied);
+  void remember(CommandReplyMessage reply);
   void send(const CommandReplyMessage& reply);
   void count(const Result<void>& written);
 

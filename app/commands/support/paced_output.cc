@@ -159,8 +159,7 @@ Result<void> PacedOutput::send_sample() {
   if (!*moment) return {};
   const EncoderSample sample = machine_.sample(**moment);
   q_.resize(sample.joints);
-  for (int j = 0; j < sample.joints; ++j)
-    q_[j] = static_cast<double>(sample.counts[j]) * machine_.scales()[j].step;
+  for (int j = 0; j < sample.joints; ++j) q_[j] = machine_.scales()[j].reading(sample.counts[j]);
   told_ = **moment;
   // Now and then the processor does something else in between: that is not the usual.
   preparing_ += std::clamp<Nanoseconds>(now() - looked - preparing_, -200, 200);

@@ -50,8 +50,7 @@ class StampedOutput {
     machine_.take(edges_);
     for (const EncoderSample& sample : samples_) {
       std::vector<double> q(sample.joints);
-      for (int j = 0; j < sample.joints; ++j)
-        q[j] = static_cast<double>(sample.counts[j]) * machine_.scales()[j].step;
+      for (int j = 0; j < sample.joints; ++j) q[j] = machine_.scales()[j].reading(sample.counts[j]);
       if (auto sent = ends_.joints->send(sample.time, q); !sent) return sent;
     }
     for (const Edge& edge : edges_)
