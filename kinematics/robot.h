@@ -52,8 +52,8 @@ struct Location {
   friend Location operator*(const Location& a, const Location& b) {
     return {a.R * b.R, a.p + a.R * b.p};
   }
-  friend Eigen::Vector3d operator*(const Location& X, const Eigen::Vector3d& p) {
-    return X.p + X.R * p;
+  friend Eigen::Vector3d operator*(const Location& X, const Eigen::Vector3d& point) {
+    return X.p + X.R * point;
   }
 };
 

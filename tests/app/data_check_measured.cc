@@ -56,7 +56,8 @@ TEST_F(DataCheck, SaysThatTheToolIsMissing) {
 }
 
 TEST_F(DataCheck, SaysThatTheQuaternionsAreInAnotherOrder) {
-  change_rows({"qw", "qx", "qy", "qz"}, [](auto& q) { std::ranges::rotate(q, q.begin() + 1); });
+  change_rows({"qw", "qx", "qy", "qz"},
+              [](auto& q) { std::rotate(q.begin(), q.begin() + 1, q.end()); });
   const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
   EXPECT_EQ(ran.status, 1) << ran.out;
   EXPECT_THAT(ran.out, HasSubstr("the quaternions are read in another order"));
