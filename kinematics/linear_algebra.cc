@@ -15,10 +15,6 @@
 
 extern "C" void dpotrf_(const char* triangle, const int* n, double* A, const int* stride,
                         int* info);
-extern "C" void dpotri_(const char* triangle, const int* n, double* A, const int* stride,
-                        int* info);
-extern "C" void dtrtri_(const char* triangle, const char* diagonal, const int* n, double* A,
-                        const int* stride, int* info);
 extern "C" void dgeqrf_(const int* rows, const int* columns, double* A, const int* stride,
                         double* factors, double* work, const int* work_size, int* info);
 extern "C" void dsyevd_(const char* vectors, const char* triangle, const int* n, double* A,
@@ -48,11 +44,12 @@ std::unique_lock<std::mutex> turn_of_one() {
   return alone ? std::unique_lock(one) : std::unique_lock<std::mutex>();
 }
 
-/// op(L)^-1 B in place.
-void solve_in_place(CBLAS_TRANSPOSE op, const Eigen::MatrixXd& L, Eigen::MatrixXd& B) {
+/// op(T)^-1 B in place, of the triangle T that lies in that half.
+void solve_in_place(CBLAS_UPLO half, CBLAS_TRANSPOSE op, const Eigen::Ref<const Eigen::MatrixXd>& T,
+                    Eigen::MatrixXd& B) {
   const auto turn = turn_of_one();
-  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, CblasNonUnit, width(B.rows()),
-              width(B.cols()), 1, L.data(), width(L.rows()), B.data(), width(B.rows()));
+  cblas_dtrsm(CblasColMajor, CblasLeft, half, op, CblasNonUnit, width(B.rows()), width(B.cols()), 1,
+              T.data(), width(T.outerStride()), B.data(), width(B.rows()));
 }
 
 /// op(A) B.
@@ -150,26 +147,19 @@ std::vector<Eigen::Index> eliminate(Eigen::Ref<Eigen::MatrixXd> A, Eigen::Index 
 }
 
 Eigen::MatrixXd inverse_of_triangle(const Eigen::Ref<const Eigen::MatrixXd>& R) {
-  if (R.rows() < kLarge)
-    return R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
-  Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>();
-  const int n = width(R.rows());
-  int info = 0;
-  const auto turn = turn_of_one();
-  dtrtri_("U", "N", &n, inverse.data(), &n, &info);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(R.rows(), R.rows());
+  if (R.rows() < kLarge) return R.triangularView<Eigen::Upper>().solve(inverse);
+  solve_in_place(CblasUpper, CblasNoTrans, R, inverse);  // LAPACK's dtrtri here goes by columns
   return inverse;
 }
 
 Eigen::MatrixXd inverse_of_square(const Eigen::Ref<const Eigen::MatrixXd>& R) {
-  if (R.rows() < kLarge) {
-    const Eigen::MatrixXd inverse = inverse_of_triangle(R);
-    return inverse * inverse.transpose();
-  }
-  Eigen::MatrixXd C = R.triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse = inverse_of_triangle(R);
+  if (R.rows() < kLarge) return inverse * inverse.transpose();
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(R.rows(), R.rows());
   const int n = width(R.rows());
-  int info = 0;
   const auto turn = turn_of_one();
-  dpotri_("U", &n, C.data(), &n, &info);
+  cblas_dsyrk(CblasColMajor, CblasUpper, CblasNoTrans, n, n, 1, inverse.data(), n, 0, C.data(), n);
   C.triangularView<Eigen::StrictlyLower>() = C.transpose();
   return C;
 }
@@ -194,8 +184,11 @@ Eigen::MatrixXd beyond(const Eigen::MatrixXd& onto, const Eigen::MatrixXd& M) {
   if (onto.cols() == 0) return M;
   expects(onto.rows() == M.rows(), "columns of one space");
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(onto);
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(onto.rows(), qr.rank());
-  return M - Q * (Q.transpose() * M);
+  Eigen::MatrixXd left = M;
+  left.applyOnTheLeft(qr.householderQ().adjoint());
+  left.topRows(qr.rank()).setZero();
+  left.applyOnTheLeft(qr.householderQ());
+  return left;
 }
 
 OrthogonalColumns orthogonal_columns(const Eigen::MatrixXd& A) {
@@ -229,7 +222,7 @@ Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) 
   expects(L.rows() == L.cols() && L.rows() == B.rows(), "a triangle and a right side of it");
   if (!large(L, B)) return L.triangularView<Eigen::Lower>().solve(B);
   Eigen::MatrixXd X = B;
-  solve_in_place(CblasNoTrans, L, X);
+  solve_in_place(CblasLower, CblasNoTrans, L, X);
   return X;
 }
 
@@ -238,7 +231,7 @@ Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::Ma
   expects(L.rows() == L.cols() && L.rows() == B.rows(), "a triangle and a right side of it");
   if (!large(L, B)) return L.transpose().triangularView<Eigen::Upper>().solve(B);
   Eigen::MatrixXd X = B;
-  solve_in_place(CblasTrans, L, X);
+  solve_in_place(CblasLower, CblasTrans, L, X);
   return X;
 }
 

@@ -187,8 +187,12 @@ class HalfFits {
         A.diagonal().unaryExpr([](double each) { return each > 0 ? 1 / std::sqrt(each) : 0; });
     A = unit.asDiagonal() * A * unit.asDiagonal();
     A.diagonal().array() += kUntold;
-    const Eigen::MatrixXd C = unit.asDiagonal() * inverse_of_positive(A) * unit.asDiagonal();
-    return {C * (half.g + pull_), C.leftCols(robot_)};
+    const Eigen::MatrixXd L = cholesky_root(A);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(A.rows(), robot_ + 1);
+    right.leftCols(robot_).diagonal() = unit.head(robot_);
+    right.col(robot_) = unit.cwiseProduct(half.g + pull_);
+    const Eigen::MatrixXd X = unit.asDiagonal() * solve_lower_transposed(L, solve_lower(L, right));
+    return {X.col(robot_), X.leftCols(robot_)};
   }
 
   const Equations& equations_;
