@@ -216,9 +216,7 @@ class Adjustment {
     if (!length) return false;
     adjusted_.scale = *length;
     start_.xi[*length] = adjusted_.prior.centre[*length];
-    hold({parameters()[*length].name,
-          "the touches leave the robot's scale free: this length is held where the maker's lengths "
-          "together have the scale"});
+    hold({parameters()[*length].name, why_scale_is_held(robot_)});
     return true;
   }
 

@@ -102,6 +102,17 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
   return last;
 }
 
+std::string why_scale_is_held(const Robot& robot) {
+  const bool slides = std::ranges::any_of(
+      robot.joints(), [](const Joint& joint) { return joint.quantity == Quantity::length; });
+  return slides
+             ? "the touches tell the robot's scale less well than the maker's lengths do, though "
+               "its slides read lengths: this one is held where the maker's together have the "
+               "scale"
+             : "the touches leave the robot's scale free: this length is held where the maker's "
+               "lengths together have the scale";
+}
+
 Eigen::MatrixXd unseen_motions(const Equations& equations, const Eigen::MatrixXd& R) {
   const int at = equations.columns();
   const Eigen::MatrixXd nuisance =

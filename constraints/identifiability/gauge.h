@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "constraints/equations/equations.h"
@@ -26,6 +27,9 @@ bool orientation_is_seen(const Equations& equations);
 /// parameters.
 std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
                               const Eigen::VectorXd& xi, const std::vector<char>& free);
+
+/// What is said of the length that is held for it.
+std::string why_scale_is_held(const Robot& robot);
 
 /// Independent combinations (columns, 6 x k) of the world's motions that the rows do not see, own
 /// unknowns being unknown; orthonormal with shifts over the robot's size. R is whitened, with the
