@@ -14,6 +14,7 @@ namespace {
 using Outcome = MotionReply::Outcome;
 
 constexpr Nanoseconds kCancelAgain = kSecond / 10;
+constexpr const char* kEnds = "the bridge ends";
 
 GoalId new_goal() {
   std::random_device random;
@@ -35,10 +36,7 @@ Result<void> MotionBridge::look(EncoderSource& encoders, Nanoseconds now) {
   if (samples_.empty()) return {};
   const EncoderSample& last = samples_.back();
   std::vector<double> q(last.joints);
-  for (int j = 0; j < last.joints; ++j) {
-    const EncoderScale& scale = encoders.scales()[j];
-    q[j] = static_cast<double>(last.counts[j] - scale.zero) * scale.step;
-  }
+  for (int j = 0; j < last.joints; ++j) q[j] = encoders.scales()[j].reading(last.counts[j]);
   see(std::move(q), now);
   return {};
 }
@@ -93,6 +91,7 @@ Result<void> MotionBridge::stop(const std::string& why, Nanoseconds now) {
 
 Result<void> MotionBridge::hear(const RobotRequest& request, Nanoseconds now) {
   if (request.stop) return stop(request.why, now);
+  if (ending_) return refuse(request.move, kEnds);
   if (!move_) return begin(request.move, now);
   if (!move_->stopping) return refuse(request.move, "the move before has not ended");
   if (next_)
@@ -185,10 +184,9 @@ Result<void> MotionBridge::turn(Nanoseconds now) {
   return watch(now);
 }
 
-void MotionBridge::give_up() {
-  if (!move_) return;
-  if (move_->sent) (void)action_.cancel(move_->goal);
-  (void)end(Outcome::stopped, "the bridge ends");
+Result<void> MotionBridge::give_up(Nanoseconds now) {
+  ending_ = true;
+  return move_ ? stop(kEnds, now) : Result<void>{};
 }
 
 }  // namespace selfcal

@@ -39,8 +39,10 @@ class MotionBridge {
   Result<void> look(EncoderSource& encoders, Nanoseconds now);
   /// Hears the service and the controller, and answers both.
   Result<void> turn(Nanoseconds now);
-  /// Cancels what moves: before the end.
-  void give_up();
+  /// Cancels what moves, as turn() goes on to do until it stands; nothing begins from now on.
+  Result<void> give_up(Nanoseconds now);
+  /// Whether a move has not ended.
+  bool moving() const { return move_.has_value(); }
 
  private:
   struct Move {
@@ -69,6 +71,7 @@ class MotionBridge {
   Nanoseconds seen_ = 0;
   std::optional<Move> move_;
   std::optional<MotionRequest> next_;
+  bool ending_ = false;
 };
 
 }  // namespace selfcal

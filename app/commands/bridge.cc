@@ -15,6 +15,8 @@
 namespace selfcal {
 namespace {
 
+constexpr Nanoseconds kTurn = 5 * kMillisecond;
+
 struct BridgeArguments {
   std::string config, action, touch, line;
   double acceleration = 1, patience = 2;
@@ -70,17 +72,26 @@ Result<void> run_bridge(const BridgeArguments& arguments, const Config& config) 
                        .patience = nanoseconds(arguments.patience),
                        .action = arguments.action},
                       config.robot->joints(), **service, **action);
-  while (!told_to_stop()) {
-    if (auto looked = bridge.look(**encoders, monotonic_now()); !looked) return looked;
-    if (touch)
-      if (auto passed = touch->turn(monotonic_now()); !passed) return passed;
-    if (line)
-      if (auto passed = line->turn(monotonic_now()); !passed) return passed;
-    if (auto turned = bridge.turn(monotonic_now()); !turned) return turned;
-    wakeup.wait(5 * kMillisecond);
+  const auto pass_on = [&]() -> Result<void> {
+    while (!told_to_stop()) {
+      if (auto looked = bridge.look(**encoders, monotonic_now()); !looked) return looked;
+      if (touch)
+        if (auto passed = touch->turn(monotonic_now()); !passed) return passed;
+      if (line)
+        if (auto passed = line->turn(monotonic_now()); !passed) return passed;
+      if (auto turned = bridge.turn(monotonic_now()); !turned) return turned;
+      wakeup.wait(kTurn);
+    }
+    return {};
+  };
+  const Result<void> ran = pass_on();
+  // Whatever ended it: a move that nobody watches does not go on.
+  bool tells = bridge.give_up(monotonic_now()).has_value();
+  while (tells && bridge.moving()) {
+    wakeup.wait(kTurn);
+    tells = bridge.turn(monotonic_now()).has_value();
   }
-  bridge.give_up();
-  return {};
+  return ran;
 }
 
 int bridge_command(const BridgeArguments& arguments) {

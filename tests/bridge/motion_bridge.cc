@@ -12,6 +12,8 @@
 namespace selfcal {
 namespace {
 
+using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 using Outcome = MotionReply::Outcome;
 
@@ -116,6 +118,30 @@ TEST_F(Bridged, CancelsTheGoalOfAStopUntilItEnds) {
 
   ASSERT_TRUE(told(Outcome::stopped));
   EXPECT_EQ(replies.back().why, "contact");
+}
+
+TEST_F(Bridged, CancelsTheGoalUntilItEndsBeforeItsOwnEnd) {
+  begin_move();
+  must(bridge->give_up(monotonic_now()));
+  ask();
+  ASSERT_TRUE(turning([&] { return controller->cancels.size() >= 2; })) << "said again";
+  EXPECT_TRUE(bridge->moving());
+  EXPECT_EQ(controller->cancels[0].goal, controller->goals[0].goal);
+  controller->finish(controller->asked[0], 5);
+
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_EQ(replies.back().why, "the bridge ends");
+  EXPECT_FALSE(bridge->moving());
+  EXPECT_EQ(controller->goals.size(), 1u) << "nothing begins any more";
+  EXPECT_THAT(replies, Contains(Field(&MotionReply::outcome, Outcome::refused)));
+}
+
+TEST_F(Bridged, EndsWithinItsPatienceWhereNobodyConfirmsTheEndOfAMove) {
+  begin_move();
+  must(bridge->give_up(monotonic_now()));
+  ASSERT_TRUE(told(Outcome::stopped));
+  EXPECT_THAT(replies.back().why, HasSubstr("has not confirmed the stop"));
+  EXPECT_FALSE(bridge->moving());
 }
 
 TEST_F(Bridged, CancelsAGoalThatWasAcceptedAfterTheStop) {
