@@ -2,11 +2,14 @@
 // a governance document: OMG DDS Security 1.1, 9.4.1.2.
 #include "io/dds/reach.h"
 
+#include <dds/ddsrt/environ.h>
+#include <dds/ddsrt/heap.h>
 #include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <memory>
 #include <regex>
 #include <utility>
 #include <vector>
@@ -84,6 +87,49 @@ std::vector<XmlElement> elements(std::string_view text, const std::string& name)
 std::string text_in(std::string_view text, const std::string& name) {
   const auto found = elements(text, name);
   return found.empty() ? std::string() : without_blanks(found.front().content);
+}
+
+/// Where the first element that begins at `from` ends; the end of the text when nowhere.
+std::size_t end_of_element(std::string_view text, std::size_t from) {
+  int depth = 0;
+  for (std::size_t at = from; (at = text.find('<', at)) != std::string_view::npos;) {
+    const bool comment = text.substr(at).starts_with("<!--");
+    const bool closes = text.substr(at).starts_with("</");
+    const std::size_t end = text.find(comment ? "-->" : ">", at);
+    if (end == std::string_view::npos) break;
+    at = end + (comment ? 3 : 1);
+    if (comment) continue;
+    if (!closes) ++depth;
+    if (closes || text[end - 1] == '/') --depth;
+    if (depth <= 0) return at;
+  }
+  return text.size();
+}
+
+/// What the library reads where `given` is CYCLONEDDS_URI: a list of elements and of files.
+Result<std::string> configuration(const char* given, int domain) {
+  const std::unique_ptr<char, void (*)(void*)> expanded(
+      ddsrt_expand_envvars(given, static_cast<std::uint32_t>(domain)), ddsrt_free);
+  if (!expanded) return bad_input("CYCLONEDDS_URI: a variable that it names is not set");
+  constexpr std::string_view kFile = "file://";
+  const std::string_view list = expanded.get();
+  std::string all;
+  for (std::size_t at = 0; (at = list.find_first_not_of(" \t\r\n,", at)) != list.npos;) {
+    const bool element = list[at] == '<';
+    const std::size_t end =
+        element ? end_of_element(list, at) : std::min(list.find(',', at), list.size());
+    std::string_view part = list.substr(at, end - at);
+    at = end;
+    if (element) {
+      all += part;
+      continue;
+    }
+    if (part.starts_with(kFile)) part.remove_prefix(kFile.size());
+    const auto content = read_file(part, kMostConfigurationBytes);
+    if (!content) return bad_input("CYCLONEDDS_URI: " + content.error().what);
+    all += *content;
+  }
+  return all;
 }
 
 /// The first capture of every match.
@@ -184,13 +230,9 @@ std::string admits_strangers(std::string_view governance, const std::string& top
 
 Result<DdsReach> dds_reach(int domain, const std::string& topic) {
   const char* given = std::getenv("CYCLONEDDS_URI");
-  std::string text = given ? given : "";
-  for (const std::string& path : found(text, "file://([^,<]+)")) {
-    const auto content = read_file(path, kMostConfigurationBytes);
-    if (!content) return tl::unexpected(content.error());
-    text += *content;
-  }
-  DdsReach reach = reach_of(text, domain);
+  const auto text = configuration(given ? given : "", domain);
+  if (!text) return tl::unexpected(text.error());
+  DdsReach reach = reach_of(*text, domain);
   if (!reach.secured) return reach;
   const auto governance = document(reach.governance);
   if (!governance) return tl::unexpected(governance.error());

@@ -1,7 +1,7 @@
 // Who can reach a DDS participant of this process, by what CYCLONEDDS_URI says.
 //
-// The library takes a list of XML fragments and file:// addresses there, and of several interfaces
-// uses all. Without any it chooses one by itself, which is a network's.
+// The library takes a list of XML fragments and files there, file:// before them or not, and of
+// several interfaces uses all. Without any it chooses one by itself, which is a network's.
 #pragma once
 
 #include <string>

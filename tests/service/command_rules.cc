@@ -3,6 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <optional>
+
+#include "io/files/file.h"
+#include "tests/io/scratch.h"
+
 namespace selfcal {
 namespace {
 
@@ -55,6 +61,47 @@ TEST(Reach, IsSecuredWhenDdsSecurityHasAllThatItNeeds) {
             "it has no <PermissionsCA>, no <Governance>, no <Permissions>");
   EXPECT_FALSE(reach("<General/>").secured);
   EXPECT_TRUE(reach("<General/>").lacks.empty());
+}
+
+/// CYCLONEDDS_URI as it was, afterwards.
+class CycloneUri : public testing::Test {
+ protected:
+  CycloneUri() {
+    if (const char* set = std::getenv("CYCLONEDDS_URI")) before_ = set;
+  }
+  ~CycloneUri() override {
+    unsetenv("SELFCAL_MORE_DDS");
+    before_ ? setenv("CYCLONEDDS_URI", before_->c_str(), 1) : unsetenv("CYCLONEDDS_URI");
+  }
+  static Result<DdsReach> reach(const std::string& uri) {
+    setenv("CYCLONEDDS_URI", uri.c_str(), 1);
+    return dds_reach(0, "rt/selfcal/r/command");
+  }
+  std::string file(const char* interface) const {
+    return scratch_.write(std::string(interface) + ".xml",
+                          std::string("<CycloneDDS><Domain><General><Interfaces>"
+                                      "<NetworkInterface name=\"") +
+                              interface + "\"/></Interfaces></General></Domain></CycloneDDS>\n");
+  }
+
+ private:
+  Scratch scratch_;
+  std::optional<std::string> before_;
+};
+
+TEST_F(CycloneUri, IsReadAsTheLibraryReadsIt) {
+  const std::string own = file("lo"), network = file("eth0");
+  const std::string element = read_file(own, 1000).value();
+  EXPECT_TRUE(reach("file://" + own)->loopback);
+  EXPECT_TRUE(reach(own)->loopback);
+  EXPECT_TRUE(reach(" " + element + ", file://" + own)->loopback);
+  EXPECT_FALSE(reach("file://" + own + "," + network)->loopback);
+  EXPECT_FALSE(reach(element + "," + network)->loopback);
+  EXPECT_FALSE(reach(own + ",<!-- lo > --><General/>,file://" + network)->loopback);
+  setenv("SELFCAL_MORE_DDS", network.c_str(), 1);
+  EXPECT_FALSE(reach(own + ",${SELFCAL_MORE_DDS}")->loopback);
+  EXPECT_THAT(reach(own + ",/nowhere.xml").error().what,
+              HasSubstr("CYCLONEDDS_URI: /nowhere.xml: cannot be read"));
 }
 
 /// A rule for the domain, one for its topics, and one for those of parameters that anybody writes.
