@@ -51,7 +51,8 @@ int write_all(int descriptor, std::string_view text) {
   return 0;
 }
 
-/// Writes and syncs a new file; 0, or the error, after which the file is gone.
+/// Writes and syncs a new file; 0, or the error, after which the file is gone, unless it was there
+/// before (EEXIST).
 int write_new(const std::filesystem::path& path, std::string_view text) {
   constexpr mode_t kReadableByAll = 0666;  // as far as the umask allows
   const int descriptor =
@@ -121,10 +122,14 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view text) {
   if (!path.has_filename()) return device_failed("'" + path.string() + "': is not a file's name");
-  const std::filesystem::path fresh = beside(path);
-  if (const int error = write_new(fresh, text); error != 0) return unwritable(path, error);
+  // One that a process of this number left when it was killed stays where it is.
+  constexpr int kTries = 100;
+  std::filesystem::path fresh;
+  int error = EEXIST;
+  for (int i = 0; i < kTries && error == EEXIST; ++i) error = write_new(fresh = beside(path), text);
+  if (error != 0) return unwritable(path, error);
   if (::rename(fresh.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+    error = errno;
     ::unlink(fresh.c_str());
     return unwritable(path, error);
   }

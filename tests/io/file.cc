@@ -32,6 +32,17 @@ TEST(File, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
   EXPECT_EQ(entries(scratch.folder()), 1u);
 }
 
+TEST(File, WritesBesideWhatAProcessOfTheSameNumberLeftWhenItWasKilled) {
+  const Scratch scratch;
+  const std::filesystem::path path = scratch.folder() / "active.yaml";
+  const std::string of_this = ".active.yaml." + std::to_string(getpid()) + ".";
+  for (int count = 0; count < 40; ++count)
+    scratch.write(of_this + std::to_string(count) + ".new", "half of i");
+  ASSERT_TRUE(write_file_atomically(path, "whole").has_value());
+  EXPECT_EQ(read_file(path, 10).value(), "whole");
+  EXPECT_EQ(entries(scratch.folder()), 41u);
+}
+
 TEST(File, ReadsAnEmptyFile) {
   const Scratch scratch;
   EXPECT_EQ(read_file(scratch.write("empty", ""), 10).value(), "");
