@@ -6,9 +6,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <system_error>
 
 #include "app/commands/subcommand.h"
 #include "app/commands/support/cell_plan.h"
@@ -48,8 +50,11 @@ class Lock {
     const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
     if (file < 0) return device_failed(path + ": cannot be made");
     if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
       ::close(file);
-      return device_failed(folder.string() + ": another service is using it");
+      return device_failed(error == EWOULDBLOCK
+                               ? folder.string() + ": another service is using it"
+                               : path + ": " + std::generic_category().message(error));
     }
     return Lock(file);
   }
@@ -110,7 +115,7 @@ class JournalLevel final : public spdlog::custom_flag_formatter {
 };
 
 void set_up_log(const std::string& level) {
-  auto log = spdlog::stderr_logger_st("selfcal");
+  auto log = spdlog::stderr_logger_mt("selfcal");
   if (std::getenv("JOURNAL_STREAM")) {  // which adds the time by itself
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<JournalLevel>('*').set_pattern("%*%v");

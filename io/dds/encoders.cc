@@ -70,8 +70,7 @@ Result<void> DdsEncoders::take(std::vector<EncoderSample>& out) {
 std::string DdsEncoders::trouble() const {
   if (in_a_row_ == 0) return {};
   const bool one = in_a_row_ == 1;
-  const std::string last =
-      one ? "the last message" : "the last " + std::to_string(in_a_row_) + " messages";
+  const std::string last = one ? "the last message" : "the last messages";
   const std::string& joint = joints_[lack_.joint];
   if (lack_.named) return last + (one ? " has" : " have") + " no position of joint " + joint;
   return last + (one ? " lacks" : " lack") + " joint " + joint;

@@ -1,8 +1,11 @@
 // Events, small texts kept under a name, and what was found damaged.
+#include <sqlite3.h>
+
 #include "io/store/checksums.h"
 #include "io/store/damage.h"
 #include "io/store/sqlite.h"
 #include "io/store/store.h"
+#include "io/store/tables.h"
 
 namespace selfcal {
 namespace {
@@ -19,6 +22,12 @@ bool Store::sound(const sqlite::Statement& row, int column) {
   if (row.null(column)) return true;
   meet(row.text(column));
   return false;
+}
+
+bool Store::moved() const {
+  int moved = 0;
+  sqlite3_file_control(database_, nullptr, SQLITE_FCNTL_HAS_MOVED, &moved);
+  return moved != 0;
 }
 
 Result<std::vector<DamageRecord>> Store::damage() { return notes_of_damage(database_); }
@@ -51,10 +60,7 @@ Result<std::vector<EventRecord>> Store::events(int newest) {
 Result<void> Store::remember(const std::string& name, const std::string& text) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  const auto kept = sqlite::run(database_, "INSERT OR REPLACE INTO remembered VALUES(?1, ?2, NULL)",
-                                {name, text});
-  if (!kept) return tl::unexpected(kept.error());
-  if (auto put = put_checksum(database_, kRemembered, name); !put) return put;
+  if (auto put = put_remembered(database_, {name, text}); !put) return put;
   return commit(*transaction);
 }
 

@@ -53,13 +53,16 @@ Result<void> put_candidate(sqlite3* database, const SlotRecord& candidate) {
 
 }  // namespace
 
-Result<void> Store::finish(const ResultRecord& result, const SlotRecord* candidate) {
+Result<void> Store::finish(const ResultRecord& result, const SlotRecord* candidate,
+                           const Remembered& kept) {
   Result<sqlite::Transaction> transaction = sqlite::Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());
   if (auto added = add_result(database_, result); !added) return added;
   if (candidate != nullptr) {
     if (auto put = put_candidate(database_, *candidate); !put) return put;
   }
+  if (!kept.name.empty())
+    if (auto put = put_remembered(database_, kept); !put) return put;
   return commit(*transaction);
 }
 

@@ -100,6 +100,11 @@ struct EventRecord {
   std::string text;
 };
 
+/// A small text under a name.
+struct Remembered {
+  std::string name = {}, text = {};
+};
+
 /// Something that was found damaged, and is not used any more.
 struct DamageRecord {
   std::int64_t unix_ms = 0;  ///< when it was found
@@ -157,8 +162,10 @@ class Store {
 
   /// Puts the result and ends the session in one transaction. With `candidate`, the robot becomes
   /// the candidate in the same; the decision of one that it takes the place of becomes `replaced`.
-  /// A session has one result: a second is a failure.
-  Result<void> finish(const ResultRecord& result, const SlotRecord* candidate);
+  /// `kept` is remembered in the same, unless it has no name. A session has one result: a second is
+  /// a failure.
+  Result<void> finish(const ResultRecord& result, const SlotRecord* candidate,
+                      const Remembered& kept = {});
   /// A damaged json or robot_text is empty.
   Result<std::optional<ResultRecord>> result(std::int64_t session);
   /// Without json and robot_text, and without damaged ones.
@@ -188,6 +195,9 @@ class Store {
   /// What was found damaged and had not been noted, each once: by reading, and where the store was
   /// opened to read.
   const std::vector<std::string>& met() const { return met_; }
+
+  /// Its file was renamed or deleted since: what it reads is not what the folder has now.
+  bool moved() const;
 
   /// Deletes the oldest until the content fits `most_bytes`: events first, then the json of results
   /// (the figures stay), then the readings of plans and touches put aside, last the raw rows of

@@ -27,6 +27,13 @@ Result<std::int64_t> keep_text(sqlite3* database, std::string_view body) {
   return id;
 }
 
+Result<void> put_remembered(sqlite3* database, const Remembered& kept) {
+  const auto put = sqlite::run(database, "INSERT OR REPLACE INTO remembered VALUES(?1, ?2, NULL)",
+                               {kept.name, kept.text});
+  if (!put) return tl::unexpected(put.error());
+  return put_checksum(database, kRemembered, kept.name);
+}
+
 tl::unexpected<Failure> no_session(sqlite3* database, std::int64_t session) {
   const auto there = sqlite::text(
       database,

@@ -12,6 +12,9 @@ namespace selfcal {
 /// and damaged is whole again then.
 Result<std::int64_t> keep_text(sqlite3* database, std::string_view body);
 
+/// Within the caller's transaction.
+Result<void> put_remembered(sqlite3* database, const Remembered& kept);
+
 /// That there is no such session, and which there are: bad input.
 tl::unexpected<Failure> no_session(sqlite3* database, std::int64_t session);
 /// Fails when there is no such session; it may be damaged.

@@ -117,11 +117,11 @@ TEST_F(DdsEncodersTest, SayWhatTheLastMessagesLackUntilASampleComes) {
   EXPECT_EQ(encoders->trouble(), "the last message lacks joint c");
   must(robot->send(2000, {1, 2, 3}));
   take();
-  EXPECT_EQ(encoders->trouble(), "the last 2 messages lack joint c");
+  EXPECT_EQ(encoders->trouble(), "the last messages lack joint c");
   replace_robot({"a", "b", "c"});
   must(robot->send(3000, {1, 2}));
   take();
-  EXPECT_EQ(encoders->trouble(), "the last 3 messages have no position of joint c");
+  EXPECT_EQ(encoders->trouble(), "the last messages have no position of joint c");
   must(robot->send(4000, {1, 2, 3}));
   take();
   EXPECT_EQ(encoders->trouble(), "");

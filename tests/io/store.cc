@@ -228,6 +228,16 @@ TEST(Store, RefusesASecondResultAndKeepsTheCandidateOfTheFirst) {
   EXPECT_EQ(store->slot(Slot::candidate).value()->robot_text, some_result(id).robot_text);
 }
 
+TEST(Store, RemembersWhatIsToFollowWithTheResultOrNotAtAll) {
+  const Scratch scratch;
+  const auto store = opened(scratch.folder());
+  const std::int64_t id = store->begin(some_session(), some_plan(2, 6)).value();
+  ASSERT_TRUE(store->finish(some_result(id), nullptr, {"wanted", "full"}));
+  EXPECT_EQ(store->remembered("wanted").value(), "full");
+  EXPECT_FALSE(store->finish(some_result(id), nullptr, {"wanted", "cause"}));
+  EXPECT_EQ(store->remembered("wanted").value(), "full");
+}
+
 TEST(Store, RefusesTextsBeyondItsBound) {
   const Scratch scratch;
   const auto store = opened(scratch.folder());

@@ -21,6 +21,60 @@ TEST_F(Loop, StopsTheRobotBeforeAnythingIsWritten) {
   EXPECT_EQ(must(beside->remembered("held")), "yes");
 }
 
+TEST_F(Loop, StopsAMoveOfAnEarlierLifeAndLeavesAloneARobotThatIsAtWorkSinceThen) {
+  const Config cell = config();
+  {
+    const std::unique_ptr<Store> before = opened(scratch.folder());
+    leave_session(*before, cell, robot.counts, "full", false);
+    must(before->remember("held", "yes"));
+    must(before->remember(kMoves, "yes"));
+  }
+  robot.working = true;
+  start(cell);
+  turn_for(kSecond);
+  EXPECT_GT(robot.stops, 5) << "until it stands";
+  robot.working = false;
+  turn_for(2 * kSecond);
+  EXPECT_EQ(must(opened(scratch.folder())->remembered(kMoves)), "");
+
+  robot.working = true;
+  robot.stops = 0;
+  start(cell);
+  turn_for(kSecond);
+  EXPECT_EQ(robot.stops, 0) << "a restart in the middle of production";
+}
+
+TEST_F(Loop, KnowsThatAMoveMayBeUnderWayBeforeItAsksForIt) {
+  start(config());
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  const std::unique_ptr<Store> beside = opened(scratch.folder());
+  std::vector<std::string> moves;
+  robot.when_asked = [&] { moves.push_back(must(beside->remembered(kMoves))); };
+  person.say("start");
+  ASSERT_TRUE(turning([&] { return !moves.empty(); }));
+  EXPECT_EQ(moves.front(), "yes");
+  person.say("abort");
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  turn_for(kSecond);
+  EXPECT_EQ(must(beside->remembered(kMoves)), "");
+}
+
+TEST_F(Loop, KeepsSentencesThatTakeTurnsOnceAnHour) {
+  Config cell = config();
+  store = opened(scratch.folder());
+  journal = std::make_unique<Journal>(opened(scratch.folder()));
+  Models models = must(Models::load(cell.robot, *store));
+  ServiceContext context{std::move(cell), Ports{&robot, &robot, &robot, &robot},
+                         person,          *store,
+                         *journal,        std::move(models)};
+  for (int i = 0; i < 500; ++i) {
+    context.now += 20 * kSecond;  // nearly three hours
+    context.tell("error", i % 2 == 0 ? "the trigger is gone" : "no encoder reading");
+  }
+  journal.reset();
+  EXPECT_EQ(must(store->events(100)).size(), 6u);
+}
+
 TEST_F(Loop, LeavesAloneWhatMovesByOthersOnceItsOwnMoveHasEnded) {
   const Config cell = config();
   leave_loaded_session(*opened(scratch.folder()), cell, robot.counts);

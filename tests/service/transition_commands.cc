@@ -72,6 +72,14 @@ TEST(Command, SaysInWhichStateTheServiceIsWhenItRefusesAStart) {
               HasSubstr("accept or reject it first"));
 }
 
+TEST(Command, DoesNotSayThatNoResultWaitsWhereOneDoes) {
+  Script script = script_at(ServiceState::awaiting_acceptance);
+  script.on(What::broken, false, "no reading");
+  ASSERT_EQ(script.s.state, ServiceState::fault);
+  for (const Verb verb : {Verb::accept, Verb::reject})
+    EXPECT_EQ(script.ask(verb).why(Do::refuse), "the service is fault");
+}
+
 TEST(Command, AbortsByStoppingTheRobotBeforeAnythingElseHappens) {
   for (const Phase phase : kAllPhases)
     EXPECT_EQ(script_at(ServiceState::collecting, phase).ask(Verb::abort).done(),

@@ -14,8 +14,7 @@ constexpr Nanoseconds kLeastGap = 4 * kMillisecond;  // or so much
 
 Eigen::VectorXd reading_of(const EncoderSample& sample, const std::vector<EncoderScale>& scales) {
   Eigen::VectorXd q(sample.joints);
-  for (int j = 0; j < sample.joints; ++j)
-    q[j] = static_cast<double>(sample.counts[j] - scales[j].zero) * scales[j].step;
+  for (int j = 0; j < sample.joints; ++j) q[j] = scales[j].reading(sample.counts[j]);
   return q;
 }
 

@@ -48,7 +48,7 @@ void Reflex::unguard() {
 }
 
 void Reflex::watch() {
-  urgent_ = become_urgent();
+  become_urgent();
   while (!ending_) {
     const Nanoseconds now = ports_.trigger_clock->now();
     looked_ = now;

@@ -58,8 +58,6 @@ class Reflex {
   bool alive(Nanoseconds now) const { return !thread_.joinable() || now - looked_ < kSecond; }
   /// Longest time from the edge to the stop request beyond the debounce, since the start (ns).
   Nanoseconds slowest() const { return slowest_; }
-  /// Whether the thread has real-time priority.
-  bool urgent() const { return urgent_; }
 
  private:
   static constexpr std::size_t kMostSettled = 256;
@@ -92,7 +90,7 @@ class Reflex {
 
   std::atomic<std::uint64_t> stopped_ = 0;
   std::atomic<Nanoseconds> looked_ = 0, slowest_ = 0;
-  std::atomic<bool> urgent_ = false, ending_ = false;
+  std::atomic<bool> ending_ = false;
   std::thread thread_;
 };
 

@@ -83,7 +83,19 @@ void Analyst::keep_result(const ResultRecord& result, bool cause) {
       result.decision == ResultDecision::applying || result.decision == ResultDecision::candidate;
   const bool explained = result.answer == ResultAnswer::explained;
   const SlotRecord slot{result.session, result.unix_ms, c_.models.hash(), result.robot_text};
-  if (!c_.stored(c_.store.finish(result, candidate ? &slot : nullptr))) return;
+  Event event;
+  event.what = Event::What::decided;
+  event.why = result.why;
+  event.session = result.session;
+  event.cause = cause;
+  event.decision = next_after(result);
+  // With what is to follow: a power cut may come before that is taken up.
+  const std::string wanted = event.decision == Event::Decision::full
+                                 ? std::string(to_string(SessionKind::full))
+                             : cause ? std::string(to_string(SessionKind::cause))
+                                     : std::string();
+  if (!c_.stored(c_.store.finish(result, candidate ? &slot : nullptr, {kWanted, wanted}))) return;
+  c_.put(std::move(event));  // before anything else can fail
   c_.tell(candidate || explained ? "info" : "warning",
           "session " + std::to_string(result.session) + ": " +
               std::string(to_string(result.answer)) + ", " +
@@ -93,14 +105,7 @@ void Analyst::keep_result(const ResultRecord& result, bool cause) {
   c_.use.temperature_then = collector_.front_end().celsius();
   c_.use.checks = explained ? c_.use.checks + 1 : 0;
   c_.remember_use();
-  c_.stored(c_.store.prune(c_.config.store_bytes));
-  Event event;
-  event.what = Event::What::decided;
-  event.why = result.why;
-  event.session = result.session;
-  event.cause = cause;
-  event.decision = next_after(result);
-  c_.put(std::move(event));
+  c_.prune();
 }
 
 }  // namespace selfcal

@@ -108,7 +108,6 @@ void Collector::announce_plan() {
   began_ = reached_;
   if (here && event.step < event.steps) {
     const StepRecord& step = session_.plan[event.step];
-    // It was in the middle of this very touch: the way back is the way out.
     const StepRecord* last =
         session_.touches.empty() ? nullptr : &session_.plan[session_.touches.back().step];
     // Whatever lock an earlier life has left engaged is released before anything moves.

@@ -44,6 +44,8 @@ class Collector {
   void release();
   /// A move of an earlier life may be under way.
   void expect_motion() { outstanding_ = true; }
+  /// A move of ours may be.
+  bool moves() const { return outstanding_; }
   /// The last move has ended as asked.
   void arrived();
 

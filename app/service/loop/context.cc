@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMostEvents = 1024;
 constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the store
+constexpr std::size_t kToldApart = 8;               // sentences that may take turns
 
 }  // namespace
 
@@ -49,10 +51,13 @@ void ServiceContext::tell(const std::string& level, const std::string& text) {
     spdlog::warn("{}", text);
   else
     spdlog::info("{}", text);
-  // A robot that is switched off must not fill the store with one sentence.
-  if (text == last_told && now - last_told_at < kTellAgain) return;
-  last_told = text;
-  last_told_at = now;
+  // A robot that is switched off must not fill the store with a few sentences.
+  if (const auto again = std::ranges::find(told, text, &Told::text); again != told.end()) {
+    if (now - again->at < kTellAgain) return;
+    told.erase(again);
+  }
+  if (told.size() == kToldApart) told.pop_back();
+  told.push_front({text, now});
   journal.add(EventRecord{0, unix_ms(), level, text});
 }
 
@@ -84,6 +89,11 @@ void ServiceContext::remember_use() {
                 use.motion_hours_then, use.temperature_then.value_or(std::nan("")), use.checks,
                 static_cast<long long>(use.calendar.latest_ms()));
   stored(store.remember("use", line));
+}
+
+void ServiceContext::prune() {
+  if (const auto pruned = store.prune(config.store_bytes); !pruned)
+    tell("warning", "the store is not kept within its bound: " + pruned.error().what);
 }
 
 }  // namespace selfcal

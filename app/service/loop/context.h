@@ -25,6 +25,11 @@ struct Usage {
   int checks = 0;  ///< since the last full one
 };
 
+/// Names under which the store remembers: the session that is to follow by itself; whether a move
+/// of ours may be under way.
+inline constexpr const char* kWanted = "wanted";
+inline constexpr const char* kMoves = "moves";
+
 /// All references outlive it.
 struct ServiceContext {
   Config config;
@@ -38,8 +43,12 @@ struct ServiceContext {
   std::deque<Event> events = {};
   std::uint64_t lost_events = 0;  ///< since the start
   Nanoseconds now = 0;            ///< of the turn
-  std::string last_told = {};
-  Nanoseconds last_told_at = 0;
+  /// What was told last, the newest first.
+  struct Told {
+    std::string text;
+    Nanoseconds at = 0;
+  };
+  std::deque<Told> told = {};
 
   /// Of more than 1024 that wait the others are lost, which is a fault.
   void put(Event event);
@@ -60,6 +69,8 @@ struct ServiceContext {
   Since since() const;
   /// Keeps how much the robot has been used.
   void remember_use();
+  /// Keeps the store within its bound. That it cannot is no reason to stop.
+  void prune();
 
  private:
   bool store_failed(const Failure& failure);

@@ -12,6 +12,7 @@ namespace {
 constexpr Nanoseconds kResumeWithin = 120 * kSecond;  // of the start; later only a person resumes
 constexpr Nanoseconds kStands = 5 * kSecond;          // before a session begins by itself
 constexpr Nanoseconds kRemember = 60 * kSecond;       // between two savings of the hours of motion
+constexpr Nanoseconds kPrune = 3600 * kSecond;        // where no session ends
 
 }  // namespace
 
@@ -21,7 +22,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
       collector_(c_),
       analyst_(c_, collector_),
       reporter_(c_, collector_, analyst_, damaged) {
-  c_.now = test_began_ = last_turn_ = began_ = moved_ = c_.ports.clock->now();
+  c_.now = test_began_ = last_turn_ = began_ = moved_ = last_pruned_ = c_.ports.clock->now();
   c_.extended_state.since = c_.now;
   c_.extended_state.why = "testing encoders, trigger and store";
   testing_ = true;
@@ -35,7 +36,7 @@ Service::Service(Config config, const Ports& ports, Messenger& messenger, Store&
   finish_interrupted_apply();
   recall();
   c_.extended_state.candidate = c_.models.candidate();
-  if (c_.extended_state.unfinished) {  // of an earlier life, told to stop until it stands
+  if (moves_) {  // by an earlier life, told to stop until it stands
     collector_.expect_motion();
     collector_.stop("the service has started");
   }
@@ -54,6 +55,7 @@ void Service::turn() {
   check_self();
   collector_.check_rest();
   collector_.check_stop();
+  if (!may_move(c_.extended_state.state) && !collector_.moves()) note_motion(false);
   check_schedule();
   analyst_.take();
   c_.put(Event::What::tick);
@@ -84,9 +86,17 @@ void Service::handle_events() {
       c_.stored(c_.store.remember("held", c_.extended_state.held ? "yes" : ""));
     // Before the command is answered: what was granted is not lost.
     if (const auto& now = c_.extended_state.wanted; now != wanted)
-      c_.stored(c_.store.remember("wanted", now ? std::string(to_string(*now)) : ""));
+      c_.stored(c_.store.remember(kWanted, now ? std::string(to_string(*now)) : ""));
+    if (may_move(c_.extended_state.state)) note_motion(true);
     for (const Action& action : std::span(others, actions.end())) act(action);
   }
+}
+
+/// Once a session, before the robot is first asked and when it stands at the end: whoever starts
+/// after a kill stops the robot in the first case, and leaves it at its work in the other.
+void Service::note_motion(bool moves) {
+  if (moves_ == moves) return;
+  if (c_.stored(c_.store.remember(kMoves, moves ? "yes" : ""))) moves_ = moves;
 }
 
 Nanoseconds Service::longest_wait() const {
@@ -182,14 +192,19 @@ void Service::remember() {
   if (c_.now - last_remembered_ < kRemember || touching) return;
   last_remembered_ = c_.now;
   c_.remember_use();
+  if (c_.now - last_pruned_ < kPrune) return;
+  last_pruned_ = c_.now;
+  c_.prune();
 }
 
 void Service::recall() {
   // What cannot be read must not let the robot begin by itself.
   const auto held = c_.store.remembered("held");
   c_.extended_state.held = !held || *held == "yes";
-  if (const auto wanted = c_.store.remembered("wanted"); wanted)
+  if (const auto wanted = c_.store.remembered(kWanted); wanted)
     c_.extended_state.wanted = kind_of(*wanted);
+  const auto moves = c_.store.remembered(kMoves);
+  moves_ = !moves || *moves == "yes";
   const auto line = c_.store.remembered("use");
   Usage& use = c_.use;
   long long last = 0, latest = 0;

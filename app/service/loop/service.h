@@ -38,6 +38,7 @@ class Service {
   std::optional<Due> scheduled();  ///< what the schedule asks for now
   void put_due(const Due& next);
   void remember();
+  void note_motion(bool moves);
   void recall();
 
   // service_commands.cc: what a person asks
@@ -74,7 +75,8 @@ class Service {
   bool testing_ = false;
   Nanoseconds moved_ = 0;  ///< when the robot was last seen not to stand
   bool waits_ = false;     ///< what is due waits until it stands, and that was told
-  Nanoseconds last_turn_ = 0, last_remembered_ = 0, last_due_ = 0;
+  Nanoseconds last_turn_ = 0, last_remembered_ = 0, last_due_ = 0, last_pruned_ = 0;
+  bool moves_ = false;  ///< the store has it that a move of ours may be under way
 
   /// Commands that were refused, which are told once a second and not one by one.
   struct Refused {

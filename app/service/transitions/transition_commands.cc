@@ -75,9 +75,9 @@ void TransitionStep::commanded_to_abort() {
     go_idle("aborted by command; what was collected is kept");
 }
 
-/// One that waits is not decided on while its cause is looked for.
+/// One that waits is not decided on while its cause is looked for, or before a fault is mended.
 void TransitionStep::refuse_without_result() {
-  if (s_.candidate && in_session()) return refuse_in_this_state();
+  if (s_.candidate) return refuse_in_this_state();
   refuse(kNoResultWaits);
 }
 
