@@ -7,6 +7,10 @@
 namespace selfcal {
 
 Result<Store*> Archive::store() {
+  if (store_ && store_->moved()) {  // the service has set it aside and begun another
+    store_.reset();
+    planned_session_ = 0;
+  }
   if (!store_) {
     auto opened = Store::open_to_read(folder_);
     if (!opened) return tl::unexpected(opened.error());

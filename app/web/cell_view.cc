@@ -1,6 +1,7 @@
 #include "app/web/cell_view.h"
 
 #include "app/report/page/robot_picture.h"
+#include "app/service/front_end/reading.h"
 #include "io/dds/context.h"
 #include "io/files/json_parts.h"
 #include "io/files/robot_file.h"
@@ -64,13 +65,7 @@ std::optional<Eigen::VectorXd> CellView::heard() {
   if (!encoders_) return std::nullopt;
   samples_.clear();
   if (!encoders_->take(samples_) || samples_.empty()) return std::nullopt;
-  const EncoderSample& last = samples_.back();
-  Eigen::VectorXd q(last.joints);
-  for (int j = 0; j < last.joints; ++j) {
-    const EncoderScale& scale = encoders_->scales()[static_cast<std::size_t>(j)];
-    q[j] = static_cast<double>(last.counts[static_cast<std::size_t>(j)] - scale.zero) * scale.step;
-  }
-  return q;
+  return reading_of(samples_.back(), encoders_->scales());
 }
 
 }  // namespace selfcal

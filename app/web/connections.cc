@@ -47,9 +47,4 @@ void Connections::cut_off() {
   for (const Slot::Entry& each : entries_) ::shutdown(each.socket, SHUT_RDWR);
 }
 
-std::size_t Connections::count() const {
-  const std::lock_guard lock(mutex_);
-  return entries_.size();
-}
-
 }  // namespace selfcal

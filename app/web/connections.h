@@ -43,7 +43,6 @@ class Connections {
   bool push_one_out();
   /// Cuts off all.
   void cut_off();
-  std::size_t count() const;
 
  private:
   mutable std::mutex mutex_;

@@ -185,6 +185,24 @@ TEST(Archive, KnowsTheStepsThatAFurtherRoundHasPlanned) {
   EXPECT_FALSE(archive.planned(session, 5));
 }
 
+TEST(Archive, ReadsTheStoreThatIsThereNow) {
+  const Scratch scratch;
+  auto store = opened(scratch.folder());
+  must(store->begin(some_session(), some_plan(2, 6)));
+  must(store->begin(some_session(), some_plan(2, 6)));
+  Archive archive(scratch.folder(), two_links("d: 0.3", "alpha: 0.2"));
+  EXPECT_EQ(archive.history()["sessions"].size(), 2u);
+  store.reset();
+  for (const char* ending : {"", "-wal", "-shm"}) {
+    const std::string name = std::string("selfcal.db") + ending;
+    if (std::filesystem::exists(scratch.folder() / name))
+      std::filesystem::rename(scratch.folder() / name, scratch.folder() / ("aside." + name));
+  }
+  store = must(Store::open(scratch.folder())).store;
+  must(store->begin(some_session(), some_plan(2, 6)));
+  EXPECT_EQ(archive.history()["sessions"].size(), 1u);
+}
+
 TEST(Changes, AreTheDifferencesOfValuesLargestFirst) {
   const auto factory = two_links("d: 0.3", "alpha: 0.2");
   const auto found =
