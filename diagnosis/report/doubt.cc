@@ -164,9 +164,8 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised
 /// leaves less than it.
 bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
                         const Diagnosis& diagnosis, const Solution& calibrated) {
-  const bool drifts = std::ranges::any_of(
-      diagnosis.named, [](const CauseResult& each) { return each.effect == "base_drift"; });
-  if (!drifts || drifts_too_far(diagnosis.named) || !impossible_size(diagnosis.named).empty())
+  if (diagnosis.named.empty() || drifts_too_far(diagnosis.named) ||
+      !impossible_size(diagnosis.named).empty())
     return false;
   const double with_step =
       (1 - calibrated.frame_steps.front().share) * std::pow(calibrated.residual.fit.rms_after, 2);

@@ -110,6 +110,19 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   return words;
 }
 
+/// What was moved that the rows are all measured against.
+std::string moved_at_once(const Diagnosis& diagnosis) {
+  const bool moved = std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
+    return each.effect == "base_drift" &&
+           std::ranges::any_of(each.correction, [](const FoundEffect& found) {
+             return found.what.shape.moment.has_value();
+           });
+  });
+  return moved ? ". The instrument or the robot's base was moved then: give the rows before and "
+                 "after it as two sets, each with a frame of its own"
+               : "";
+}
+
 /// ". zero_shift at j4 steps 3 times: …", of what is named.
 std::string repeated_steps(const Diagnosis& diagnosis) {
   std::string words;
@@ -197,7 +210,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   if (verdict.effect == kNone) return no_cause(diagnosis);
   if (verdict.effect != kUnknown)
     return (diagnosis.named.size() > 1 ? several_causes(diagnosis) : one_cause(diagnosis)) +
-           repeated_steps(diagnosis) + beside_the_unknown(diagnosis) +
+           moved_at_once(diagnosis) + repeated_steps(diagnosis) + beside_the_unknown(diagnosis) +
            unusual_sizes(diagnosis.named);
   const std::string beside = besides(diagnosis);
   if (!diagnosis.uneven.empty())

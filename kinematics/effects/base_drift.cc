@@ -6,7 +6,8 @@
 // x y z: m, rx ry rz: rad, over the whole data set. Or it wanders: with K half waves over the rows
 // (`half_waves`: [1, 2, 3]),
 //   shift = sum over K of (1 - cos(K pi u)) / 2 (xK yK zK),   turn likewise by (rxK ryK rzK)
-// u the straight line above; the larger K, the smaller each is expected to be.
+// u the straight line above; the larger K, the smaller each is expected to be. Or it is moved at a
+// `moment` (s), the robot's base or the instrument: s is 0 before and 1 from then on.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,15 +28,27 @@ class BaseDrift final : public Effect {
     if (settle_ < 0) plan.fields.fail("settle", "a time of at least 0 s");
     half_waves_ = plan.fields.positives("half_waves", "half waves over the rows");
     if (!all_differ(half_waves_)) plan.fields.fail("half_waves", "numbers that differ");
+    moment_ = plan.fields.optional_number("moment");
     if (settle_ > 0 && !half_waves_.empty())
       plan.fields.fail("settle", "a drift that settles or one that wanders");
-    if (half_waves_.empty()) add_motion("", 1);
-    for (const double k : half_waves_) add_motion(format_number(k), k);
+    if (moment_ &&
+        (settle_ > 0 || !half_waves_.empty() || plan.fields.has("begin") || plan.fields.has("end")))
+      plan.fields.fail("moment", "a base that drifts or one that is moved at once");
+    if (moment_) add_motion("", 2e-3, 2e-3);
+    if (!moment_ && half_waves_.empty()) add_motion("", 2e-4, 2e-4);
+    for (const double k : half_waves_) add_motion(format_number(k), 2e-4 / k, 2e-4 / k);
   }
 
-  std::string needs() const override { return "rows with times, spread over the drift"; }
+  std::string needs() const override {
+    return moment_ ? "rows with times before and after it"
+                   : "rows with times, spread over the drift";
+  }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
+    if (moment_) {
+      if (at.time >= *moment_) move(at, 1, 0, into);
+      return;
+    }
     if (std::isnan(at.time) || !drifts()) return;
     const double time = std::clamp(at.time, *begin_, *end_);
     if (half_waves_.empty()) return move(at, share(time), 0, into);
@@ -61,11 +74,12 @@ class BaseDrift final : public Effect {
 
   bool drifts() const { return begin_ && end_ && *end_ > *begin_; }
 
-  void add_motion(const std::string& suffix, double smaller) {
+  /// The least that is usual is a 40th of the most shift and a 20th of the most turn.
+  void add_motion(const std::string& suffix, double shift, double turn) {
     for (const char* name : {"x", "y", "z"})
-      parameters_.push_back({name + suffix, "m", 5e-6 / smaller, 2e-4 / smaller});
+      parameters_.push_back({name + suffix, "m", shift / 40, shift});
     for (const char* name : {"rx", "ry", "rz"})
-      parameters_.push_back({name + suffix, "rad", 1e-5 / smaller, 2e-4 / smaller});
+      parameters_.push_back({name + suffix, "rad", turn / 20, turn});
   }
 
   /// The columns from `first` on: `s` of a shift along and a turn about each axis.
@@ -87,13 +101,14 @@ class BaseDrift final : public Effect {
   }
 
   void describe_shape(Node& node) const override {
+    if (moment_) return void(node.set("moment", Node::of(*moment_)));
     if (begin_) node.set("begin", Node::of(*begin_));
     if (end_) node.set("end", Node::of(*end_));
     if (settle_ > 0) node.set("settle", Node::of(settle_));
     if (!half_waves_.empty()) node.set("half_waves", Node::of(half_waves_));
   }
 
-  std::optional<double> begin_, end_;  ///< s
+  std::optional<double> begin_, end_, moment_;  ///< s
   double settle_ = 0;
   std::vector<double> half_waves_;
 };
@@ -116,9 +131,16 @@ void suppose_base_drift(const Supposed& rows, const EffectPlace& place, Supposit
     std::iota(half_waves.begin(), half_waves.end(), 1.0);
     shapes.push_back({.half_waves = std::move(half_waves)});
   }
+  const auto drifting = static_cast<double>(shapes.size());
   for (EffectShape& each : shapes) {
     to.add("base", std::move(each));
     to.last().drifts = true;
+  }
+  // As probable, all moments together, as all drifts.
+  const std::vector<double> moments = rows.moments(-1);
+  for (const double moment : moments) {
+    to.add("base", {.moment = moment});
+    to.last().share = drifting / static_cast<double>(moments.size());
   }
 }
 

@@ -117,17 +117,24 @@ TEST(Candidates, LookForThePitchOfTheScrewsOfSlides) {
   EXPECT_EQ(finest("turn"), 64);
 }
 
-TEST(Candidates, LetTheBaseDriftSettleAndWander) {
-  int straight = 0, settling = 0, wandering = 0;
+TEST(Candidates, LetTheBaseDriftSettleWanderAndBeMovedAtOnce) {
+  int straight = 0, settling = 0, wandering = 0, moved = 0;
+  double drifting = 0, at_once = 0;
   for (const Candidate& each : Session(50).candidates().list) {
     if (each.effect != "base_drift") continue;
     const std::size_t waves = each.shape.half_waves.size();
-    (waves > 0 ? wandering : each.shape.settle ? settling : straight) += 1;
+    (waves > 0           ? wandering
+     : each.shape.settle ? settling
+     : each.shape.moment ? moved
+                         : straight) += 1;
+    (each.shape.moment ? at_once : drifting) += std::exp(each.log_prior);
     EXPECT_EQ(each.main.size(), waves > 0 ? 6 * waves : 6);
   }
   EXPECT_EQ(straight, 1);
   EXPECT_EQ(settling, 2);
   EXPECT_EQ(wandering, 2);
+  EXPECT_GT(moved, 10);
+  EXPECT_NEAR(at_once, drifting, 1e-12);
 }
 
 TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {

@@ -124,6 +124,19 @@ TEST(BaseDriftByHand, SettlesWithItsTimeConstant) {
   expect_near(moved(kTurntable, settling, held, an_hour()).p, 0, 100e-6, 0, 1e-15);
 }
 
+TEST(BaseDriftByHand, MovesAtOnce) {
+  Held held;
+  const std::string away = "[{effect: base_drift, moment: 1900, x: 1.0e-4, rz: 4.0e-4}]";
+  held.time = 1899;
+  expect_near(moved(kTurntable, away, held, an_hour()).p, 0, 0, 0, 1e-15);
+  for (const double time : {1900.0, 9000.0}) {
+    held.time = time;
+    expect_near(moved(kTurntable, away, held, an_hour()).p, 100e-6, 400e-6, 0, 1e-15);
+  }
+  held.time = kUnknown;
+  expect_near(moved(kTurntable, away, held, an_hour()).p, 0, 0, 0, 1e-15);
+}
+
 TEST(BaseDriftByHand, HasNotBegunBeforeItsBeginAndIsOverAfterItsEnd) {
   Held held;
   for (const char* shape : {"x: 1.0e-4", "settle: 10, x: 1.0e-4", "half_waves: [1], x1: 1.0e-4"}) {

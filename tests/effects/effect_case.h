@@ -43,6 +43,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"BaseDrift", "effect: base_drift, at: base"},
       {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
       {"BaseDriftThatWanders", "effect: base_drift, half_waves: [1, 2.5]"},
+      {"BaseMovedAtOnce", "effect: base_drift, moment: 1000"},
       {"ZeroShift", "effect: zero_shift, at: JOINT, moment: 1000"},
       {"ZeroShiftByTemperature", "effect: zero_shift, at: JOINT, by: temperature, reference: 21"},
       {"ProbePretravel", "effect: probe_pretravel, at: probe"},

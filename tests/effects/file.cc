@@ -201,6 +201,8 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: thermal_expansion, lag: -1}", "lag"},
       {"{effect: base_drift, at: j1}", "base"},
       {"{effect: base_drift, settle: -5}", "settle"},
+      {"{effect: base_drift, moment: 5, settle: 5}", "moved at once"},
+      {"{effect: base_drift, moment: 5, end: 50}", "moved at once"},
       {"{effect: zero_shift, at: j1}", "moment"},
       {"{effect: probe_pretravel, at: j1}", "probe"},
       {"{effect: trigger_latency, at: base}", "probe"},
