@@ -57,7 +57,8 @@ class Information {
       const std::vector<KnownLength> known = sets[s].method->known_lengths();
       const bool opposite = touched_from_other_side(s);
       for (size_t i = 0; i < known.size(); ++i) {
-        const double sigma = doubt_of_length(sets[s], known[i], opposite);
+        const double given = doubt_of_length(sets[s], known[i], opposite);
+        const double sigma = given > 0 ? std::hypot(given, form_between(s)) : 0;
         if (sigma > 0)
           add(static_cast<int>(R_.cols()) - 1 - equations_.known_lengths() +
                   equations_.known_at(s) + static_cast<int>(i),
@@ -88,6 +89,26 @@ class Information {
     const Set& of = equations_.data().sets[static_cast<size_t>(set)];
     return of.reference >= 0 && probe_radius(*of.method) > 0 &&
            mean_normal(set).dot(mean_normal(of.reference)) < 0;
+  }
+
+  /// What the surfaces of a length between two may be uneven by (m): what their rows scatter by
+  /// beyond those of the quietest of its kind. It does not average out.
+  double form_between(int set) const {
+    const int reference = equations_.data().sets[static_cast<size_t>(set)].reference;
+    return reference < 0 ? 0 : std::hypot(unevenness(set), unevenness(reference));
+  }
+
+  double unevenness(int set) const {
+    const auto& sets = equations_.data().sets;
+    const auto& left = adjusted_.fitted.noise.estimated;
+    const auto of = static_cast<size_t>(set);
+    double quietest = left[of].length;
+    for (size_t s = 0; s < sets.size(); ++s)
+      if (sets[s].method->touches() == sets[of].method->touches() &&
+          !equations_.plan(static_cast<int>(s)).items.empty())
+        quietest = std::min(quietest, left[s].length);
+    const double quiet = std::max(quietest, equations_.stated(set).length);
+    return std::sqrt(std::max(0.0, std::pow(left[of].length, 2) - std::pow(quiet, 2)));
   }
 
   Eigen::Vector3d mean_normal(int set) const {

@@ -82,7 +82,7 @@ std::unique_ptr<Effect> make_thermal_expansion(const EffectPlan& plan) {
 void suppose_thermal_expansion(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (!place.whole()) return;
   const Statics* statics = rows.robot.statics();
-  if (!statics) return to.cannot("", std::string(kNoStatics));
+  if (!statics) return to.cannot("", "no chain of links carries the tool: see leg_thermal_growth");
   if (!rows.warms) return to.cannot("", "the rows carry no temperatures that change");
   const double span = rows.context.end - rows.context.begin;
   const Mechanics& mechanics = statics->mechanics();
