@@ -57,7 +57,7 @@ void report_groups(const Equations& equations, int set, const Fit& fit, const Ei
 constexpr double kRedundant = 3;  // equations an unknown: fewer are met whatever the noise
 constexpr double kMisstated = 3;  // of the data sheet's noise that rows scatter by less
 /// Of the data sheet's noise, of that of immediate repeats.
-constexpr double kMoreThanSheet = 1.5, kMoreThanRepeats = 2;
+constexpr double kMoreThanSheet = 1.2, kMoreThanRepeats = 2;
 constexpr int kFewestFar = 3;     // rows kept aside beyond the noise, and their share,
 constexpr double kOften = 0.1;    // that are no false rows
 constexpr double kRarely = 0.01;  // of as much, where the data sheet is right

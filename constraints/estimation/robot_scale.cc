@@ -13,6 +13,7 @@
 
 #include "constraints/estimation/shrinkage.h"
 #include "constraints/fitting/instrument_scale.h"
+#include "constraints/identifiability/gauge.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/readable.h"
@@ -232,7 +233,9 @@ class ScaleTest {
                    : with_figures("the %.0f lengths given are ", m)) +
            with_figures("%.2g %%", 100 * std::abs(scale.excess)) +
            (scale.excess > 0 ? " more" : " less") + " than the maker's lengths " +
-           (reads_lengths() ? "and the other rows " : "") +
+           (reads_lengths()                  ? "and the other rows "
+            : has_slides(equations_.robot()) ? "and the readings of its slides "
+                                             : "") +
            with_figures("say, which tell the scale to %.2g %% (%.2g sigma): ",
                         100 * scale.excess_sigma, sigmas) +
            "check the length given and the lengths in the robot's file";

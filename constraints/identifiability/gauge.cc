@@ -102,10 +102,13 @@ std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd&
   return last;
 }
 
+bool has_slides(const Robot& robot) {
+  return std::ranges::any_of(robot.joints(),
+                             [](const Joint& joint) { return joint.quantity == Quantity::length; });
+}
+
 std::string why_scale_is_held(const Robot& robot) {
-  const bool slides = std::ranges::any_of(
-      robot.joints(), [](const Joint& joint) { return joint.quantity == Quantity::length; });
-  return slides
+  return has_slides(robot)
              ? "the touches tell the robot's scale less well than the maker's lengths do, though "
                "its slides read lengths: this one is held where the maker's together have the "
                "scale"

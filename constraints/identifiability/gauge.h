@@ -28,6 +28,9 @@ bool orientation_is_seen(const Equations& equations);
 std::optional<int> held_scale(const Equations& equations, const Eigen::MatrixXd& R,
                               const Eigen::VectorXd& xi, const std::vector<char>& free);
 
+/// Joints that slide read lengths, and so have a part of the scale.
+bool has_slides(const Robot& robot);
+
 /// What is said of the length that is held for it.
 std::string why_scale_is_held(const Robot& robot);
 
