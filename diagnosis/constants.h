@@ -59,8 +59,12 @@ struct DiagnosisConstants {
     /// Share beyond the nuisance parameters below which a candidate says nothing; 1e-6 to 0.02
     /// [habit]
     double least_seen = 1e-3;
-    /// Of a cause, over the noise, each as probable as the others; 0.1 to 100 [trials]
-    std::array<double, 7> sizes = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
+    /// Of a cause, over the noise, each as probable as the others but for the last; 0.1 to 100
+    /// [trials]
+    std::array<double, 8> sizes = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 64.0};
+    /// Probability of the last of these: an instrument that was pushed, a tool that was exchanged;
+    /// 0.005 to 0.1 [physics]
+    double huge = 0.02;
     /// Times the usual largest: up to it a size is as good as any; 1 to 10 [physics]
     double as_usual = 3;
     double tenfold = 2;     ///< log evidence that ten times that costs; 1 to 5 [trials]
@@ -248,6 +252,9 @@ struct DiagnosisConstants {
     /// Of the squares that a moved instrument leaves: named effects that leave less tell it better;
     /// 0.5 to 1 [habit]
     double better_than_moved = 0.8;
+    /// Of a gear's error, in what the rows move its joint by: of fewer whatever grows along it
+    /// looks like one; 0.5 to 1.5 [physics]
+    double fewest_waves = 0.75;
     /// Rows put aside, at least, that may have something in common, and the probability by which
     /// they do by chance; 3 to 8, 1e-4 to 0.01 [habit]
     int fewest_alike = 4;
@@ -258,10 +265,12 @@ struct DiagnosisConstants {
     double confirmed = 0.3;
     /// Where nothing is found in rows that scatter more than their files state: how wrong a stated
     /// noise is, in its logarithm (1 sigma, of a Student variable of five freedoms); how probable
-    /// it is, over none, that something unknown scatters them, of any size from a quarter of the
-    /// noise to sixteen times; log evidence of repeats by which it is noise all the same; 0.1 to
-    /// 0.4, 0.03 to 0.3, 1 to 5 [physics]
+    /// it is, over none, that something unknown scatters them; log evidence of repeats by which it
+    /// is noise all the same; 0.1 to 0.4, 0.03 to 0.3, 1 to 5 [physics]
     double sheet_is_off = 0.15, scattered = 0.1, surely_confirmed = 2.3;
+    /// Of what scatters them, over the noise, any size between as probable; 0.1 to 0.5, 4 to 64
+    /// [physics]
+    double least_scattered = 0.25, most_scattered = 16;
     double worth_a_word = 1.3;  ///< of the stated noise; 1.1 to 2 [habit]
     /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
     /// farther are no noise, if there are as many as told; 1.4 to 2, 5 to 30 [trials]

@@ -12,6 +12,12 @@ namespace {
 
 double middle(const EffectParameter& p) { return std::sqrt(p.usual_least * p.usual_most); }
 
+double log_prior_of_size(double size) {
+  constexpr auto& sizes = kDiagnosis.evidence.sizes;
+  constexpr double huge = kDiagnosis.evidence.huge;
+  return std::log(size == sizes.back() ? huge : (1 - huge) / (sizes.size() - 1.0));
+}
+
 }  // namespace
 
 EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovariance> structures,
@@ -107,8 +113,7 @@ void EvidenceEvaluator::make_blocks(const std::vector<EffectParameter>& paramete
     block.group = static_cast<int>(blocks_.size());
     plausibility_.emplace_back();
     for (std::size_t i = 0; i < kSizes.size(); ++i)
-      plausibility_.back()[i] =
-          plausibility(block.group, kSizes[i]) - std::log(static_cast<double>(kSizes.size()));
+      plausibility_.back()[i] = plausibility(block.group, kSizes[i]) + log_prior_of_size(kSizes[i]);
     spectrum_at_.push_back(spectrum_at_.back() +
                            MarginalLikelihood::spectrum_size(block, kSizes.size()));
     blocks_.push_back(std::move(block));
@@ -257,7 +262,7 @@ double EvidenceEvaluator::sized(Hypothesis& h, const Eigen::MatrixXd& G) const {
 
 double EvidenceEvaluator::held(int candidate, double size) const {
   // It stays at the best of the grid, about two of which matter.
-  return plausibility(candidate, size) - std::log(static_cast<double>(kSizes.size()) / 2);
+  return plausibility(candidate, size) + log_prior_of_size(size) + std::log(2.0);
 }
 
 double EvidenceEvaluator::held(const Hypothesis& h) const {

@@ -78,13 +78,14 @@ double log_confirmed(const Scatter& scatter) {
 
 double unknown_by_scatter(const Scatter& scatter, double freedom) {
   const double ratio = scatter.found / scatter.declared;
-  const auto& sizes = kDiagnosis.evidence.sizes;
+  const DiagnosisConstants::Report& rules = kDiagnosis.report;
   const double size = std::sqrt(std::max(0.0, ratio * ratio - 1));  // of it, over the noise
-  if (size < sizes.front()) return 0;
-  const double of_unknown = ratio * ratio / (size * size) / std::log(sizes.back() / sizes.front());
-  const double off = std::hypot(kDiagnosis.report.sheet_is_off, 1 / std::sqrt(2 * freedom));
+  if (size < rules.least_scattered) return 0;
+  const double of_unknown =
+      ratio * ratio / (size * size) / std::log(rules.most_scattered / rules.least_scattered);
+  const double off = std::hypot(rules.sheet_is_off, 1 / std::sqrt(2 * freedom));
   const double log_odds =
-      std::log(kDiagnosis.report.scattered * of_unknown / student_of_five(std::log(ratio), off)) -
+      std::log(rules.scattered * of_unknown / student_of_five(std::log(ratio), off)) -
       log_confirmed(scatter);
   return 1 / (1 + std::exp(-log_odds));
 }

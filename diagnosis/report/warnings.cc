@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "diagnosis/constants.h"
 #include "diagnosis/findings.h"
@@ -119,6 +120,28 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
                                       : "");
 }
 
+std::string warning_of_few_waves(const Robot& robot, const Eigen::MatrixXd& q,
+                                 const std::vector<CauseResult>& named) {
+  std::string places;
+  for (std::size_t j = 0; j < robot.joints().size(); ++j) {
+    const Joint& joint = robot.joints()[j];
+    const auto column = q.col(static_cast<Eigen::Index>(j));
+    const double way = column.maxCoeff() - column.minCoeff();
+    const double turns = joint.quantity == Quantity::length ? way : way / (2 * std::numbers::pi);
+    double waves = 0;
+    for (const CauseResult& each : named)
+      for (const FoundEffect& found : each.correction)
+        if (found.what.effect == "transmission_error" && found.what.at == joint.name)
+          for (const double k : found.what.shape.waves) waves = std::max(waves, k * turns);
+    if (waves > 0 && waves < kDiagnosis.report.fewest_waves)
+      places += (places.empty() ? "" : ", ") + joint.name;
+  }
+  if (places.empty()) return {};
+  return "transmission_error at " + places +
+         ": hardly a wave lies in what the rows move it by: a pitch that grows along it, a rail "
+         "that bows, a cable that pulls, look like it";
+}
+
 std::string warning_of_own_effects(const Robot& robot) {
   std::string names;
   for (const Effect* effect : effects_of(robot))
@@ -160,6 +183,7 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
   std::vector<std::string> list;
   for (const std::string& each :
        {of_fits(validation), of_undecided(validation), of_gears(validation),
+        warning_of_few_waves(linearised.geometry(), data.rows.q, diagnosis.named),
         of_noise(linearised, data, diagnosis.gap), warning_of_scatter(linearised, data, diagnosis),
         warning_of_uneven_noise(linearised, data, diagnosis), of_order(data),
         of_masses(linearised)})

@@ -9,10 +9,12 @@
 
 namespace selfcal {
 
+struct CauseResult;
 struct Diagnosis;
 
-/// Fits that failed, gear ratios that were off, noise that only a data sheet tells or that is
-/// beyond it, rows without a time. `diagnosis` is read for its verdict and gap alone.
+/// Fits that failed, gear ratios that were off, gears of which the rows see hardly a wave, noise
+/// that only a data sheet tells or that is beyond it, rows without a time. `diagnosis` is read for
+/// its verdict and gap alone.
 std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
                                      const HoldoutValidation& validation,
                                      const Diagnosis& diagnosis);
@@ -25,6 +27,11 @@ std::string warning_of_own_effects(const Robot& robot);
 /// none is.
 std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
                              const Eigen::VectorXd& sigma);
+
+/// Named transmission errors of which hardly a wave lies in what the rows move their joint by:
+/// whatever else grows along it looks like them; empty where there is none.
+std::string warning_of_few_waves(const Robot& robot, const Eigen::MatrixXd& q,
+                                 const std::vector<CauseResult>& named);
 
 /// What the validation rows say of the named cause, and of the corrected model with everything
 /// found, where that is not plain; empty where it is.

@@ -62,6 +62,25 @@ Diagnosis named(double before, double after, double least) {
   return diagnosis;
 }
 
+TEST(Warnings, SayWhereHardlyAWaveOfAGearIsSeen) {
+  const auto robot = robot_of(R"({robot: r, kind: serial, frames: [
+    {name: x, joint: prismatic, limits: [0, 2]},
+    {name: turn, joint: revolute, alpha: 1.57, d: 0.3, limits: [-3, 3]},
+    {name: tool, joint: fixed, d: 0.2}]})");
+  const auto named = [](const char* at, double waves) {
+    FoundEffect found;
+    found.what = {"transmission_error", at, {.waves = {waves}}};
+    return std::vector{CauseResult{.effect = "transmission_error", .correction = {found}}};
+  };
+  Eigen::MatrixXd q(2, 2);
+  q << 0.1, -1, 0.8, 1.2;
+  EXPECT_THAT(warning_of_few_waves(*robot, q, named("x", 1)),
+              HasSubstr("error at x: hardly a wave"));
+  EXPECT_EQ(warning_of_few_waves(*robot, q, named("x", 2)), "");
+  EXPECT_THAT(warning_of_few_waves(*robot, q, named("turn", 2)), HasSubstr("at turn"));
+  EXPECT_EQ(warning_of_few_waves(*robot, q, named("turn", 3)), "");
+}
+
 TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0.3)), IsEmpty());
   EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0)),
