@@ -23,7 +23,9 @@ bool only_named(const Diagnosis& diagnosis) {
 double percent(double share) { return std::round(100 * share) + 0.0; }
 
 std::string closed_by(const Closed& closed, const std::string& words) {
-  const std::string share = printed("%.0f %% ", percent(*closed.fraction)) + words;
+  constexpr double kAll = 1.05;  // beyond it less is left than noise
+  const std::string share =
+      (*closed.fraction > kAll ? "all " : printed("%.0f %% ", percent(*closed.fraction))) + words;
   if (closed.too_few) return share + " (too few rows judge it for an interval)";
   if (!std::isfinite(closed.least + closed.most))
     return share + " (so near the noise that no interval can be given)";

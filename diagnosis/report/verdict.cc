@@ -47,9 +47,9 @@ std::string with_shape(const CauseResult& cause) {
   return with_places(cause) + (cause.shape.empty() ? "" : " (" + cause.shape + ")");
 }
 
-/// What leaves more than before closes nothing.
+/// What leaves more than before closes nothing, and what leaves less than noise closes all.
 std::string percent(double share) {
-  return share < 0.005 ? "nothing" : phrase("%.0f %%", 100 * share);
+  return share < 0.005 ? "nothing" : share > 1.05 ? "all" : phrase("%.0f %%", 100 * share);
 }
 
 /// ". It closes 97 % of what calibration leaves; noise alone does as well in …"

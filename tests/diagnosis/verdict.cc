@@ -1,5 +1,6 @@
 #include "diagnosis/report/verdict.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -7,6 +8,8 @@
 
 namespace selfcal {
 namespace {
+
+using testing::HasSubstr;
 
 Diagnosis with(CauseResult verdict) {
   Diagnosis diagnosis;
@@ -40,6 +43,8 @@ TEST(VerdictInWords, TellsHowMuchOfTheGapIsClosed) {
   EXPECT_EQ(verdict_in_words(diagnosis),
             "backlash at j1 causes the gap (over 99 % sure). It closes 97 % of what calibration "
             "leaves; noise alone explains as much in 0.005 of cases");
+  diagnosis.gap.closed.fraction = 1.46;
+  EXPECT_THAT(verdict_in_words(diagnosis), HasSubstr("It closes all of what calibration leaves"));
 }
 
 TEST(VerdictInWords, TellsWhatIsLeftBesideWhatIsNamed) {

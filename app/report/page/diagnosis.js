@@ -56,7 +56,7 @@ function causes_of(data) {
   const named = data.result.verdict.named;
   const closes = cause => named.find(each => each.effect === cause.effect &&
                                              each.where.join() === cause.where.join()) || {};
-  const share = value => known(value) ? Math.round(100 * value) + " %" : "";
+  const share = value => known(value) ? (value > 1.05 ? "all" : Math.round(100 * value) + " %") : "";
   return [
     chart(bars(likely.map(each => ({label: wrapped(cause_words(each)), value: each.probability,
       colour: named.length && closes(each).effect ? "after" : "soft"})), "probability", "soft", 1),
