@@ -262,8 +262,9 @@ struct Solution {
   std::vector<SetResult> sets;  ///< empty when no row identifies
   std::vector<Outlier> outliers;
   Residuals residual;
-  EndpointSigma endpoint;         ///< over all that the joints can do
-  EndpointSigma workspace;        ///< over where it counts: the verdict's
+  EndpointSigma endpoint;   ///< over all that the joints can do
+  EndpointSigma workspace;  ///< over where it counts: the verdict's
+  double strays = 0;        ///< m, in each direction, from any geometry, beside that; 0: not seen
   bool orientation_seen = false;  ///< rows tell how the endpoint is turned
   RobotScale scale;
   Uncertainty uncertainty;  ///< without budget where nothing was identified

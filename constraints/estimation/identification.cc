@@ -226,7 +226,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
                   nominal_explains(adjusted, rank, solution.residual.fit),
                   lie_beyond(data.rows, question.poses),
                   turned,
-                  strays(equations, solution.sets)};
+                  solution.strays = strays(equations, solution.sets)};
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || !known_to(solution.workspace, data.target))
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));

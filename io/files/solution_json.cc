@@ -218,6 +218,7 @@ nlohmann::ordered_json to_json(const Solution& solution, const std::string& robo
   json["residual"] = of_residuals(solution.residual);
   json["endpoint_sigma"] = of_endpoint(solution.endpoint, solution.orientation_seen);
   json["endpoint_sigma"]["workspace"] = of_endpoint(solution.workspace, solution.orientation_seen);
+  json["endpoint_sigma"]["strays"] = solution.strays;
   json["scale"] = of_scale(solution.scale);
   json["uncertainty"] =
       solution.uncertainty.budget.empty() ? Json() : of_uncertainty(solution.uncertainty);

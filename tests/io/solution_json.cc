@@ -48,6 +48,7 @@ Solution example() {
   solution.outliers = {{17, "table", 4.1e-4, false, "outlier"},
                        {18, "table", 3.9e-4, true, "outlier among the check rows"}};
   solution.residual.fit = {180, false, 1.2e-3, 2.1e-5, 1.7e-5, 6e-5, 0, {}};
+  solution.strays = 3e-5;
   solution.observability.condition = std::numeric_limits<double>::infinity();
   return solution;
 }
@@ -68,6 +69,7 @@ TEST(SolutionJson, HasTheKeysOfTheFormatInItsOrder) {
   EXPECT_THAT(keys(json["residual"]["check"]),
               ElementsAre("rows", "rms_before", "rms_after", "mean_after", "max_after",
                           "rms_without_rejected", "by_set"));
+  EXPECT_EQ(json["endpoint_sigma"]["strays"], 3e-5);
   EXPECT_EQ(json["gauge"].dump(), R"([{"parameter":"r4","why":"scale is free"}])");
   EXPECT_EQ(json["unexcited"].dump(), R"([{"parameter":"K5","what":"j5 moved little"}])");
   EXPECT_EQ(json["sets"][0]["own"].dump(), R"([{"name":"table.nx","value":0.01,"sigma":1e-06}])");
