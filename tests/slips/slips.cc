@@ -11,6 +11,8 @@
 namespace selfcal::slips {
 namespace {
 
+constexpr const char* kMoved = "The instrument or the robot's base was moved then";
+
 /// Positions of a tracker: motoman-tracker.
 std::vector<Slip> of_a_tracker() {
   return {
@@ -52,13 +54,21 @@ std::vector<Slip> of_a_tracker() {
        "no machine has S1.sin1",
        {},
        true},
-      {"motoman-tracker", "tracker moved 4 mm", moved_from_half({3e-3, -2e-3, 1e-3}),
-       "Not determined", "between rows 100 and 101 the instrument of set tracker"},
+      {"motoman-tracker",
+       "tracker moved 4 mm",
+       moved_from_half({3e-3, -2e-3, 1e-3}),
+       "Not determined",
+       kMoved,
+       {"base_drift"}},
       {"motoman-tracker", "tracker moved 40 mm", moved_from_half({3e-2, -2e-2, 2e-2}),
        "between rows 100 and 101 the instrument of set tracker",
        "between rows 100 and 101 the instrument of set tracker"},
-      {"motoman-tracker", "tracker turned 0.2 degrees", turned_from_half(0.2), "Not determined",
-       "look at the rows and files first"},
+      {"motoman-tracker",
+       "tracker turned 0.2 degrees",
+       turned_from_half(0.2),
+       "Not determined",
+       kMoved,
+       {"base_drift"}},
       {"motoman-tracker", "tracker drifts 20 mm",
        place([](Numbers& p, double done) { p[0] += 0.02 * done; }), "Not determined",
        "no machine has base.x"},
@@ -149,9 +159,12 @@ std::vector<Slip> of_locations() {
        "Not improved",
        "",
        {"tool_shift"}},
-      {"ipa-ur10-random", "tracker moved 4 mm", moved_from_half({3e-3, -2e-3, 1e-3}),
+      {"ipa-ur10-random",
+       "tracker moved 4 mm",
+       moved_from_half({3e-3, -2e-3, 1e-3}),
        "between rows 100 and 101 the instrument of set tmac",
-       "between rows 100 and 101 the instrument of set tmac"},
+       kMoved,
+       {"base_drift"}},
       {"ipa-ur10-random", "measurements one row late", measured_elsewhere(true),
        "Look at the files first", "Look at the files first"},
       {"ipa-ur10-random", "30 percent off by 5 mm", false_places(0.3, 5e-3), "Not improved", ""},
