@@ -57,8 +57,8 @@ class Information {
       const std::vector<KnownLength> known = sets[s].method->known_lengths();
       const bool opposite = touched_from_other_side(s);
       for (size_t i = 0; i < known.size(); ++i) {
-        const double given = doubt_of_length(sets[s], known[i], opposite);
-        const double sigma = given > 0 ? std::hypot(given, form_between(s)) : 0;
+        const double sigma =
+            std::hypot(doubt_of_length(sets[s], known[i], opposite), form_between(s));
         if (sigma > 0)
           add(static_cast<int>(R_.cols()) - 1 - equations_.known_lengths() +
                   equations_.known_at(s) + static_cast<int>(i),
