@@ -14,7 +14,9 @@ namespace {
 constexpr int kMostSteps = 100;
 constexpr double kThere = 1e-9;       // of the robot's size; rad
 constexpr double kWhole = 0.2;        // of the robot's size: what a turn weighs beside a shift
-constexpr double kBeside = 1e-5;      // the same, where the orientation cannot be had
+constexpr double kBeside = 1e-5;      // the same at last, where the orientation cannot be had
+constexpr double kLighter = 30;       // so many times from one weight to the next
+constexpr double kSettled = 0.999;    // of what was left before: as near as this weight brings it
 constexpr double kLongestStep = 0.5;  // units of the readings
 constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6, kLeastDamping = 1e-12;
 
@@ -23,6 +25,7 @@ struct Lane {
   Eigen::VectorXd q, e;  ///< where it is, and what is left there, over the robot's size
   Eigen::MatrixXd J;     ///< of e, by units of the readings
   double damping = kFirstDamping;
+  double weight = kWhole;  ///< of a turn
   ReachedPose best;
   bool done = false;
 };
@@ -37,8 +40,7 @@ class DampedSteps {
         at_(at),
         size_(size_of(robot)),
         units_(units_of_readings(robot)),
-        whole_(robot.joints().size() >= 6),
-        weight_(whole_ ? kWhole : kBeside) {}
+        whole_(robot.joints().size() >= 6) {}
 
   std::vector<ReachedPose> run(const Eigen::MatrixXd& starts) {
     std::vector<Lane> lanes(static_cast<std::size_t>(starts.rows()));
@@ -85,24 +87,42 @@ class DampedSteps {
     const Eigen::Vector3d shift = wanted_.p - X_.p(i);
     const Eigen::Vector3d turn = log_rotation(wanted_.R * X_.R(i).transpose());
     Eigen::VectorXd e(6);
-    e << shift / size_, weight_ * turn;
-    if (lane.e.size() > 0 && !(e.norm() < lane.e.norm())) return refuse(lane);
-    if (lane.e.size() > 0) lane.damping = std::max(lane.damping / 10, kLeastDamping);
+    e << shift / size_, lane.weight * turn;
+    const bool first = lane.e.size() == 0;
+    if (!first && !(e.norm() < lane.e.norm())) return refuse(lane);
+    const bool settled = !first && e.norm() > kSettled * lane.e.norm();
+    if (!first) lane.damping = std::max(lane.damping / 10, kLeastDamping);
     lane.q = proposed;
     lane.e = e;
     lane.J.resize(6, J_.cols());
     for (int c = 0; c < 6; ++c)
-      lane.J.row(c) = (c < 3 ? 1 / size_ : weight_) *
+      lane.J.row(c) = (c < 3 ? 1 / size_ : lane.weight) *
                       J_.row(c * kLanes + i).cwiseProduct(units_.matrix().transpose());
-    const bool there = shift.norm() < kThere * size_ && (!whole_ || turn.norm() < kThere);
-    lane.best = {proposed, shift.norm(), turn.norm(), step, there};
-    // Beside the position, the orientation has still to come as near as it goes.
-    lane.done = there && (whole_ || lane.damping <= kLeastDamping);
+    const bool placed = shift.norm() < kThere * size_, turned = turn.norm() < kThere;
+    lane.best = {proposed, shift.norm(), turn.norm(), step, placed && (turned || !whole_)};
+    lane.done = placed && turned;
+    if (settled && !whole_ && !lane.done) lighten(lane);
   }
 
-  static void refuse(Lane& lane) {
+  void refuse(Lane& lane) const {
     lane.damping *= 10;
-    lane.done = lane.e.size() == 0 || lane.damping > kMostDamping;
+    if (lane.e.size() == 0) {
+      lane.done = true;
+    } else if (lane.damping > kMostDamping) {
+      whole_ ? void(lane.done = true) : lighten(lane);
+    }
+  }
+
+  /// Where the whole pose cannot be had, the orientation comes as near as it goes while the
+  /// position weighs the more from one weight to the next: at the last one alone, the way round the
+  /// position would be as bent as it is.
+  static void lighten(Lane& lane) {
+    const double lighter = std::max(lane.weight / kLighter, kBeside);
+    lane.done = lighter == lane.weight;
+    lane.e.tail(3) *= lighter / lane.weight;
+    lane.J.bottomRows(3) *= lighter / lane.weight;
+    lane.weight = lighter;
+    lane.damping = kFirstDamping;
   }
 
   Eigen::VectorXd next(const Lane& lane) const {
@@ -124,7 +144,6 @@ class DampedSteps {
   const double size_;           ///< m
   const Eigen::ArrayXd units_;  ///< of readings
   bool whole_;                  ///< position and orientation can be had
-  double weight_;
   Closure closure_;
   Locations X_;
   PsiBlock psi_;

@@ -79,6 +79,36 @@ TEST(Compensation, PutsTheIrb1600WhereItIsWantedToUnderAMicrometre) {
   expect_compensated(off_by_a_millimetre(shipped("irb1600")), 10000, 1e-8);
 }
 
+/// Poses that the calibrated arm itself can have, with readings to stay near: the whole pose is to
+/// be had though five joints cannot have any.
+TEST(Compensation, OfFiveJointsReachesTheWholePoseWhereTheyCan) {
+  const auto [nominal, calibrated] = off_by_a_millimetre(R"({robot: five, kind: serial, frames: [
+    {name: base, joint: fixed, r: 0.147},
+    {name: a1, joint: revolute, limits: [-2.9, 2.9]},
+    {name: a2, joint: revolute, alpha: -pi/2, d: 0.033, theta: -pi/2, limits: [-1.1, 1.5]},
+    {name: a3, joint: revolute, d: 0.155, limits: [-2.5, 2.5]},
+    {name: a4, joint: revolute, d: 0.135, theta: -pi/2, limits: [-1.7, 1.7]},
+    {name: a5, joint: revolute, alpha: -pi/2, limits: [-2.9, 2.9]},
+    {name: tool, joint: fixed, r: 0.2175}]})");
+  const Compensation compensation(nominal, calibrated);
+  const Eigen::VectorXd xi = values(*calibrated);
+  const Eigen::MatrixXd q = 0.9 * random_poses(*nominal, nullptr, 100, 7);
+  int whole = 0, near = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Location wanted = locate(*calibrated, xi, q.row(i).transpose());
+    const Eigen::VectorXd beside = q.row(i).transpose().array() + 0.05;
+    const Command command = compensation.command(wanted, beside);
+    if (command.status != Reach::reached) continue;
+    const Location is = locate(*calibrated, xi, command.q);
+    EXPECT_LT((is.p - wanted.p).norm(), 1e-8) << i;
+    whole += log_rotation(is.R * wanted.R.transpose()).norm() < 1e-7;
+    near += (command.q - beside).lpNorm<Eigen::Infinity>() < 0.3;
+  }
+  std::printf("five joints: %d of 100 whole poses, %d near the readings\n", whole, near);
+  EXPECT_GE(whole, 95);
+  EXPECT_GE(near, 95);
+}
+
 TEST(Compensation, IsTheSameForRobotsOfTenCentimetresAndTenMetres) {
   const std::shared_ptr<const Robot> one = arm_of_size(1);
   const Eigen::MatrixXd q = random_poses(*one, nullptr, 100, 7);
