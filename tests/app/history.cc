@@ -99,6 +99,16 @@ TEST(HistoryPage, TellsWhenAParameterLeavesItsLimitAtThisRate) {
   EXPECT_THAT(data["verdict"]["sentence"].get<std::string>(), HasSubstr("leaves its limit in 295"));
 }
 
+TEST(HistoryPage, TellsFirstWhatIsBeyondItsLimit) {
+  HistoryFindings findings;
+  const double limit = 3 * calibration(1, 3, 0).robot->parameters()[3].tolerance;
+  for (int session = 1; session <= 3; ++session)
+    findings.calibrations.push_back(calibration(session, 3, limit + 1e-3 * session));
+  findings.unix_ms = kFirst + 4 * kDay;
+  EXPECT_THAT(history_data(findings)["verdict"]["sentence"].get<std::string>(),
+              HasSubstr("is beyond the limit now"));
+}
+
 TEST(HistoryPage, GivesAQuickCheckItsIntervalByItsTouches) {
   HistoryFindings findings;
   findings.sessions.resize(1);

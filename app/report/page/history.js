@@ -2,7 +2,11 @@
 
 const DAY = 86400e3;
 
-function date_of(unix_ms) { return new Date(unix_ms).toISOString().slice(0, 10); }
+// As the tables have it, where one looks.
+function date_of(unix_ms) {
+  const day = new Date(unix_ms);
+  return [day.getFullYear(), day.getMonth() + 1, day.getDate()].map(part => String(part).padStart(2, "0")).join("-");
+}
 
 // Points with intervals over time. points: {x (ms), y, low, high}; limits are drawn as dashed lines.
 function over_time(points, unit, limits = [], kind = "small") {
@@ -81,7 +85,7 @@ function residual_section(data) {
   if (residual.points.length === 0) return [];
   const points = residual.points.map(each => ({x: each.unix_ms, y: 1e3 * each.rms, name: "session " + each.session,
     low: known(each.least) ? 1e3 * each.least : null, high: known(each.most) ? 1e3 * each.most : null}));
-  const words = rate_words(residual.trend, "m");
+  const words = rate_words({trend: residual.trend, unit: "m", since_factory: residual.points.map(each => each.rms), sigma: []});
   return [over_time(points, "mm", residual.limit ? [1e3 * residual.limit] : [], ""),
           paragraph("Residual of the quick checks with its 95 % interval" +
                     (residual.limit ? "; the dashed line is the accuracy that is wanted" : "") + "." +

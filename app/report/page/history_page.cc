@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "app/report/format.h"
 #include "app/report/trend.h"
 #include "constraints/statistics.h"
 #include "io/files/json_parts.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -84,12 +87,16 @@ Json residual_json(const HistoryFindings& findings) {
   return json;
 }
 
-/// The page's first sentence: the first limit that will be left, or that none will.
+/// The page's first sentence: what is beyond its limit, the first limit that will be left, or that
+/// none will.
 std::string history_sentence(const Json& data, std::size_t calibrations) {
   double soonest = HUGE_VAL;
   std::string what;
+  std::vector<std::string> outside;
   const auto look = [&](const Json& trend, const std::string& name) {
-    if (!trend.is_object() || !trend["leaves_in_days"].is_number()) return;
+    if (!trend.is_object()) return;
+    if (trend["outside"] == true) outside.push_back(name);
+    if (!trend["leaves_in_days"].is_number()) return;
     if (const double in = trend["leaves_in_days"]; in < soonest) {
       soonest = in;
       what = name;
@@ -97,6 +104,8 @@ std::string history_sentence(const Json& data, std::size_t calibrations) {
   };
   for (const Json& drift : data["drifts"]) look(drift["trend"], drift["name"]);
   if (data["residual"].contains("trend")) look(data["residual"]["trend"], "the check residual");
+  if (!outside.empty())
+    return listed(outside) + (outside.size() == 1 ? " is" : " are") + " beyond the limit now.";
   if (!what.empty())
     return printed("At this rate %s leaves its limit in %.0f days.", what.c_str(), soonest);
   if (data["sessions"].empty()) return "No session yet.";
