@@ -211,4 +211,12 @@ Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& heade
   return CsvReader(path, header, row, header_line).read();
 }
 
+std::string csv_cell(const std::string& text) {
+  const bool blank_ends = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  if (!blank_ends && text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
 }  // namespace selfcal

@@ -17,6 +17,9 @@
 
 namespace selfcal {
 
+/// What a cell is written as: quoted where it holds what would end it.
+std::string csv_cell(const std::string& text);
+
 /// The cells of one row; valid until the next one.
 using Cells = std::span<const std::string_view>;
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "io/files/csv.h"
+
 namespace selfcal {
 namespace {
 
@@ -14,15 +16,6 @@ struct TextColumn {
   std::string name;
   std::function<std::string(int row)> cell;
 };
-
-/// RFC 4180: quoted where it holds what would end the cell.
-std::string quoted(const std::string& text) {
-  const bool blank_ends = !text.empty() && (text.front() == ' ' || text.back() == ' ');
-  if (!blank_ends && text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
 
 /// Adds the columns of `values` (rows x names) unless all of it is NaN or missing.
 void add_columns(const Eigen::MatrixXd& values, const std::vector<std::string>& names,
@@ -37,11 +30,11 @@ void add_columns(const Eigen::MatrixXd& values, const std::vector<std::string>& 
 
 void add_labels(const DataSet& data, std::vector<TextColumn>& columns) {
   const Observations& rows = data.rows;
-  columns.push_back({"set", [&](int row) { return quoted(data.sets[rows.set[row]].name); }});
+  columns.push_back({"set", [&](int row) { return csv_cell(data.sets[rows.set[row]].name); }});
   if (std::ranges::any_of(rows.group, [](int group) { return group >= 0; }))
     columns.push_back({"group", [&](int row) {
                          const Set& set = data.sets[rows.set[row]];
-                         return rows.group[row] < 0 ? "" : quoted(set.groups[rows.group[row]]);
+                         return rows.group[row] < 0 ? "" : csv_cell(set.groups[rows.group[row]]);
                        }});
   if (std::ranges::any_of(rows.check, [](char check) { return check != 0; }))
     columns.push_back({"part", [&](int row) { return rows.check[row] ? "check" : "fit"; }});

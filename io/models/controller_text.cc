@@ -1,11 +1,16 @@
 // What controllers take of a robot: offsets of joints, or a table, beside its base and tool.
 #include "io/models/controller_text.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <ranges>
 #include <string_view>
 #include <vector>
 
+#include "io/files/csv.h"
 #include "io/models/dh_rows.h"
 #include "kinematics/rotation.h"
 
@@ -60,13 +65,21 @@ double offset_of(const Frame& frame, bool undone) {
   return undone ? 0 : frame.value[field] - frame.nominal[field];
 }
 
+/// In quotes where it may be anything but a word.
+std::string yaml_key(const std::string& name) {
+  const bool word =
+      std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; }) &&
+      !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
+  return word ? name : nlohmann::json(name).dump();
+}
+
 std::string offset_lines(const serial::Model& robot, bool undone, const std::string& indent) {
   std::string text;
   for (const int i : serial::moving_frames(robot)) {
     const Frame& frame = robot.frames[i];
     const double offset = offset_of(frame, undone);
     const bool slides = frame.motion == serial::Motion::prismatic;
-    text += indent + frame.name + ": " + short_number(offset) + "  # " +
+    text += indent + yaml_key(frame.name) + ": " + short_number(offset) + "  # " +
             short_number(offset * (slides ? kInMillimetres : kInDegrees)) +
             (slides ? " mm\n" : " degrees\n");
   }
@@ -78,22 +91,34 @@ std::string_view type_of(serial::Motion motion) {
   return motion == serial::Motion::prismatic ? "prismatic" : "revolute";
 }
 
-/// A table, and where the first joint's row begins in the world.
+/// A table, where the first joint's row begins in the world, and the tool in the frame of the last
+/// joint's row.
 struct DhTable {
   std::string text;
-  Isometry3d base;
+  Isometry3d base, tool;
 };
 
 DhTable dh_table(const serial::Model& robot, bool standard) {
-  DhTable table{"joint,alpha [deg],a [mm],d [mm],theta [deg],type\n", base_of_chain(robot)};
+  DhTable table{"joint,alpha [deg],a [mm],d [mm],theta [deg],type\n", base_of_chain(robot),
+                tool_of_chain(robot)};
   const Frame& first = robot.frames[serial::moving_frames(robot).front()];
   if (standard)
     table.base = table.base *
                  Eigen::AngleAxisd(first.value[serial::kAlpha], Eigen::Vector3d::UnitX()) *
                  Eigen::Translation3d(first.value[serial::kD], 0, 0);
-  const std::vector<DhRow> rows = modified_rows(robot);
-  for (const DhRow& row : standard ? standard_rows(rows) : rows) {
-    table.text += row.name + "," + short_number(row.alpha * kInDegrees) + "," +
+  std::vector<DhRow> rows = modified_rows(robot);
+  if (standard) rows = standard_rows(rows);
+  if (standard) {  // the last joint's row ends with what leads to the tool's first
+    const auto last = std::ranges::find_if(std::views::reverse(rows), [](const DhRow& row) {
+      return row.motion != serial::Motion::fixed;
+    });
+    table.tool = (Eigen::Translation3d(last->a, 0, 0) *
+                  Eigen::AngleAxisd(last->alpha, Eigen::Vector3d::UnitX()))
+                     .inverse() *
+                 table.tool;
+  }
+  for (const DhRow& row : rows) {
+    table.text += csv_cell(row.name) + "," + short_number(row.alpha * kInDegrees) + "," +
                   short_number(row.a * kInMillimetres) + "," +
                   short_number(row.d * kInMillimetres) + "," +
                   short_number(row.theta * kInDegrees) + ",";
@@ -105,7 +130,7 @@ DhTable dh_table(const serial::Model& robot, bool standard) {
 
 std::string frames_in_words(const Isometry3d& base, const Isometry3d& tool) {
   return "the first joint's row stands in the world at " + pose_in_words(base) +
-         "\nthe tool stands in the last joint's frame at " + pose_in_words(tool) + "\n";
+         "\nthe tool stands in the frame of the last joint's row at " + pose_in_words(tool) + "\n";
 }
 
 }  // namespace
@@ -145,7 +170,9 @@ std::string controller_offsets_text(const serial::Model& robot, const std::strin
          offset_lines(robot, false, "  ") + "base: " + pose_entry(base_of_chain(robot)) +
          "  # of the robot in the world\ntool: " + pose_entry(tool.pose) +
          "  # in the last joint's frame\ntool_correction: " + pose_entry(tool.correction()) +
-         "  # in place of `tool`, behind a tool frame that is set: TOOL times this\n"
+         "  # in place of `tool`: this times the tool frame that is set where the robot's file "
+         "ends "
+         "at the flange, that times this where it ends there\n"
          "undo:  # the maker's\n  offsets:\n" +
          offset_lines(robot, true, "    ") + "  base: " + pose_entry(base_of_chain(before)) +
          "\n  tool: " + pose_entry(tool.nominal) + "\n";
@@ -163,8 +190,8 @@ Result<std::string> dh_table_text(const serial::Model& robot, const serial::Mode
   const DhTable now = dh_table(robot, standard), undone = dh_table(before, standard);
   return commented(head + "Rows are of the " + convention +
                    " convention; those of type fixed are base and tool.\n" +
-                   frames_in_words(now.base, tool_of_chain(robot)) + "To undo it, the maker's:\n" +
-                   undone.text + frames_in_words(undone.base, tool_of_chain(before))) +
+                   frames_in_words(now.base, now.tool) + "To undo it, the maker's:\n" +
+                   undone.text + frames_in_words(undone.base, undone.tool)) +
          now.text;
 }
 

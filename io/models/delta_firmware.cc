@@ -98,8 +98,8 @@ std::vector<std::string> firmware_lacks(const Delta& delta, double radius) {
   lack(radii > 1e-9 ? radii : 0,
        "radii of single towers, up to " + rounded(1e3 * radii) + " mm from that of all");
   lack(tilt, "tilts of towers, up to " + rounded(1e3 * tilt) + " mrad");
-  lack(scale,
-       "scales of towers, up to " + rounded(1e6 * scale) + " ppm: divide the steps per mm by them");
+  lack(scale, "scales of towers, up to " + rounded(1e6 * scale) +
+                  " ppm: divide the steps per mm by them, and multiply again to undo it");
   lack(delta.value.segment<2>(kEffector).norm(), "the effector's tilt");
   const Eigen::Vector2d across = 1e3 * delta.value.segment<2>(kTool);
   lack(across.norm(),
@@ -123,6 +123,12 @@ ControllerNumbers firmware_numbers(const Delta& delta) {
   }
   numbers.start.segment<2>(kEffector).setZero();
   return numbers;
+}
+
+Eigen::VectorXd makers_firmware_numbers(const Delta& delta) {
+  Eigen::VectorXd makers = firmware_numbers(delta).start;
+  for (int t = 0; t < kTowers; ++t) makers[index(t, kScale)] = delta.nominal[index(t, kScale)];
+  return makers;
 }
 
 Result<FirmwareText> delta_firmware(const Delta& delta, const Eigen::VectorXd& told,

@@ -20,6 +20,8 @@ struct FirmwareText {
 /// What firmwares hold of a delta: one radius of all towers, and of each its angle, rod and
 /// endstop. Its scales, which the steps per mm are divided by, and the tool are given.
 ControllerNumbers firmware_numbers(const linear_delta::Delta& delta);
+/// What a firmware holds of the maker's figures, the steps per mm too.
+Eigen::VectorXd makers_firmware_numbers(const linear_delta::Delta& delta);
 
 /// The lines of the values `told`, of firmware_numbers, behind `head` in comments. Refuses towers
 /// that do not stand near 210, 330 and 90 degrees in this order, as firmwares have them; `file`

@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdio>
+#include <numbers>
+#include <sstream>
+
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "io/models/dh_table.h"
@@ -107,6 +111,72 @@ TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
       kTableSame);
 }
 
+/// The pose that a comment of the table says after `what`.
+Eigen::Isometry3d pose_said(const std::string& table, const std::string& what) {
+  const std::string text = table.substr(table.find(what) + what.size());
+  double x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0;
+  EXPECT_EQ(std::sscanf(text.c_str(), " x y z %lf %lf %lf mm, roll pitch yaw %lf %lf %lf", &x, &y,
+                        &z, &roll, &pitch, &yaw),
+            6);
+  const double degree = std::numbers::pi / 180;
+  return Eigen::Translation3d(1e-3 * x, 1e-3 * y, 1e-3 * z) *
+         Eigen::AngleAxisd(degree * yaw, Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(degree * pitch, Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(degree * roll, Eigen::Vector3d::UnitX());
+}
+
+// A controller takes the rows of the joints alone, its base and its tool from the head.
+TEST_P(ControllerText, OfATablePutsTheToolThereByItsHead) {
+  std::string text = kTableArm;
+  text += "  - {name: tool, joint: fixed, alpha: 0.3, d: 0.05, theta: 0.4, r: 0.1}\n";
+  text.insert(text.find("  - {name: j1"),
+              "  - {name: base, joint: fixed, alpha: 0.2, d: 0.3, theta: -1, r: 0.5}\n");
+  const auto table =
+      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  ASSERT_TRUE(table);
+  const bool standard = std::string(GetParam()) == "standard";
+  const Eigen::Vector4d q(0.3, -1.2, 0.1, 2);
+  Eigen::Isometry3d X = pose_said(*table, "the first joint's row stands in the world at");
+  std::istringstream lines(table->substr(table->find("\njoint,alpha") + 1));
+  std::string line;
+  int joint = 0;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    char name[20], type[20];
+    double alpha = 0, a = 0, d = 0, theta = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%19[^,],%lf,%lf,%lf,%lf,%19s", name, &alpha, &a, &d,
+                          &theta, type),
+              6)
+        << line;
+    if (std::string(type) == "fixed") continue;
+    const bool slides = std::string(type) == "prismatic";
+    const double degree = std::numbers::pi / 180;
+    const Eigen::Isometry3d along_z =
+        Eigen::AngleAxisd(degree * theta + (slides ? 0 : q[joint]), Eigen::Vector3d::UnitZ()) *
+        Eigen::Translation3d(0, 0, 1e-3 * d + (slides ? q[joint] : 0));
+    const Eigen::Isometry3d along_x = Eigen::Translation3d(1e-3 * a, 0, 0) *
+                                      Eigen::AngleAxisd(degree * alpha, Eigen::Vector3d::UnitX());
+    // The base's pose is that of the first joint's row: behind its a and alpha, of the modified
+    // one.
+    X = standard ? X * along_z * along_x : X * along_x * along_z;
+    ++joint;
+  }
+  ASSERT_EQ(joint, 4);
+  X = X * pose_said(*table, "the tool stands in the frame of the last joint's row at");
+  const auto robot = robot_of(text, "arm.yaml");
+  const Location wanted = locate(**robot, values(**robot), q);
+  EXPECT_LT((X.translation() - wanted.p).norm(), 1e-8);
+  EXPECT_LT((X.linear() - wanted.R).norm(), 1e-8);
+}
+
+TEST_P(ControllerText, OfATableQuotesWhatWouldEndACell) {
+  std::string text = kTableArm;
+  text.replace(text.find("name: j2"), 8, "name: 'j,2'");
+  const auto table =
+      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  ASSERT_TRUE(table) << table.error().what;
+  expect_same(text, read_back(*table).get());
+}
+
 INSTANTIATE_TEST_SUITE_P(Conventions, ControllerText, testing::Values("standard", "modified"),
                          [](const auto& each) { return std::string(each.param); });
 
@@ -121,14 +191,23 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
   EXPECT_THAT(*table,
               HasSubstr("# the first joint's row stands in the world at x y z 1000 2000 3000 "
                         "mm, roll pitch yaw 0 0 0 degrees"));
-  EXPECT_THAT(*table, HasSubstr("# the tool stands in the last joint's frame at x y z 10 0 100 mm, "
-                                "roll pitch yaw 0 0 90 degrees"));
+  EXPECT_THAT(*table,
+              HasSubstr("# the tool stands in the frame of the last joint's row at x y z 10 "
+                        "0 100 mm, roll pitch yaw 0 0 90 degrees"));
   text.insert(text.find("  - {name: slide"),
               "  - {name: bracket, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}\n");
   const auto refused =
       dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("arm.yaml: frame bracket between the joints"));
+}
+
+TEST(ControllerText, OfOffsetsQuotesNamesThatAreNoWords) {
+  std::string text = kTableArm;
+  text.replace(text.find("name: j2"), 8, "name: '[j2'");
+  const auto file = parse_yaml(controller_offsets_text(model_of(text), ""), "offsets.yaml");
+  ASSERT_TRUE(file) << file.error().what;
+  EXPECT_NE(file->find("offsets")->find("[j2"), nullptr);
 }
 
 // A person adds offsets to the maker's figures, in the maker's kinematics, and sets the tool.

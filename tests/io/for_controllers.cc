@@ -173,7 +173,7 @@ frames:
   ASSERT_EQ(ran.status, 0) << ran.out;
   EXPECT_GT(figures_in(ran.out).maker, 1);
   EXPECT_EQ(figures_in(ran.out).written, 0) << ran.out;
-  EXPECT_THAT(ran.out, HasSubstr("with the TCP that is set times x y z 1 0 0 mm"));
+  EXPECT_THAT(ran.out, HasSubstr("C is x y z 1 0 0 mm"));
   std::string undo;
   std::istringstream lines(ran.out.substr(ran.out.find("# To undo it, ")));
   std::string line;

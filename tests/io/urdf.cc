@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "io/files/file.h"
 #include "tests/io/urdf_case.h"
@@ -178,6 +179,18 @@ TEST(Urdf, NamesAFixedJointLikeNoOther) {
   ASSERT_EQ(read->chain.fixed.size(), 3u);
   EXPECT_EQ(read->chain.fixed[0].name, "a_b");
   EXPECT_EQ(read->chain.fixed[1].name, "a_b_");
+}
+
+TEST(Urdf, NamesItsOwnBaseLikeNoFixedJointThatIsKept) {
+  std::string text = every_case();
+  text.replace(text.find("<joint name='j6'"), 16, "<joint name='base'");
+  const auto read = read_urdf(text, "robot.urdf", {.base = "l1"});
+  ASSERT_TRUE(read) << read.error().what;
+  std::set<std::string> names;
+  const serial::Model model = frames_of(read->chain, FixedJoints::kept);
+  for (const serial::Frame& frame : model.frames)
+    EXPECT_TRUE(names.insert(frame.name).second) << frame.name;
+  EXPECT_TRUE(names.contains("base") && names.contains("base_"));
 }
 
 TEST(Urdf, OfAUr10eIsItsMakersDhTable) {

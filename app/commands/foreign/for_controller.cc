@@ -40,13 +40,14 @@ struct Told {
   EndsApart before, after;
 };
 
-Told fitted(const RobotPair& robots, const ControllerNumbers& numbers) {
+Told fitted(const RobotPair& robots, const ControllerNumbers& numbers,
+            const Eigen::VectorXd& makers) {
   const Eigen::MatrixXd q =
       closing_poses(*robots.real, values(*robots.real),
                     random_poses(*robots.geometry, nullptr, kFitPoses, kFitSeed));
   const Eigen::MatrixXd fits = q.topRows(q.rows() / 2), judges = q.bottomRows(q.rows() / 2);
   Told told{fit_controller(*robots.geometry, numbers, *robots.real, fits), {}, {}};
-  told.before = ends_apart(*robots.geometry, numbers.start, *robots.real, judges);
+  told.before = ends_apart(*robots.geometry, makers, *robots.real, judges);
   told.after = ends_apart(*robots.geometry, told.xi, *robots.real, judges);
   return told;
 }
@@ -118,7 +119,7 @@ Result<ToldRobot> told_robot(const Node& robot, const ControllerFormat& format) 
     numbers.start = table->xi;
     told.before_off = table->off;
   }
-  told.fit = fitted(*robots, numbers);
+  told.fit = fitted(*robots, numbers, numbers.start);
   Problems problems;
   told.model = serial::read(robots->geometry->text().describe(told.fit.xi), problems);
   told.before = serial::read(robots->geometry->text().describe(numbers.start), problems);
@@ -166,7 +167,10 @@ Result<std::string> to_ur(const Node& robot, const ControllerFormat& format) {
     note(
         "left out: the tool's correction, for the file ends at wrist_3: set the TCP as its head "
         "says");
-    head += "That is with the TCP that is set times " + pose_in_words(tool) + ".\n";
+    head +=
+        "That is with another TCP. C is " + pose_in_words(tool) +
+        ": where the robot's file ends at the flange, set C times the TCP that is set; where it "
+        "ends at that TCP, the TCP times C.\n";
   }
   note(
       "give it to the driver as kinematics_params_file: it holds the offsets of the joints, too, "
@@ -185,7 +189,7 @@ Result<std::string> to_delta(const Node& robot, const ControllerFormat& format) 
   note_effects(robot);
   const auto robots = robots_of(robot);
   if (!robots) return tl::unexpected(robots.error());
-  const Told fit = fitted(*robots, firmware_numbers(delta));
+  const Told fit = fitted(*robots, firmware_numbers(delta), makers_firmware_numbers(delta));
   const auto made =
       delta_firmware(delta, fit.xi, head_of("Of " + delta.name + ".", fit), format.file);
   if (!made) return tl::unexpected(made.error());
