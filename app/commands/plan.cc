@@ -96,8 +96,10 @@ int plan_for_cell(const PlanArguments& arguments) {
     cell =
         plan_cell(*config, [&](std::string_view stage, double share) { line.show(stage, share); });
   }
-  if (const auto written = write_rows(arguments, cell_plan_rows(*config, cell)); !written)
-    return tell(written.error());
+  // Rows that leave a surface out are no plan.
+  if (cell.plan.unreached.empty())
+    if (const auto written = write_rows(arguments, cell_plan_rows(*config, cell)); !written)
+      return tell(written.error());
   nlohmann::ordered_json json;
   if (arguments.json)
     json = cell_plan_json(*config, cell);

@@ -5,6 +5,8 @@
 #include "app/commands/trials/trial.h"
 #include "io/files/file.h"
 #include "io/files/json_parts.h"
+#include "io/files/utf8.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -92,6 +94,10 @@ Result<std::vector<std::string>> trial_names(const std::filesystem::path& folder
   if (error) return bad_input(folder.string() + ": cannot list the folder: " + error.message());
   if (names.empty()) return bad_input(folder.string() + ": expected folders with data sets");
   std::sort(names.begin(), names.end());
+  for (const std::string& name : names)
+    if (!is_text(name))
+      return bad_input(folder.string() + ": the folder '" + shown(name) +
+                       "' has a name that is no text (UTF-8), which no answer could be told by");
   return names;
 }
 
