@@ -112,8 +112,11 @@ Frame whole_pose(const std::string& name, const Isometry3d& X) {
 }
 
 /// `name`, or one like it that no frame has.
-std::string free_name(std::string name, const serial::Model& model, const JointChain& chain) {
+std::string free_name(std::string name, const serial::Model& model, const JointChain& chain,
+                      FixedJoints fixed) {
   while (std::ranges::find(chain.joints, name, &ChainJoint::name) != chain.joints.end() ||
+         (fixed == FixedJoints::kept &&
+          std::ranges::find(chain.fixed, name, &FixedJoint::name) != chain.fixed.end()) ||
          std::ranges::find(model.frames, name, &Frame::name) != model.frames.end())
     name += "_";
   return name;
@@ -211,7 +214,8 @@ serial::Model frames_of(const JointChain& chain, FixedJoints fixed) {
   const std::vector<Station> stations = stations_of(chain, fixed);
   Isometry3d F = Isometry3d::Identity();
   if (stations.front().joint) {
-    model.frames.push_back(whole_pose(free_name("base", model, chain), stations.front().own));
+    model.frames.push_back(
+        whole_pose(free_name("base", model, chain, fixed), stations.front().own));
     F = serial::pose_in_parent(model.frames.front(), 0);
   }
   Isometry3d A = F;
@@ -236,7 +240,8 @@ serial::Model frames_of(const JointChain& chain, FixedJoints fixed) {
     A = F * serial::pose_in_parent(leading, 0);
   }
   if (stations.back().joint)
-    model.frames.push_back(whole_pose(free_name("tool", model, chain), F.inverse() * chain.X_WT));
+    model.frames.push_back(
+        whole_pose(free_name("tool", model, chain, fixed), F.inverse() * chain.X_WT));
   add_mimicry(chain, model);
   for (Frame& frame : model.frames) frame.nominal = frame.value;
   return model;

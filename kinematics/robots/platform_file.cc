@@ -56,12 +56,16 @@ Eigen::Vector3d read_centre(Fields& chain, std::string_view key) {
 
 std::vector<std::string> remarks(const Platform& robot) {
   const Location& home = robot.mode_.home;
-  const Eigen::Vector3d turn = 180 / std::numbers::pi * rpy_of(home.R);
+  const auto tenths = [](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+    return (10 * v).array().round() / 10 + 0.0;  // no zero has a sign
+  };
+  const Eigen::Vector3d p = tenths(1e3 * home.p),
+                        turn = tenths(180 / std::numbers::pi * rpy_of(home.R));
   char text[200];
   std::snprintf(text, sizeof text,
                 "with all readings in the middle the platform stands at %.1f %.1f %.1f mm, turned "
                 "%.1f %.1f %.1f degrees (roll pitch yaw)",
-                1e3 * home.p.x(), 1e3 * home.p.y(), 1e3 * home.p.z(), turn.x(), turn.y(), turn.z());
+                p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z());
   std::vector<std::string> lines = {text};
   std::snprintf(text, sizeof text,
                 "  it is kept on that side of the singular places (volume of the legs %.2g there)",
