@@ -50,7 +50,7 @@ struct Supposition {
   bool profile = false;  ///< asked for only once it is known to be there
   double share = 1;      ///< how likely beside the effect's other shapes at its place
   double odds = 1;       ///< of its effect, over those of another one: as machines have them
-  bool drifts = false;   ///< smooth in time, as all is that goes with the places in their order
+  bool drifts = false;   ///< in time, as all does that goes with the places in their order
 };
 
 /// A cause that these rows cannot test at all.

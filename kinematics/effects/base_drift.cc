@@ -131,17 +131,17 @@ void suppose_base_drift(const Supposed& rows, const EffectPlace& place, Supposit
     std::iota(half_waves.begin(), half_waves.end(), 1.0);
     shapes.push_back({.half_waves = std::move(half_waves)});
   }
-  const auto drifting = static_cast<double>(shapes.size());
-  for (EffectShape& each : shapes) {
-    to.add("base", std::move(each));
+  const auto add = [&](EffectShape shape, double share) {
+    to.add("base", std::move(shape));
+    to.last().share = share;
     to.last().drifts = true;
-  }
+  };
+  const auto drifting = static_cast<double>(shapes.size());
+  for (EffectShape& each : shapes) add(std::move(each), 1);
   // As probable, all moments together, as all drifts.
   const std::vector<double> moments = rows.moments(-1);
-  for (const double moment : moments) {
-    to.add("base", {.moment = moment});
-    to.last().share = drifting / static_cast<double>(moments.size());
-  }
+  for (const double moment : moments)
+    add({.moment = moment}, drifting / static_cast<double>(moments.size()));
 }
 
 }  // namespace selfcal

@@ -184,7 +184,7 @@ TEST(Urdf, NamesAFixedJointLikeNoOther) {
 TEST(Urdf, NamesItsOwnBaseLikeNoFixedJointThatIsKept) {
   std::string text = every_case();
   text.replace(text.find("<joint name='j6'"), 16, "<joint name='base'");
-  const auto read = read_urdf(text, "robot.urdf", {.base = "l1"});
+  const auto read = read_urdf(text, "robot.urdf", {"l1", ""});
   ASSERT_TRUE(read) << read.error().what;
   std::set<std::string> names;
   const serial::Model model = frames_of(read->chain, FixedJoints::kept);
