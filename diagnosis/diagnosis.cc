@@ -56,6 +56,7 @@ class Diagnostician {
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);
     if (!left_out_.empty()) result_.warnings.push_back(left_out_);
+    trust_plain_steps(linearised_, data_, result_);
     result_.why = verdict_in_words(result_);
     if (const std::string doubt = doubt_of(linearised_, data_, result_); !doubt.empty())
       withdraw(doubt, options_, result_);

@@ -242,6 +242,27 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   return !settled && hardly_closes(diagnosis) ? beyond_sheet(linearised, data) : std::string();
 }
 
+void trust_plain_steps(const LinearisedModel& linearised, const DataSet& data,
+                       Diagnosis& diagnosis) {
+  std::vector<CauseResult>& named = diagnosis.named;
+  if (!data.order_is_time || std::ranges::none_of(named, is_moved_at_once)) return;
+  if (identify(linearised.geometry(), data).frame_steps.empty()) return;
+  const auto trust = [](CauseResult& each) {
+    if (!is_moved_at_once(each)) return;
+    each.probability = each.of_its_kind();
+    std::erase(each.confounded_with, kUnknown);
+  };
+  std::ranges::for_each(named, trust);
+  std::ranges::for_each(diagnosis.candidates, trust);
+  trust(diagnosis.verdict);
+  std::ranges::stable_sort(diagnosis.candidates, std::ranges::greater{}, &CauseResult::probability);
+  const auto moved = std::ranges::find_if(named, is_moved_at_once);
+  if (!names_effect(diagnosis.verdict.effect) || moved->probability < diagnosis.verdict.probability)
+    return;
+  std::rotate(named.begin(), moved, moved + 1);
+  diagnosis.verdict = named.front();
+}
+
 std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict) {
   std::string why;
   if (!impossible_sign(verdict).empty()) return why;

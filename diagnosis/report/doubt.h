@@ -32,6 +32,12 @@ std::string closes_nothing(const Diagnosis& diagnosis);
 /// The files state a noise far beyond what calibration leaves.
 bool may_state_millimetres(const Gap& gap);
 
+/// A base that is moved from one row to the next is no law of the rows' places, which their order
+/// may go with: what was halved for that is whole again where calibration shows the step plainly.
+/// The surest leads.
+void trust_plain_steps(const LinearisedModel& linearised, const DataSet& data,
+                       Diagnosis& diagnosis);
+
 /// Of what is named beside the verdict, springs of the wrong sign are left out: the shape of the
 /// verdict's own law makes such. Says which and why; nothing where the verdict is one itself.
 std::string leave_out_impossible(std::vector<CauseResult>& named, const CauseResult& verdict);

@@ -70,4 +70,11 @@ Hypothesis with_named(Hypothesis h, const std::vector<CauseResult>& named, const
   return h;
 }
 
+bool is_moved_at_once(const CauseResult& cause) {
+  return cause.effect == "base_drift" &&
+         std::ranges::any_of(cause.correction, [](const FoundEffect& found) {
+           return found.what.shape.moment.has_value();
+         });
+}
+
 }  // namespace selfcal

@@ -23,4 +23,7 @@ std::vector<CauseResult> take_idle(std::vector<CauseResult>& named);
 Hypothesis with_named(Hypothesis h, const std::vector<CauseResult>& named, const Candidates& all,
                       const Posterior& posterior);
 
+/// The base, or the instrument, that is moved from one row to the next.
+bool is_moved_at_once(const CauseResult& cause);
+
 }  // namespace selfcal

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "diagnosis/constants.h"
+#include "diagnosis/report/named.h"
 #include "diagnosis/search/naming.h"
 #include "kinematics/readable.h"
 
@@ -112,15 +113,10 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
 
 /// What was moved that the rows are all measured against.
 std::string moved_at_once(const Diagnosis& diagnosis) {
-  const bool moved = std::ranges::any_of(diagnosis.named, [](const CauseResult& each) {
-    return each.effect == "base_drift" &&
-           std::ranges::any_of(each.correction, [](const FoundEffect& found) {
-             return found.what.shape.moment.has_value();
-           });
-  });
-  return moved ? ". The instrument or the robot's base was moved then: give the rows before and "
-                 "after it as two sets, each with a frame of its own"
-               : "";
+  return std::ranges::any_of(diagnosis.named, is_moved_at_once)
+             ? ". The instrument or the robot's base was moved then: give the rows before and "
+               "after it as two sets, each with a frame of its own"
+             : "";
 }
 
 /// ". zero_shift at j4 steps 3 times: …", of what is named.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "diagnosis/constants.h"
 #include "diagnosis/search/sign_flip_test.h"
@@ -38,8 +39,10 @@ std::string in_words(const EffectShape& shape,
   if (between)
     parts.push_back("between " + rows + time(between->first) + " and " + time(between->second) +
                     unit);
+  bool again = shape.moment.has_value();
   for (const double moment : further)
-    parts.push_back("again from " + row + time(moment) + unit + " on");
+    parts.push_back((std::exchange(again, true) ? "again from " : "from ") + row + time(moment) +
+                    unit + " on");
   if (shape.settle) parts.push_back("settling in " + lasting(*shape.settle));
   if (shape.lag) parts.push_back("lagging by " + lasting(*shape.lag));
   if (shape.by == "temperature") parts.emplace_back("following the temperature");
