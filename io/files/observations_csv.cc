@@ -164,12 +164,13 @@ class RowReader {
   }
 
   /// What another row says in every digit says nothing more: readings that encoders round alike
-  /// are rounded by the same, too. What is called a repeat may well be the same.
+  /// are rounded by the same, too. What is called a repeat may well be the same. A column that
+  /// nobody reads, a number of the row, tells none apart.
   void note_copy(Cells cells, const Labels& labels) {
     if (data_.sets[labels.set].method->paired() || labels.repeat >= 0) return;
     std::size_t hash = 0;
     for (std::size_t i = 0; i < cells.size(); ++i)
-      if (i != layout_.part)
+      if (i != layout_.part && layout_.columns[i].kind != CellKind::ignored)
         hash = (hash ^ std::hash<std::string_view>()(cells[i])) * 0x9E3779B97F4A7C15u;
     if (!seen_.insert(hash).second) {
       copies_.push_back(set_.size() - 1);

@@ -37,8 +37,9 @@ class Compensation {
   Compensation(std::shared_ptr<const Robot> nominal, std::shared_ptr<const Robot> calibrated,
                const OperatingPoint& at = {});
 
-  /// Of all solutions the one nearest to `near`, or to the middle of the readings: corrected from
-  /// the nominal robot's, else the calibrated robot's own.
+  /// Of all solutions the one nearest to `near`, or to the middle of the readings (of a robot
+  /// without a closed form, the one that steps from there come to): corrected from the nominal
+  /// robot's, else the calibrated robot's own.
   Command command(const Location& wanted, const std::optional<Eigen::VectorXd>& near) const;
   /// Of every solution within the limits, nearest first: all that the nominal robot has where it
   /// has a closed form (exact_inverse.h), those that were found else. Without any, what command()

@@ -20,8 +20,6 @@ constexpr double kMostOff = 1e-6;  // of the same; rad, of a solution that is on
 
 using Variables = Eigen::Matrix<double, 6, 1>;
 
-Location turned(const Screw& screw, double t) { return moved_by(screw, t); }
-
 /// The turn about the unit `axis` that brings `from` to `to` as far as one can; nothing where they
 /// lie nearer to it than `nowhere`.
 std::optional<double> turn_between(const Eigen::Vector3d& axis, const Eigen::Vector3d& from,
@@ -104,7 +102,7 @@ class SixTurns {
     std::vector<Variables> list;
     const Eigen::Vector3d foot = screw(0).point, up = screw(0).axis, goal = moved * centre_ - foot;
     const auto arm = [&](double third, double second) -> Eigen::Vector3d {
-      return turned(screw(1), second) * (turned(screw(2), third) * centre_) - foot;
+      return moved_by(screw(1), second) * (moved_by(screw(2), third) * centre_) - foot;
     };
     const auto pairs =
         common_roots(coefficients([&](double a, double b) {
@@ -117,7 +115,7 @@ class SixTurns {
       t[1] = pair[1];
       t[0] = turn_between(up, arm(t[2], t[1]), goal, kNowhere * size_).value_or(near[0]);
       const Eigen::Matrix3d before =
-          turned(screw(0), t[0]).R * turned(screw(1), t[1]).R * turned(screw(2), t[2]).R;
+          moved_by(screw(0), t[0]).R * moved_by(screw(1), t[1]).R * moved_by(screw(2), t[2]).R;
       add_wrists(before.transpose() * moved.R, near, t, list);
     }
     return list;
@@ -131,9 +129,9 @@ class SixTurns {
     const Eigen::Vector3d c(n4.dot(along) - n4.dot(R * n6), n4.dot(across), n4.dot(n5.cross(n6)));
     for (const double fifth : roots_of(c)) {
       t[4] = fifth;
-      const Eigen::Matrix3d R5 = turned(screw(4), fifth).R;
+      const Eigen::Matrix3d R5 = moved_by(screw(4), fifth).R;
       t[3] = turn_between(n4, R5 * n6, R * n6).value_or(near[3]);
-      const Eigen::Matrix3d last = R5.transpose() * turned(screw(3), t[3]).R.transpose() * R;
+      const Eigen::Matrix3d last = R5.transpose() * moved_by(screw(3), t[3]).R.transpose() * R;
       t[5] = turn_between(n6, n5, last * n5).value_or(near[5]);
       list.push_back(t);
     }
@@ -148,22 +146,22 @@ class SixTurns {
     const Eigen::Vector3d& n6 = screw(5).axis;
     const Eigen::Vector3d p6 = screw(5).point + n6.dot(between - screw(5).point) * n6;
     const auto height = [&](double first, double fifth) {
-      return h.dot(inverse_of(turned(screw(0), first)) * (moved * p6) -
-                   turned(screw(4), fifth) * p6);
+      return h.dot(inverse_of(moved_by(screw(0), first)) * (moved * p6) -
+                   moved_by(screw(4), fifth) * p6);
     };
     const auto lean = [&](double first, double fifth) {
-      return h.dot(turned(screw(0), first).R.transpose() * (moved.R * n6) -
-                   turned(screw(4), fifth).R * n6);
+      return h.dot(moved_by(screw(0), first).R.transpose() * (moved.R * n6) -
+                   moved_by(screw(4), fifth).R * n6);
     };
     for (const Eigen::Vector2d& pair : common_roots(coefficients(height), coefficients(lean))) {
       Variables t = near;
       t[0] = pair[0];
       t[4] = pair[1];
-      const Location T1 = turned(screw(0), t[0]), T5 = turned(screw(4), t[4]);
+      const Location T1 = moved_by(screw(0), t[0]), T5 = moved_by(screw(4), t[4]);
       const Eigen::Vector3d seen = moved.R.transpose() * (T1.R * h);
       t[5] = turn_between(n6, seen, T5.R.transpose() * h).value_or(near[5]);
       const Location planar =
-          inverse_of(T1) * moved * inverse_of(turned(screw(5), t[5])) * inverse_of(T5);
+          inverse_of(T1) * moved * inverse_of(moved_by(screw(5), t[5])) * inverse_of(T5);
       add_planar(planar, t, list);
     }
     return list;
@@ -183,7 +181,7 @@ class SixTurns {
     const double turn = turn_between(h, side, planar.R * side).value_or(0);
     for (const double third : roots_of(c)) {
       t[2] = third;
-      const Eigen::Vector3d leg = knee + turned(screw(2), third).R * shin;
+      const Eigen::Vector3d leg = knee + moved_by(screw(2), third).R * shin;
       t[1] = turn_between(h, leg, goal, kNowhere * size_).value_or(0);
       t[3] = h.dot(screw(3).axis) * (turn - t[1] - h.dot(n3) * third);
       list.push_back(t);

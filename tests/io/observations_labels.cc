@@ -92,6 +92,16 @@ TEST_F(ObservationsCsv, CountsRowsThatSayTheSameInEveryDigitOnce) {
                                         "digit, first row 2: each is counted once"));
 }
 
+TEST_F(ObservationsCsv, AreNotToldApartByAColumnThatNobodyReads) {
+  const auto loaded = load(
+      "row,set,q1,q2,x,y,z\n"
+      "1,tracker,0.1,0.2,1,2,3\n"
+      "2,tracker,0.1,0.2,1,2,3\n"
+      "3,tracker,0.1,0.2,1,2,3.1\n");
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_THAT(loaded->data.rows.check, ElementsAre(0, kCopy, 0));
+}
+
 TEST_F(ObservationsCsv, TakesRowsAtTheReadingsOfTheOneBeforeForItsRepeats) {
   const std::string rows =
       "tracker,0.1,0.2,1,2,3\ntracker,0.1,0.2,1,2,3.1\ntracker,0.1,0.2,1,2,3.2\n"

@@ -105,7 +105,7 @@ function residual_charts(data, unit, lengths) {
   ];
 }
 
-// Mean residual after of rows that came in with the joint falling, at rest and rising.
+// The rms of what is left after of rows that came in with the joint falling, at rest and rising.
 function approach_chart(rows, used, signs, name, unit) {
   const groups = [[-1, "falling"], [0, "at rest"], [1, "rising"]].map(([sign, label]) => {
     const values = used.filter(i => signs[i] === sign && !rows.rejected[i] && known(rows.after[i])).map(i =>
@@ -118,10 +118,7 @@ function approach_chart(rows, used, signs, name, unit) {
 }
 
 const STATUS_WORDS = {
-  grouped: "Known only together with others",
-  no_effect: "Without effect on these rows",
   "no-effect": "Without effect on these rows",
-  held: "Held",
   fixed: "Held as asked, or by default",
 };
 

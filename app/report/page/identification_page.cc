@@ -32,7 +32,7 @@ Json short_vector(const Vector& vector) {
 /// Every how many-th row is kept.
 std::size_t step_of(std::size_t rows) { return (rows + kMostRows - 1) / kMostRows; }
 
-/// The rows that a page has room for; those beyond the noise are all kept while there are few.
+/// The rows that a page has room for: of many, one of so many.
 std::vector<const RowFigure*> chosen(const std::vector<RowFigure>& rows) {
   std::vector<const RowFigure*> list;
   const std::size_t step = std::max<std::size_t>(1, step_of(rows.size()));
