@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -109,7 +108,7 @@ DhTable dh_table(const serial::Model& robot, bool standard) {
   std::vector<DhRow> rows = modified_rows(robot);
   if (standard) rows = standard_rows(rows);
   if (standard) {  // the last joint's row ends with what leads to the tool's first
-    const auto last = std::ranges::find_if(std::views::reverse(rows), [](const DhRow& row) {
+    const auto last = std::find_if(rows.rbegin(), rows.rend(), [](const DhRow& row) {
       return row.motion != serial::Motion::fixed;
     });
     table.tool = (Eigen::Translation3d(last->a, 0, 0) *
