@@ -111,6 +111,14 @@ class Loop : public testing::Test {
     service.emplace(std::move(config), Ports{&robot, &robot, &robot, &robot}, person, *store,
                     *journal, std::move(models), "");
   }
+  /// What the parts of a service share, without a service.
+  ServiceContext context_of(Config cell) {
+    store = opened(scratch.folder());
+    journal = std::make_unique<Journal>(opened(scratch.folder()));
+    Models models = must(Models::load(cell.robot, *store));
+    return {std::move(cell),  Ports{&robot, &robot, &robot, &robot}, person, *store, *journal,
+            std::move(models)};
+  }
   const ExtendedState& state() const { return service->extended_state(); }
   bool turning(const std::function<bool()>& holds) {
     for (const Nanoseconds end = robot.time + 3600 * kSecond; robot.time < end; service->turn())

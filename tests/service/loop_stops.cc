@@ -60,13 +60,7 @@ TEST_F(Loop, KnowsThatAMoveMayBeUnderWayBeforeItAsksForIt) {
 }
 
 TEST_F(Loop, KeepsSentencesThatTakeTurnsOnceAnHour) {
-  Config cell = config();
-  store = opened(scratch.folder());
-  journal = std::make_unique<Journal>(opened(scratch.folder()));
-  Models models = must(Models::load(cell.robot, *store));
-  ServiceContext context{std::move(cell), Ports{&robot, &robot, &robot, &robot},
-                         person,          *store,
-                         *journal,        std::move(models)};
+  ServiceContext context = context_of(config());
   for (int i = 0; i < 500; ++i) {
     context.now += 20 * kSecond;  // nearly three hours
     context.tell("error", i % 2 == 0 ? "the trigger is gone" : "no encoder reading");
@@ -95,13 +89,7 @@ TEST_F(Loop, LeavesAloneWhatMovesByOthersOnceItsOwnMoveHasEnded) {
 }
 
 TEST_F(Loop, FaultsWhereMoreHappensAtOnceThanItCanHold) {
-  Config cell = config();
-  store = opened(scratch.folder());
-  journal = std::make_unique<Journal>(opened(scratch.folder()));
-  Models models = must(Models::load(cell.robot, *store));
-  ServiceContext context{std::move(cell), Ports{&robot, &robot, &robot, &robot},
-                         person,          *store,
-                         *journal,        std::move(models)};
+  ServiceContext context = context_of(config());
   for (int i = 0; i < 1024; ++i) context.put(Event::What::opened);
   EXPECT_EQ(context.lost_events, 0U);
   EXPECT_EQ(context.events.back().what, Event::What::opened);
