@@ -160,8 +160,8 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised
   return frame_steps(*robot, calibrated.values, data, calibrated.residual.rows);
 }
 
-/// A drift as machines have it looks like a step where the rows of either end lie together, and
-/// leaves less than it.
+/// What is named leaves plainly less than a step of the instrument would: a drift as machines have
+/// it looks like one where the rows of either end lie together, and so may several causes at once.
 bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
                         const Diagnosis& diagnosis, const Solution& calibrated) {
   if (diagnosis.named.empty() || drifts_too_far(diagnosis.named) ||

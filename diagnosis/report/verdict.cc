@@ -50,7 +50,8 @@ std::string with_shape(const CauseResult& cause) {
 
 /// What leaves more than before closes nothing, and what leaves less than noise closes all.
 std::string percent(double share) {
-  return share < 0.005 ? "nothing" : share > 1.05 ? "all" : phrase("%.0f %%", 100 * share);
+  constexpr double kHardlyAny = 0.005, kAll = 1.05;
+  return share < kHardlyAny ? "nothing" : share > kAll ? "all" : phrase("%.0f %%", 100 * share);
 }
 
 /// ". It closes 97 % of what calibration leaves; noise alone does as well in …"

@@ -43,6 +43,10 @@ serial::Model makers_model_of(const std::string& text) {
   return model;
 }
 
+Result<std::string> table_of(const std::string& text, const std::string& convention) {
+  return dh_table_text(model_of(text), makers_model_of(text), convention, "Of arm.\n", "arm.yaml");
+}
+
 class ControllerText : public testing::TestWithParam<const char*> {
  protected:
   /// The robot that the table comes to.
@@ -73,8 +77,7 @@ class ControllerText : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(ControllerText, OfATableIsReadBackAsTheRobot) {
-  const auto table = dh_table_text(model_of(kTableArm), makers_model_of(kTableArm), GetParam(),
-                                   "Of arm.\n", "arm.yaml");
+  const auto table = table_of(kTableArm, GetParam());
   ASSERT_TRUE(table) << table.error().what;
   expect_same(kTableArm, read_back(*table).get());
 }
@@ -87,15 +90,13 @@ TEST_P(ControllerText, OfATableHasBaseAndToolInRows) {
   text.insert(text.find("  - {name: j1"),
               "  - {name: base, joint: fixed, alpha: 0.2, d: 0.3, theta: -1, r: 0.5}\n"
               "  - {name: plate, joint: fixed, xyz: [1, 0, 3], rpy: [0, 0, pi/2]}\n");
-  const auto table =
-      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto table = table_of(text, GetParam());
   ASSERT_TRUE(table) << table.error().what;
   expect_same(text, read_back(*table).get());
 }
 
 TEST_P(ControllerText, OfATableHasTheMakersToUndoIt) {
-  const auto table = dh_table_text(model_of(kTableArm), makers_model_of(kTableArm), GetParam(),
-                                   "Of arm.\n", "arm.yaml");
+  const auto table = table_of(kTableArm, GetParam());
   const auto at = table->find("# To undo it, the maker's:\n");
   ASSERT_NE(at, std::string::npos);
   std::string undo;
@@ -131,8 +132,7 @@ TEST_P(ControllerText, OfATablePutsTheToolThereByItsHead) {
   text += "  - {name: tool, joint: fixed, alpha: 0.3, d: 0.05, theta: 0.4, r: 0.1}\n";
   text.insert(text.find("  - {name: j1"),
               "  - {name: base, joint: fixed, alpha: 0.2, d: 0.3, theta: -1, r: 0.5}\n");
-  const auto table =
-      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto table = table_of(text, GetParam());
   ASSERT_TRUE(table);
   const bool standard = std::string(GetParam()) == "standard";
   const Eigen::Vector4d q(0.3, -1.2, 0.1, 2);
@@ -171,8 +171,7 @@ TEST_P(ControllerText, OfATablePutsTheToolThereByItsHead) {
 TEST_P(ControllerText, OfATableQuotesWhatWouldEndACell) {
   std::string text = kTableArm;
   text.replace(text.find("name: j2"), 8, "name: 'j,2'");
-  const auto table =
-      dh_table_text(model_of(text), makers_model_of(text), GetParam(), "Of arm.\n", "arm.yaml");
+  const auto table = table_of(text, GetParam());
   ASSERT_TRUE(table) << table.error().what;
   expect_same(text, read_back(*table).get());
 }
@@ -185,8 +184,7 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
   text += "  - {name: tool, joint: fixed, xyz: [0.01, 0, 0.1], rpy: [0, 0, pi/2]}\n";
   text.insert(text.find("  - {name: j1"),
               "  - {name: base, joint: fixed, xyz: [1, 2, 3], rpy: [0, 0, 0]}\n");
-  const auto table =
-      dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
+  const auto table = table_of(text, "modified");
   ASSERT_TRUE(table);
   EXPECT_THAT(*table,
               HasSubstr("# the first joint's row stands in the world at x y z 1000 2000 3000 "
@@ -196,8 +194,7 @@ TEST(ControllerText, OfATableNamesBaseAndTool) {
                         "0 100 mm, roll pitch yaw 0 0 90 degrees"));
   text.insert(text.find("  - {name: slide"),
               "  - {name: bracket, joint: fixed, xyz: [0, 0, 0.1], rpy: [0, 0, 0]}\n");
-  const auto refused =
-      dh_table_text(model_of(text), makers_model_of(text), "modified", "", "arm.yaml");
+  const auto refused = table_of(text, "modified");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("arm.yaml: frame bracket between the joints"));
 }
