@@ -43,6 +43,14 @@ serial::Model makers_model_of(const std::string& text) {
   return model;
 }
 
+/// The text of the table's arm with a fixed base before its joints and a fixed tool after them.
+std::string arm_between(const std::string& base, const std::string& tool) {
+  std::string text = kTableArm;
+  text += "  - {name: tool, joint: fixed, " + tool + "}\n";
+  text.insert(text.find("  - {name: j1"), "  - {name: base, joint: fixed, " + base + "}\n");
+  return text;
+}
+
 Result<std::string> table_of(const std::string& text, const std::string& convention) {
   return dh_table_text(model_of(text), makers_model_of(text), convention, "Of arm.\n", "arm.yaml");
 }
@@ -128,10 +136,8 @@ Eigen::Isometry3d pose_said(const std::string& table, const std::string& what) {
 
 // A controller takes the rows of the joints alone, its base and its tool from the head.
 TEST_P(ControllerText, OfATablePutsTheToolThereByItsHead) {
-  std::string text = kTableArm;
-  text += "  - {name: tool, joint: fixed, alpha: 0.3, d: 0.05, theta: 0.4, r: 0.1}\n";
-  text.insert(text.find("  - {name: j1"),
-              "  - {name: base, joint: fixed, alpha: 0.2, d: 0.3, theta: -1, r: 0.5}\n");
+  const std::string text = arm_between("alpha: 0.2, d: 0.3, theta: -1, r: 0.5",
+                                       "alpha: 0.3, d: 0.05, theta: 0.4, r: 0.1");
   const auto table = table_of(text, GetParam());
   ASSERT_TRUE(table);
   const bool standard = std::string(GetParam()) == "standard";
@@ -180,10 +186,8 @@ INSTANTIATE_TEST_SUITE_P(Conventions, ControllerText, testing::Values("standard"
                          [](const auto& each) { return std::string(each.param); });
 
 TEST(ControllerText, OfATableNamesBaseAndTool) {
-  std::string text = kTableArm;
-  text += "  - {name: tool, joint: fixed, xyz: [0.01, 0, 0.1], rpy: [0, 0, pi/2]}\n";
-  text.insert(text.find("  - {name: j1"),
-              "  - {name: base, joint: fixed, xyz: [1, 2, 3], rpy: [0, 0, 0]}\n");
+  std::string text =
+      arm_between("xyz: [1, 2, 3], rpy: [0, 0, 0]", "xyz: [0.01, 0, 0.1], rpy: [0, 0, pi/2]");
   const auto table = table_of(text, "modified");
   ASSERT_TRUE(table);
   EXPECT_THAT(*table,
