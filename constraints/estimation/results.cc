@@ -6,6 +6,7 @@
 #include <set>
 
 #include "constraints/identifiability/observability.h"
+#include "constraints/methods/lone_groups.h"
 #include "constraints/statistics.h"
 #include "kinematics/linear_algebra.h"
 #include "kinematics/readable.h"
@@ -261,6 +262,8 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
       }
     if (std::string often = often_beyond(set, solution); !often.empty())
       solution.warnings.push_back(std::move(often));
+    if (std::string lone = lone_groups(data, static_cast<int>(s)); !lone.empty())
+      solution.warnings.push_back(std::move(lone));
     if (!placed)
       solution.warnings.push_back(
           "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +

@@ -1,9 +1,11 @@
 // Shared points of unknown place, where the robot turns as a whole.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "constraints/fitting/fit_system.h"
+#include "constraints/methods/lone_groups.h"
 #include "tests/sim/simulated_robot.h"
 
 namespace selfcal {
@@ -38,6 +40,20 @@ TEST(SharedPoints, GoAlongWhereTheBaseTurnsFar) {
   // What was believed of the base is met again, and the rows as before.
   EXPECT_NEAR(before - system.cost(), std::pow(20e-3 / prior.sigma[base], 2), 0.2);
   EXPECT_GT(system.tried().cost, before) << "the step alone would not do";
+}
+
+TEST(SharedPoints, OfOneTouchAreNamedForTheyTellNothing) {
+  DataSet data = made(
+                     "robot: rx90.robot.yaml\nseed: 3\ncheck: 0\nsets:\n  tip: {method: "
+                     "position-constraint, noise_true: 1.0e-5, rows: 12, rows_per_group: 4}\n")
+                     .data;
+  EXPECT_EQ(lone_groups(data, 0), "");
+  data.rows.group[5] = static_cast<int>(data.sets[0].groups.size());
+  data.sets[0].groups.push_back("fornt_1");
+  EXPECT_THAT(lone_groups(data, 0),
+              testing::StartsWith("set tip: too few rows at fornt_1 to tell anything"));
+  data.rows.group[6] = data.rows.group[5];
+  EXPECT_EQ(lone_groups(data, 0), "") << "two touches of one point tell something";
 }
 
 }  // namespace
