@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kinematics/robot.h"
+#include "kinematics/size.h"
 #include "kinematics/statics.h"
 
 namespace selfcal {
@@ -29,6 +30,7 @@ constexpr Family kFamilies[] = {
 #undef X
 };
 
+constexpr double kUsualSize = 1.5;   // m, of the machines whose usual sizes the effects give
 constexpr double kImpossible = 100;  // times the largest usual size
 
 /// What may have been taken for a unit, as a question; nothing where none is likely.
@@ -42,6 +44,13 @@ std::string likely_slip(std::string_view unit) {
   const auto* slip =
       std::ranges::find(slips, unit, &std::pair<std::string_view, std::string_view>::first);
   return slip == std::end(slips) ? "" : " (" + std::string(slip->second) + "?)";
+}
+
+/// Of a quantity of this unit, on a machine `size` times as large: errors of lengths grow with it,
+/// errors of angles and what a force makes stay.
+double in_proportion(std::string_view unit, double size) {
+  if (unit == "m" || unit == "m/K") return size;
+  return unit == "1/m" ? 1 / size : 1;
 }
 
 /// Far beyond what any machine has. A fit may find a little of the wrong sign.
@@ -157,6 +166,9 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
     if (fields.has("named")) effect->named_ = fields.flag("named", false);
     const bool unusual = fields.flag("unusual", false);
     for (EffectParameter& p : effect->parameters_) {
+      const double size = in_proportion(p.unit, size_of(robot) / kUsualSize);
+      p.usual_least *= size;
+      p.usual_most *= size;
       p.value = fields.number(p.name, 0.0);
       if (!unusual && impossible(p, p.value)) fields.fail(p.name, possible_range(p));
     }

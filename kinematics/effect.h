@@ -86,8 +86,10 @@ struct MeasurementContext {
 struct EffectParameter {
   std::string name;  ///< within its place: "c"
   std::string unit;
-  double usual_least = 0, usual_most = 0;  ///< of its magnitude
-  bool positive = false;                   ///< physics allows no other sign
+  /// Of its magnitude; an effect gives lengths for a machine of 1.5 m (size_of), and has them in
+  /// proportion to its own robot.
+  double usual_least = 0, usual_most = 0;
+  bool positive = false;  ///< physics allows no other sign
   double value = 0;
 };
 

@@ -18,6 +18,7 @@ Node entry_of(const ShapedEffect& effect) {
   if (!shape.half_waves.empty()) entry.set("half_waves", Node::of(shape.half_waves));
   if (shape.lumps) entry.set("lumps", Node::of(std::string("true")));
   if (shape.tool) entry.set("tool", Node::of(std::string("true")));
+  if (shape.base) entry.set("base", Node::of(std::string("true")));
   if (!shape.by.empty()) entry.set("by", Node::of(shape.by));
   if (!shape.from.empty()) entry.set("from", Node::of(shape.from));
   return entry;

@@ -19,7 +19,7 @@ struct EffectShape {
   std::vector<double> waves = {};       ///< a turn
   std::vector<double> half_waves = {};  ///< in all of the rows' time
   bool lumps = false;                   ///< of masses that are not known
-  bool tool = false;                    ///< takes part
+  bool tool = false, base = false;      ///< takes part
   std::string by = {}, from = {};       ///< what drives it; the joint that it comes from
   bool operator==(const EffectShape&) const = default;
 };

@@ -23,6 +23,7 @@ struct Mechanics {
   std::vector<Link> links;               ///< from the world to the tool
   /// The masses are a usual distribution of the whole robot's, no maker's figures.
   bool masses_assumed = false;
+  double payload = 0;  ///< kg, that the machine may carry by its file; 0: not told
 
   bool masses_known() const;
   /// Index of the link that joint `j` moves.

@@ -8,14 +8,16 @@
 
 #include "constraints/identifiability/gauge.h"
 #include "diagnosis/constants.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
 /// What is usual of a length (m), an angle (rad) or a ratio.
-EffectParameter usual_parameter(const std::string& name, std::string unit) {
-  return {name, std::move(unit), kDiagnosis.comparison.usual_least,
-          kDiagnosis.comparison.usual_most, 0};
+EffectParameter usual_parameter(const Robot& robot, const std::string& name, std::string unit) {
+  const double size = unit == "m" ? size_of(robot) : 1;
+  return {name, std::move(unit), size * kDiagnosis.comparison.usual_least,
+          size * kDiagnosis.comparison.usual_most, 0};
 }
 
 /// Of a freedom of what a set measures: "turn", "shift".
@@ -52,8 +54,8 @@ class Builder {
         nuisance.push_back(equations_.own_at(set) + k);
         const Quantity quantity = before.sets[s].method->tangent_quantity(k);
         const std::string number = std::to_string(++of_kind[quantity]);
-        parameters.push_back(
-            usual_parameter(word_of(quantity) + number, std::string(selfcal::unit(quantity))));
+        parameters.push_back(usual_parameter(robot_, word_of(quantity) + number,
+                                             std::string(selfcal::unit(quantity))));
       }
       add(fixture_moved(between_), before.sets[s].name, nuisance, std::move(parameters));
     }
@@ -93,8 +95,8 @@ class Builder {
   void add_own(const std::string& effect, const std::string& at, const std::vector<int>& columns) {
     std::vector<EffectParameter> parameters;
     for (const int c : columns)
-      parameters.push_back(
-          usual_parameter(robot_.parameters()[c].name, std::string(robot_.parameters()[c].unit())));
+      parameters.push_back(usual_parameter(robot_, robot_.parameters()[c].name,
+                                           std::string(robot_.parameters()[c].unit())));
     add(effect, at, columns, std::move(parameters));
   }
 

@@ -154,15 +154,17 @@ std::vector<Change> stand_elsewhere(const Robot& geometry, const FittedSession& 
   for (size_t s = 0; s < by.size(); ++s) {
     const Set& set = after.data.sets[s];
     const bool lengths = set.method->has_lengths();
-    const double limit = kDiagnosis.comparison.elsewhere * (lengths ? size_of(geometry) : 1);
+    const double size = lengths ? size_of(geometry) : 1;
+    const double limit = kDiagnosis.comparison.elsewhere * size;
     if (by[s] <= limit) continue;
     const Scale& noise = after.fit.noise.estimated[s];
     const double sigma = (lengths ? noise.length : noise.angle) / std::sqrt(after.fit.rows[s]);
-    list.push_back({fixture_moved(between),
-                    set.name,
-                    1,
-                    {{"rows off by", lengths ? "m" : "rad", by[s], sigma,
-                      kDiagnosis.comparison.usual_least, kDiagnosis.comparison.usual_most}}});
+    list.push_back(
+        {fixture_moved(between),
+         set.name,
+         1,
+         {{"rows off by", lengths ? "m" : "rad", by[s], sigma,
+           size * kDiagnosis.comparison.usual_least, size * kDiagnosis.comparison.usual_most}}});
   }
   return list;
 }

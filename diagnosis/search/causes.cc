@@ -48,6 +48,7 @@ std::string in_words(const EffectShape& shape,
   if (shape.by == "temperature") parts.emplace_back("following the temperature");
   if (shape.by == "tool") parts.emplace_back("of the tool itself");
   if (shape.tool) parts.emplace_back("of the tool too");
+  if (shape.base) parts.emplace_back("of what carries the robot too");
   if (!shape.half_waves.empty()) parts.emplace_back("wandering");
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;

@@ -2,9 +2,10 @@
 //   delta p_tip = alpha (T - T0) sum over their frames of (d_k X_k + r_k Z_k),
 // the vector from the foot of the first moving frame (the last base frame's origin) to the origin
 // of the last one; fixed frames in between belong to the links. With `tool` what it carries grows
-// as they do, and the vector ends at the tip. T lags behind the thermometer, `lag` dT/dt =
-// T_measured - T (s; 0: at once); `reference` is T0 (C, default the mean of the record). alpha:
-// 1/K.
+// as they do, and the vector ends at the tip; with `base` what carries them does (a gantry's
+// columns, a pedestal), and it begins at the world's origin. T lags behind the thermometer, `lag`
+// dT/dt = T_measured - T (s; 0: at once); `reference` is T0 (C, default the mean of the record).
+// alpha: 1/K.
 #include <algorithm>
 #include <cmath>
 
@@ -32,6 +33,7 @@ class ThermalExpansion final : public Effect {
     parameters_ = {{"alpha", "1/K", 5e-6, 3e-5, true}};
     plan.mechanics();
     tool_ = plan.fields.flag("tool", false);
+    base_ = plan.fields.flag("base", false);
     lag_ = plan.fields.number("lag", 0.0);
     if (lag_ < 0) plan.fields.fail("lag", "a time of at least 0 s");
     times_ = plan.context.times;
@@ -44,7 +46,7 @@ class ThermalExpansion final : public Effect {
     const int first = at.mechanics->link_of(0);
     const int last = at.mechanics->link_of(static_cast<int>(at.q.size()) - 1);
     Eigen::Vector3d grown = (tool_ ? at.poses.back() : at.poses[last]).translation();
-    if (first > 0) grown -= at.poses[first - 1].translation();
+    if (first > 0 && !base_) grown -= at.poses[first - 1].translation();
     into.tip.col(0).head<3>() = warmth_.above(temperature(at)) * grown;
   }
 
@@ -63,10 +65,11 @@ class ThermalExpansion final : public Effect {
   void describe_shape(Node& node) const override {
     node.set("lag", Node::of(lag_));
     if (tool_) node.set("tool", Node::of(std::string("true")));
+    if (base_) node.set("base", Node::of(std::string("true")));
     warmth_.describe(node);
   }
 
-  bool tool_ = false;  ///< grows as well
+  bool tool_ = false, base_ = false;  ///< grows as well
   double lag_ = 0;
   Warmth warmth_;
   std::vector<double> times_, temperatures_;
@@ -86,13 +89,17 @@ void suppose_thermal_expansion(const Supposed& rows, const EffectPlace& place, S
   if (!rows.warms) return to.cannot("", "the rows carry no temperatures that change");
   const double span = rows.context.end - rows.context.begin;
   const Mechanics& mechanics = statics->mechanics();
+  const int first = mechanics.link_of(0);
   const int last = mechanics.link_of(static_cast<int>(rows.robot.joints().size()) - 1);
-  for (const bool tool : {false, true}) {
-    if (tool && last + 1 == static_cast<int>(mechanics.links.size())) continue;
-    to.add("", {.tool = tool});
+  const auto add = [&](bool tool, bool base) {
+    to.add("", {.tool = tool, .base = base});
     for (const double share : {0.125, 0.25, 0.5, 1.0})
-      if (span > 0) to.add("", {.lag = share * span, .tool = tool});
-  }
+      if (span > 0) to.add("", {.lag = share * span, .tool = tool, .base = base});
+  };
+  for (const bool base : {false, true})
+    for (const bool tool : {false, true})
+      if ((!base || first > 0) && (!tool || last + 1 < static_cast<int>(mechanics.links.size())))
+        add(tool, base);
 }
 
 }  // namespace selfcal

@@ -4,6 +4,7 @@
 // q: the joint's reading (rad; of a prismatic joint 2 pi q / m). sinK, cosK: rad (m).
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "kinematics/effect.h"
 #include "kinematics/robot.h"
@@ -16,6 +17,11 @@ namespace {
 /// pitches of 15, 12.5, 12, 10, 8, 6, 5.08, 5, 4, 3, 2.5 and 2 mm.
 constexpr double kScrews[] = {66.67,  80,  83.33, 100,    125, 166.67,
                               196.85, 200, 250,   333.33, 400, 500};
+
+/// Waves a turn of strain wave gears of 80, 100, 120 and 160 to 1, and one more: once and twice a
+/// turn of their generator.
+constexpr double kGenerators[] = {80,  81,  100, 101, 120, 121, 160, 161,
+                                  162, 200, 202, 240, 242, 320, 322};
 
 class TransmissionError final : public Effect {
  public:
@@ -57,9 +63,9 @@ std::unique_ptr<Effect> make_transmission_error(const EffectPlan& plan) {
 void suppose_transmission_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
   if (place.joint < 0) return;
   for (int k = 1; k <= rows.most_waves; ++k) to.add(place.name, {.waves = {1.0 * k}});
-  if (rows.robot.joints()[place.joint].quantity != Quantity::angle)
-    for (const double k : kScrews)
-      if (k > rows.most_waves) to.add(place.name, {.waves = {k}});
+  const bool turns = rows.robot.joints()[place.joint].quantity == Quantity::angle;
+  for (const double k : turns ? std::span<const double>(kGenerators) : kScrews)
+    if (k > rows.most_waves) to.add(place.name, {.waves = {k}});
   to.add(place.name);
   to.last().together = 2;
   to.add(place.name);

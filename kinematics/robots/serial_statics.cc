@@ -22,6 +22,7 @@ std::vector<Eigen::Isometry3d> frame_poses(const Model& model, const Eigen::Vect
 Mechanics mechanics(const Model& file) {
   const Model model = with_usual_masses(file);
   Mechanics mechanics{model.gravity, {}};
+  mechanics.payload = file.payload;
   for (size_t i = 0; i < model.frames.size(); ++i)
     mechanics.masses_assumed |= model.frames[i].mass && !file.frames[i].mass;
   int joint = 0;

@@ -114,7 +114,7 @@ TEST(Candidates, LookForThePitchOfTheScrewsOfSlides) {
     return waves;
   };
   EXPECT_EQ(finest("x"), 500);  // of 2 mm
-  EXPECT_EQ(finest("turn"), 64);
+  EXPECT_EQ(finest("turn"), 322);  // twice a turn of the generator of a gear of 161 to 1
 }
 
 TEST(Candidates, LetTheBaseDriftSettleWanderAndBeMovedAtOnce) {

@@ -39,6 +39,15 @@ TEST(ThermalExpansionByHand, GrowsTheToolAsWellWhereToldSo) {
   expect_near(moved(kColumn, warm, held).p, 20e-6, 100e-6, 40e-6, 1e-15);
 }
 
+TEST(ThermalExpansionByHand, GrowsWhatCarriesTheRobotWhereToldSo) {
+  // 1e-4 of the pedestal's 0.5 m too.
+  const std::string warm =
+      "[{effect: thermal_expansion, base: true, reference: 20, alpha: 2.0e-5}]";
+  Held held{numbers({0, 0})};
+  held.temperature = 25;
+  expect_near(moved(kColumn, warm, held).p, 130e-6, 0, 90e-6, 1e-15);
+}
+
 TEST(ThermalExpansionByHand, HasTheWorldsOriginForAFootWithoutABaseFrame) {
   // 1e-4 of r = 0.4 m and d = 0.3 m of the first frame of all.
   const std::string arm = with_frames(

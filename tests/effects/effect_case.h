@@ -40,6 +40,7 @@ inline std::vector<EffectCase> effect_cases() {
       {"ThermalExpansion", "effect: thermal_expansion"},
       {"ThermalExpansionThatLags", "effect: thermal_expansion, lag: 600, reference: 21"},
       {"ThermalExpansionOfTheTool", "effect: thermal_expansion, tool: true, reference: 21"},
+      {"ThermalExpansionOfTheBase", "effect: thermal_expansion, base: true, reference: 21"},
       {"BaseDrift", "effect: base_drift, at: base"},
       {"BaseDriftThatSettles", "effect: base_drift, settle: 500"},
       {"BaseDriftThatWanders", "effect: base_drift, half_waves: [1, 2.5]"},

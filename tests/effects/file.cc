@@ -3,6 +3,7 @@
 #include "io/files/robot_file.h"
 #include "kinematics/make_robot.h"
 #include "tests/effects/effect_case.h"
+#include "tests/support/arm_of_size.h"
 
 namespace selfcal {
 namespace {
@@ -162,6 +163,25 @@ TEST_P(EffectFile, IsRefusedForAnUnknownKey) {
 
 INSTANTIATE_TEST_SUITE_P(Effects, EffectFile, testing::ValuesIn(effect_cases()), title_of);
 
+TEST(UsualSizes, OfLengthsGrowWithTheMachineAndOfAnglesAndForcesStay) {
+  const auto usual = [](double size, const std::string& effect) {
+    const std::shared_ptr<const Robot> arm = arm_of_size(size);
+    Problems problems;
+    const auto corrected =
+        correct(arm, {*parsed("effects: {" + effect + "}").find("effects")}, {}, problems);
+    EXPECT_NE(corrected, nullptr) << effect;
+    return effects_of(*corrected)[0]->parameters()[0].usual_most;
+  };
+  const auto ratio = [&](const std::string& effect) {
+    return usual(10, effect) / usual(1, effect);
+  };
+  EXPECT_NEAR(ratio("effect: tool_shift, moment: 0"), 10, 1e-9);
+  EXPECT_NEAR(ratio("effect: probe_pretravel"), 10, 1e-9);
+  EXPECT_NEAR(ratio("effect: plane_form_error, at: t, normal: [0, 0, 1]"), 0.1, 1e-9);
+  EXPECT_NEAR(ratio("effect: transmission_error, at: j2"), 1, 1e-9);
+  EXPECT_NEAR(ratio("effect: thermal_expansion"), 1, 1e-9);
+}
+
 TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
   const std::pair<const char*, const char*> cases[] = {
       {"{effect: joint_complience, at: j2}", "joint_compliance, link_compliance"},
@@ -183,8 +203,8 @@ TEST(EffectsOfAFile, AreRefusedWithTheLineAndWhatWasExpected) {
       {"{effect: backlash, at: j1, play: 120}",
        "'play': expected from -0.0015 to 0.15 rad (degrees?)"},
       {"{effect: backlash, at: j1, play: -2.0e-3}", "from -0.0015 to 0.15 rad"},
-      {"{effect: backlash, at: j3, play: 0.2}", "m (millimetres?)"},
-      {"{effect: tool_shift, moment: 0, x: 100}", "from -0.2 to 0.2 m (millimetres?)"},
+      {"{effect: backlash, at: j3, play: 2}", "m (millimetres?)"},
+      {"{effect: tool_shift, moment: 0, x: 100}", "m (millimetres?)"},
       {"{effect: scale_error, at: tracker, s: 1000}", "(parts per million?)"},
       {"{effect: trigger_latency, delay: 5}", "s (milliseconds?), or `unusual: true`"},
       {"{effect: thermal_expansion, alpha: 11.5}", "1/K (parts per million per kelvin?)"},

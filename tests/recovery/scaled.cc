@@ -205,6 +205,7 @@ TEST_P(Measure, IsThatOfTheRobotItselfInRowsAnswersAndCauses) {
     EXPECT_EQ(other.solution.verdict.answer, one.solution.verdict.answer)
         << other.solution.verdict.why;
     EXPECT_EQ(other.diagnosis.verdict.effect, one.diagnosis.verdict.effect);
+    EXPECT_NEAR(other.diagnosis.verdict.probability, one.diagnosis.verdict.probability, 0.02);
     // Configurations are drawn anew and rounded in another way: a thousandth of the figure.
     EXPECT_NEAR(other.solution.endpoint.median / k, one.solution.endpoint.median,
                 1e-3 * one.solution.endpoint.median);
