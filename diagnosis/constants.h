@@ -71,6 +71,7 @@ struct DiagnosisConstants {
     int agreements = 3;     ///< rounds of noise and structure; 1 to 10 [cost]
     double worthwhile = 5;  ///< log evidence that a cause must bring; 2 to 10 [habit]
     int most_together = 8;  ///< candidates of a set; 3 to 12 [cost]
+    int exchanged = 3;      ///< causes tried in the place of either of the best pair; 0 to 6 [cost]
     /// Log weight below the best, that a set has to count at all; and what one costs that needs of
     /// a machine what none has (Report::impossible, other_sign); 6 to 20, 10 to 50 [physics]
     double counts = 12, impossible = 20;
@@ -193,7 +194,8 @@ struct DiagnosisConstants {
     /// Units of readings that a joint moves at least in another posture; 0.2 to 1 [habit]
     double another = 0.5;
     double faster = 3;      ///< over the speed of the row; 1.5 to 5 [physics]
-    double of_mass = 0.05;  ///< payload to add, over the robot's mass; 0.02 to 0.1 [physics]
+    double of_mass = 0.05;  ///< payload to add, over the robot's mass, where its file tells
+                            ///< none; 0.02 to 0.1 [physics]
     double on_paper = 5;    ///< kg, of that where no mass is known; 0.5 to 10 [physics]
     /// Of the confusion at first, below which no row is worth it; 1e-4 to 0.02 [habit]
     double least_confusion = 0.002;
@@ -218,8 +220,8 @@ struct DiagnosisConstants {
     /// Of the robot's size, or rad: a surface or instrument that stands so much elsewhere by the
     /// two sessions' own fits has moved, too far to be linear in it; 0.005 to 0.05 [physics]
     double elsewhere = 0.02;
-    /// Sizes of a length (m), an angle (rad) or a ratio that changes; 1e-6 to 1e-5, 1e-3 to 2e-2
-    /// [physics]
+    /// Sizes of a length (of the robot's size), an angle (rad) or a ratio that changes; 1e-6 to
+    /// 1e-5, 1e-3 to 2e-2 [physics]
     double usual_least = 5e-6, usual_most = 5e-3;
     double apart = 3;         ///< sigmas of a figure that differs; 2 to 5 [habit]
     double alike = 1 - 1e-6;  ///< cosine of columns that no row tells apart [exact]
@@ -273,9 +275,12 @@ struct DiagnosisConstants {
     double least_scattered = 0.25, most_scattered = 16;
     double worth_a_word = 1.3;  ///< of the stated noise; 1.1 to 2 [habit]
     /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
-    /// farther are no noise, if there are as many as told; 1.4 to 2, 5 to 30 [trials]
-    double beyond_noise = 1.6;
+    /// farther, and hardly by chance, are no noise, if they give as many equations as told; 1.4 to
+    /// 2, 0.001 to 0.05, 5 to 30 [trials]; so many of them are asked, 100 to 1000 [cost]
+    double beyond_noise = 1.6, beyond_noise_by_chance = 0.01;
     int fewest_beyond_noise = 10;
+    std::size_t most_beyond_noise = 300;
+    double few_false = 0.2;  ///< of the rows kept aside, may be false readings; 0.1 to 0.4 [habit]
     /// Of what calibration leaves is still there: little gain; 0.5 to 0.95 [habit]
     double hardly_closes = 0.8;
     /// Of the gap, that what is named closes at most by 95 %: nothing is named; 0.1 to 0.4 [habit]

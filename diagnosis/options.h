@@ -14,7 +14,7 @@ struct SearchRule {
   double family_odds = 0.10;  ///< of one family against its absence
   double unknown_odds = 0.4;  ///< of structure that no known effect explains
   double another = 0.25;      ///< factor on the odds of each cause after the first
-  double same_family = 0.3;   ///< odds that a cause acts at one more place
+  double same_family = 0.5;   ///< odds that a cause acts at one more place
   int extended_singles = 14, extended_pairs = 14;
   /// Triples and larger sets, by what their families have elsewhere; 0: none, and sets that no
   /// machine can have count as any other.

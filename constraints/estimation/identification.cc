@@ -95,6 +95,18 @@ bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, con
   return f_exceeds(gain / extra / (after / left), extra, left) > 0.01;
 }
 
+/// All rows that identify are repeats of one configuration.
+bool at_one_configuration(const Observations& rows) {
+  std::optional<int> one;
+  for (int row = 0; row < rows.rows(); ++row) {
+    if (rows.check[static_cast<size_t>(row)]) continue;
+    const int repeat = rows.repeat.empty() ? -1 : rows.repeat[static_cast<size_t>(row)];
+    if (repeat < 0 || (one && *one != repeat)) return false;
+    one = repeat;
+  }
+  return one.has_value();
+}
+
 /// Most `poses` (a row each) have a joint beyond its least or its most reading of the rows that
 /// identify.
 bool lie_beyond(const Observations& rows, const Eigen::MatrixXd& poses) {
@@ -230,6 +242,9 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || !known_to(solution.workspace, data.target))
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
+  if (at_one_configuration(data.rows))
+    grounds.contradictions.emplace_back(
+        "the rows that identify all stand at one configuration, which says nothing of the robot");
   for (const FrameStep& step : solution.frame_steps)
     if (step.shift > data.target) grounds.contradictions.push_back(step_words(step));
   solution.verdict = verdict(before, solution.residual, grounds);

@@ -32,34 +32,51 @@ Eigen::MatrixXd in_columns_of(const Equations& fit, const Equations& check,
 
 }  // namespace
 
+Predicted predicted(const DataSet& data, const Equations& fit_equations, const Judged& after,
+                    const std::vector<char>& asked) {
+  std::vector<char> others(static_cast<size_t>(data.rows.rows()), 1);
+  std::ptrdiff_t taken = 0;
+  for (std::size_t i = 0; i < after.check.size() && taken < kMost; ++i) {
+    const RowResidual& r = after.check[i];
+    if (!asked[i] || !is_predicted(fit_equations, after, r.set)) continue;
+    others[static_cast<size_t>(r.row)] = 0;
+    ++taken;
+  }
+  if (taken == 0) return {};
+  const Equations check(fit_equations.robot(), data, Use::check);
+  DenseEquations dense = check.dense(after.state, after.check_scale, others);
+  std::vector<int> of_rows;
+  for (std::size_t e = 0; e < dense.row.size(); ++e)
+    if (dense.row[e] >= 0) of_rows.push_back(static_cast<int>(e));
+  Predicted out{
+      dense.y(of_rows), in_columns_of(fit_equations, check, dense.W(of_rows, Eigen::all)), {}};
+  for (const int e : of_rows) out.row.push_back(dense.row[static_cast<std::size_t>(e)]);
+  return out;
+}
+
+double squared_distance(const Eigen::VectorXd& y, const Eigen::MatrixXd& W,
+                        const Eigen::MatrixXd& C) {
+  const Eigen::MatrixXd spread =
+      Eigen::MatrixXd::Identity(W.rows(), W.rows()) + W * C * W.transpose();
+  return y.dot(spread.llt().solve(y));
+}
+
 std::vector<char> foreseen(const DataSet& data, const Equations& fit_equations,
                            const Eigen::MatrixXd& C, const Judged& after) {
-  std::vector<char> explained(after.check.size(), 0);
-  std::vector<char> others(static_cast<size_t>(data.rows.rows()), 1);
-  std::vector<std::size_t> of_row(others.size());
-  std::ptrdiff_t asked = 0;
-  for (std::size_t i = 0; i < after.check.size() && asked < kMost; ++i) {
-    const RowResidual& r = after.check[i];
-    if (!is_outlier(r, after) || !is_predicted(fit_equations, after, r.set)) continue;
-    others[static_cast<size_t>(r.row)] = 0;
-    of_row[static_cast<size_t>(r.row)] = i;
-    ++asked;
+  std::vector<char> beyond, explained(after.check.size(), 0);
+  std::vector<std::size_t> of_row(static_cast<std::size_t>(data.rows.rows()));
+  for (std::size_t i = 0; i < after.check.size(); ++i) {
+    beyond.push_back(is_outlier(after.check[i], after));
+    of_row[static_cast<std::size_t>(after.check[i].row)] = i;
   }
-  if (asked == 0) return explained;
-  const Equations check(fit_equations.robot(), data, Use::check);
-  const DenseEquations dense = check.dense(after.state, after.check_scale, others);
-  const Eigen::MatrixXd W = in_columns_of(fit_equations, check, dense.W);
-  for (Eigen::Index first = 0, end = 0; first < W.rows(); first = end) {
-    const int row = dense.row[static_cast<size_t>(first)];
-    while (end < W.rows() && dense.row[static_cast<size_t>(end)] == row) ++end;
-    if (row < 0) continue;
-    const Eigen::MatrixXd own = W.middleRows(first, end - first);
-    const Eigen::MatrixXd spread =
-        Eigen::MatrixXd::Identity(own.rows(), own.rows()) + own * C * own.transpose();
-    const Eigen::VectorXd y = dense.y.segment(first, end - first);
-    const double distance = std::sqrt(y.dot(spread.llt().solve(y)));
-    explained[of_row[static_cast<size_t>(row)]] =
-        distance <= chi_quantile(static_cast<int>(own.rows()), kOutlierQuantile);
+  const Predicted rows = predicted(data, fit_equations, after, beyond);
+  for (Eigen::Index first = 0, end = 0; first < rows.W.rows(); first = end) {
+    const int row = rows.row[static_cast<std::size_t>(first)];
+    while (end < rows.W.rows() && rows.row[static_cast<std::size_t>(end)] == row) ++end;
+    const double squared = squared_distance(rows.y.segment(first, end - first),
+                                            rows.W.middleRows(first, end - first), C);
+    explained[of_row[static_cast<std::size_t>(row)]] =
+        std::sqrt(squared) <= chi_quantile(static_cast<int>(end - first), kOutlierQuantile);
   }
   return explained;
 }

@@ -23,8 +23,9 @@ class Search {
     visit_singles();
     extend(best_of(1, singles));
     keep_best();
-    const std::vector<Visit> best_pairs = best_of(2, pairs);
+    std::vector<Visit> best_pairs = best_of(2, pairs);
     visit_elsewhere(best_pairs);
+    add_exchanged(best_pairs);
     extend(best_pairs);
     keep_best();
     visit_elsewhere(best_of(3, pairs));
@@ -135,6 +136,40 @@ class Search {
       if (++taken[{causes, each.structure}] <= 2) diverse.push_back(each);
     }
     return diverse;
+  }
+
+  /// The best pair with either cause exchanged for the next best ones: where two causes do better
+  /// than one that looks like both, neither pair that leads there may be among the best.
+  void add_exchanged(std::vector<Visit>& pairs) {
+    if (pairs.empty()) return;
+    const Visit best = pairs.front();
+    const std::vector<int>& cause = evaluator_.numbers_.cause;
+    std::vector<Visit> alone;
+    for (const Visit& each : visited_)
+      if (each.count == 1 && each.structure == best.structure &&
+          std::ranges::count(best.all(), each.candidates[0]) > 0)
+        alone.push_back(each);
+    extend(alone);
+    keep_best();
+    for (const int out : {best.candidates[0], best.candidates[1]}) {
+      const int kept = out == best.candidates[0] ? best.candidates[1] : best.candidates[0];
+      std::vector<const Visit*> others;
+      for (const Visit& each : visited_)
+        if (each.count == 2 && each.structure == best.structure &&
+            std::ranges::count(each.all(), kept) > 0 &&
+            std::ranges::none_of(each.all(), [&](int c) { return cause[c] == cause[out]; }))
+          others.push_back(&each);
+      std::ranges::sort(others, std::ranges::greater{}, &Visit::log_weight);
+      std::vector<int> in;  // causes
+      for (const Visit* each : others) {
+        const int c = each->candidates[0] == kept ? each->candidates[1] : each->candidates[0];
+        if (static_cast<int>(in.size()) == kDiagnosis.evidence.exchanged) break;
+        if (std::ranges::count(in, cause[c]) > 0) continue;
+        in.push_back(cause[c]);
+        if (std::ranges::none_of(pairs, [&](const Visit& p) { return p.key() == each->key(); }))
+          pairs.push_back(*each);
+      }
+    }
   }
 
   /// One or two candidates explain the rows best, beside noise alone.

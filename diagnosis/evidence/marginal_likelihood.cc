@@ -185,7 +185,8 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms) const {
     for (int j = 0; j <= i; ++j) {
       double sum = s.scale[i] * s.scale[j] * product(only.group, i, j) + (i == j ? 1 : 0);
       for (int k = 0; k < j; ++k) sum -= s.L[i][k] * s.L[j][k];
-      s.L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / s.L[j][j];
+      // I and what is no less than nothing have no pivot below one, but for rounding.
+      s.L[i][j] = i == j ? std::sqrt(std::max(sum, 1.0)) : sum / s.L[j][j];
     }
     double z = s.scale[i] * g_[only.columns[static_cast<size_t>(i)]];
     for (int k = 0; k < i; ++k) z -= s.L[i][k] * s.z[k];
@@ -229,6 +230,7 @@ double MarginalLikelihood::log_evidence(std::span<const Term> terms,
   const Eigen::MatrixXd H = Eigen::MatrixXd::Identity(D.size(), D.size()) +
                             Eigen::MatrixXd(D.asDiagonal() * G * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
+  if (!L.allFinite()) return -INFINITY;  // alike but for rounding: no set of causes
   const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
   return constant_ - L.diagonal().array().log().sum() + of_noise(yy_ - z.squaredNorm(), nu_) +
          of_signs(terms, L, z);

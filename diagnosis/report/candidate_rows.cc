@@ -106,9 +106,12 @@ class CandidateSet {
     const Mechanics& mechanics = robot_.statics()->mechanics();
     double mass = 0;
     for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
-    const double payload = mechanics.masses_known()
-                               ? std::max(1.0, std::round(kDiagnosis.further_rows.of_mass * mass))
-                               : kDiagnosis.further_rows.on_paper;
+    // What it may carry is the file's to say: without that no figure is asked of anybody.
+    const bool rated = mechanics.payload > 0 && !linearised_.mass_of_its_size();
+    const double usual = mechanics.masses_known()
+                             ? std::max(1.0, std::round(kDiagnosis.further_rows.of_mass * mass))
+                             : kDiagnosis.further_rows.on_paper;
+    const double payload = rated ? mechanics.payload : usual;
     DataSet loaded = copies_;
     Observations& rows = loaded.rows;
     if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
@@ -116,7 +119,8 @@ class CandidateSet {
       rows.wrench.row(row).head<3>() +=
           payload *
           (endpoint(rows.q.row(row).transpose()).at.R.transpose() * mechanics.gravity).transpose();
-    add("with a payload of " + format_number(payload) + " kg within the robot's rating",
+    add(rated ? "with the " + format_number(payload) + " kg that the robot may carry"
+              : "with a payload within the robot's rating",
         std::move(loaded), "what gives way to a load");
   }
 

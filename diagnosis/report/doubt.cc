@@ -9,6 +9,7 @@
 #include "constraints/fitting/noise.h"
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/report/beyond_noise.h"
 #include "diagnosis/report/named.h"
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/report/verdict.h"
@@ -26,8 +27,6 @@ bool moves(std::string_view effect) {
   const EffectLasting lasting = lasting_of(effect);
   return lasting == EffectLasting::moves || lasting == EffectLasting::moved_at_will;
 }
-
-std::string millimetres(double metres) { return plain_figure(1e3 * metres) + " mm"; }
 
 std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
@@ -72,7 +71,7 @@ std::string beyond_tolerances(const LinearisedModel& linearised, const Diagnosis
   const bool lengths = diagnosis.noise > gross_misfit(linearised.geometry(), true);
   if (!lengths && angle <= gross_misfit(linearised.geometry(), false)) return {};
   return "calibration and all effects leave " +
-         (lengths ? millimetres(diagnosis.noise) : in_readable_unit(angle, "rad")) +
+         (lengths ? in_readable_unit(diagnosis.noise, "m") : in_readable_unit(angle, "rad")) +
          ", which no tolerance of the maker explains";
 }
 
@@ -100,20 +99,6 @@ bool drifts_too_far(const std::vector<CauseResult>& named) {
   });
 }
 
-/// Noise is said to be all, and the rows that nothing was chosen by say otherwise: they err by it
-/// and by what the geometry is in doubt, which for rows alike is the others' leverage.
-std::string beyond_noise(const LinearisedModel& linearised, const Diagnosis& diagnosis) {
-  const Gap& gap = diagnosis.gap;
-  if (diagnosis.verdict.effect != kNone || gap.rows < kDiagnosis.report.fewest_beyond_noise)
-    return {};
-  const double leverage = 1 - linearised.geometry_leaves(linearised.whitened_geometry()).mean();
-  const double explained = gap.noise_floor * std::sqrt(1 + leverage);
-  if (gap.rms_before <= kDiagnosis.report.beyond_noise * explained) return {};
-  return "calibration leaves " + millimetres(gap.rms_before) +
-         " of the rows kept aside, where noise explains " + millimetres(explained) +
-         ": what is there the other rows do not tell";
-}
-
 /// What calibration with all that was found leaves of the rows.
 double left_of(const LinearisedModel& linearised, const DataSet& data, const Correction& found) {
   Problems problems;
@@ -137,7 +122,7 @@ std::string forces_that_never_were(const LinearisedModel& linearised, const Data
   const double without = left_of(linearised, unforced, diagnosis.found);
   if (!(without < kDiagnosis.report.forces_cost * with)) return {};
   return "the rows fit better without their forces and torques (fx to tz), " +
-         millimetres(without) + " in place of " + millimetres(with) +
+         in_readable_unit(without, "m") + " in place of " + in_readable_unit(with, "m") +
          ": are they those that acted on the tool, in its frame, without its own weight?";
 }
 
@@ -173,10 +158,25 @@ bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
          kDiagnosis.report.better_than_moved * with_step;
 }
 
+/// Something moved farther than any machine errs may be so; a length given wrongly looks the same.
+std::string given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated) {
+  const auto moved_far = [](const CauseResult& each) {
+    return lasting_of(each.effect) == EffectLasting::moved_at_will &&
+           std::ranges::any_of(each.parameters, [](const NamedValue& v) {
+             return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
+                    kDiagnosis.report.impossible * v.usual_most;
+           });
+  };
+  const RobotScale& scale = calibrated.scale;
+  if (!scale.against_maker || scale.contradictions.empty() ||
+      std::ranges::none_of(diagnosis.named, moved_far))
+    return {};
+  return scale.contradictions.front();
+}
+
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
 std::string moved_between_rows(const LinearisedModel& linearised, const DataSet& data,
-                               const Diagnosis& diagnosis) {
-  const Solution calibrated = identify(linearised.geometry(), data);
+                               const Diagnosis& diagnosis, const Solution& calibrated) {
   std::vector<FrameStep> steps = calibrated.frame_steps;
   if (!steps.empty() && named_tells_better(linearised, data, diagnosis, calibrated)) return {};
   const bool tool_moves = std::ranges::any_of(
@@ -203,9 +203,9 @@ std::shared_ptr<const Robot> without_names(const std::shared_ptr<const Robot>& r
 std::string far_below_sheet(const Diagnosis& diagnosis) {
   const Gap& gap = diagnosis.gap;
   if (diagnosis.named.empty() || !may_state_millimetres(gap)) return {};
-  return "calibration leaves " + millimetres(gap.rms_before) +
+  return "calibration leaves " + in_readable_unit(gap.rms_before, "m") +
          " of the rows that no choice has seen, where the files state a noise of " +
-         millimetres(gap.noise_floor) + ": is it in metres, and 1 sigma?";
+         in_readable_unit(gap.noise_floor, "m") + ": is it in metres, and 1 sigma?";
 }
 
 }  // namespace
@@ -221,21 +221,24 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
   if (told ? gap.closed.most >= kDiagnosis.report.closes_little
            : gap.rms_after < gap.rms_before || gap.validated_on != "check")
     return {};
-  return "what would be named leaves " + millimetres(gap.rms_after) +
+  return "what would be named leaves " + in_readable_unit(gap.rms_after, "m") +
          " of the rows that no choice has seen, and calibration alone " +
-         millimetres(gap.rms_before);
+         in_readable_unit(gap.rms_before, "m");
 }
 
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
                      const Diagnosis& diagnosis) {
-  if (std::string why = moved_between_rows(linearised, data, diagnosis); !why.empty()) return why;
+  const Solution calibrated = identify(linearised.geometry(), data);
+  if (std::string why = moved_between_rows(linearised, data, diagnosis, calibrated); !why.empty())
+    return why;
+  if (std::string why = given_wrongly(diagnosis, calibrated); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;
   if (std::string why = far_below_sheet(diagnosis); !why.empty()) return why;
   if (std::string why = closes_nothing(diagnosis); !why.empty()) return why;
-  if (std::string why = beyond_noise(linearised, diagnosis); !why.empty()) return why;
+  if (std::string why = beyond_noise(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = forces_that_never_were(linearised, data, diagnosis); !why.empty())
     return why;
   const bool settled = diagnosis.verdict.effect == kUnknown && diagnosis.named.empty();

@@ -1,11 +1,13 @@
-// A validation row that no model comes near is a false one: it would drown every figure, is left
-// out of them, named, and figures with it stand beside them.
+// A validation row that no model comes near would drown every figure: it is left out of them, and
+// figures with it stand beside them. It is named as false where the geometry's own doubt does not
+// foresee it.
 #include "diagnosis/report/holdout_validation.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "constraints/estimation/judgement.h"
+#include "constraints/estimation/prediction.h"
 #include "constraints/statistics.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/report/fitted_correction.h"
@@ -47,7 +49,7 @@ void take_rows(const Left& left, const DataSet& data, const std::vector<double>&
     const bool false_reading =
         near > kDiagnosis.validation.beyond * limit * all.factor *
                    std::max(noise[all.set], whole.check_scale[all.set].length);
-    if (false_reading)
+    if (false_reading && !left.geometric.foreseen[i])
       validation.outliers.push_back({all.row + 1, data.sets[all.set].name, all.length, true,
                                      "neither the geometry nor any effect found comes near it"});
     validation.rows.push_back(
@@ -77,6 +79,7 @@ HoldoutValidation validate_on_holdout(const std::shared_ptr<const Robot>& geomet
             judge(*geometry, data, plain, before.fitted),
             {},
             all.judged(data)};
+  left.geometric.foreseen = foreseen(data, plain, before.fitted.covariance, left.geometric);
   note(before.fitted);
   note(all.adjusted.fitted);
   const Correction names = named_of(correction);

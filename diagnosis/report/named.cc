@@ -13,7 +13,7 @@ namespace {
 /// `h` and what it lacks of one cause.
 void add_named(Hypothesis& h, const CauseResult& cause, const Candidates& all,
                const Posterior& posterior) {
-  CauseResult one{.effect = cause.effect};
+  CauseResult one{.effect = cause.effect, .correction = cause.correction};
   const auto named = [&](int c) { return names(one, all.list[static_cast<size_t>(c)]); };
   const std::vector<std::string> anywhere{""};
   for (const std::string& at : cause.where.empty() ? anywhere : cause.where) {
@@ -33,8 +33,12 @@ void add_named(Hypothesis& h, const CauseResult& cause, const Candidates& all,
 }  // namespace
 
 bool names(const CauseResult& cause, const Candidate& candidate) {
+  const auto at_once = [&](const FoundEffect& each) {
+    return each.what.shape.moment.has_value() == candidate.shape.moment.has_value();
+  };
   return candidate.effect == cause.effect &&
-         (cause.where.empty() || std::ranges::count(cause.where, candidate.at) > 0);
+         (cause.where.empty() || std::ranges::count(cause.where, candidate.at) > 0) &&
+         (cause.correction.empty() || std::ranges::any_of(cause.correction, at_once));
 }
 
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate) {

@@ -7,7 +7,8 @@
 
 namespace selfcal {
 
-/// The candidate is of the cause's effect and at one of its places.
+/// The candidate is of the cause's effect, at one of its places and, where the cause is something
+/// that steps or something that does not, as it does.
 bool names(const CauseResult& cause, const Candidate& candidate);
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate);
 

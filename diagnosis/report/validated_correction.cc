@@ -215,7 +215,8 @@ class CorrectionValidation {
   }
 
   static bool of(const CauseResult& cause, const FoundEffect& found) {
-    return names(cause, {.effect = found.what.effect, .at = found.what.at});
+    return names(cause,
+                 {.effect = found.what.effect, .at = found.what.at, .shape = found.what.shape});
   }
 
   /// What each of the probable causes would leave alone.

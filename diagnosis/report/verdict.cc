@@ -33,15 +33,18 @@ std::string sure(double probability) {
   return probability < 0.995 ? phrase("%.0f %% sure", 100 * probability) : "over 99 % sure";
 }
 
-/// "link_compliance@j1 or backlash@j2"; empty without look-alikes.
+/// "link_compliance@j1 or backlash@j2", and what no known effect explains in any case; empty
+/// without look-alikes.
 std::string look_alikes(const CauseResult& cause) {
-  std::string words;
-  for (size_t i = 0; i < cause.confounded_with.size() && i < kDiagnosis.report.most_look_alikes;
-       ++i)
-    words += (i == 0 ? "" : " or ") + (cause.confounded_with[i] == kUnknown
-                                           ? "what no known effect explains"
-                                           : cause.confounded_with[i]);
-  return words;
+  std::vector<std::string> words;
+  for (const std::string& each : cause.confounded_with)
+    if (each != kUnknown && words.size() < kDiagnosis.report.most_look_alikes)
+      words.push_back(each);
+  if (std::ranges::count(cause.confounded_with, kUnknown) > 0)
+    words.emplace_back("what no known effect explains");
+  std::string list;
+  for (const std::string& each : words) list += (list.empty() ? "" : " or ") + each;
+  return list;
 }
 
 std::string with_shape(const CauseResult& cause) {
@@ -114,7 +117,10 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
 
 /// What was moved that the rows are all measured against.
 std::string moved_at_once(const Diagnosis& diagnosis) {
-  return std::ranges::any_of(diagnosis.named, is_moved_at_once)
+  const auto surely = [](const CauseResult& each) {
+    return is_moved_at_once(each) && each.of_its_kind() > kDiagnosis.report.beside;
+  };
+  return std::ranges::any_of(diagnosis.named, surely)
              ? ". The instrument or the robot's base was moved then: give the rows before and "
                "after it as two sets, each with a frame of its own"
              : "";

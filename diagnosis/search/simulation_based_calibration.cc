@@ -53,7 +53,8 @@ class Simulator {
     simulation.sessions = options_.simulated_sessions;
     simulation.right /= std::max(causes, 1);
     simulation.false_alarms /= std::max(none, 1);
-    simulation.temperature = fitted(stated);
+    // The sessions share the model's assumptions, as no machine does: they make nothing surer.
+    simulation.temperature = std::max(1.0, fitted(stated));
     evaluator_.condition_on_rows();
     return simulation;
   }

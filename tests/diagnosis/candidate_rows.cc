@@ -114,7 +114,7 @@ TEST_F(FurtherRowsOfAnArm, ReachTheSameLocationInAnotherPosture) {
 }
 
 TEST_F(FurtherRowsOfAnArm, LoadTheToolBesideWhatItHolds) {
-  const DataSet& both = arm().having("payload of");
+  const DataSet& both = arm().having("with a payload within");
   const Eigen::Index last = both.rows.q.rows() - 1;
   const Eigen::Vector3d more =
       arm().tip(both.rows.q.row(last).transpose()).linear() *

@@ -57,22 +57,35 @@ TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {
   EXPECT_THAT(diagnosis.why, HasSubstr("state a noise of 0.02 mm"));
 }
 
-TEST(Doubt, DoesNotCallNoiseWhatRowsKeptAsideAreFarBeyond) {
-  const Rows rows;
-  const DiagnosisOptions options = quick();
-  const LinearisedModel linearised(rows.robot, rows.data, options, {});
+/// What is doubted where every third of 60 rows is kept aside and `moved` of them err by `by` more
+/// (m), all along one direction, of which `told` are said to be false readings.
+std::string doubt_of_rows_kept_aside(int moved, double by, int told = 0) {
+  Rows rows;
+  std::vector<Outlier> outliers;
+  for (int row = 0, kept = 0; row < rows.data.rows.rows(); row += 3, ++kept) {
+    rows.data.rows.check[static_cast<std::size_t>(row)] = 1;
+    if (kept < moved) rows.data.rows.position(row, 2) += by;
+    if (kept < told) outliers.push_back({row + 1, "tracker", by, true, "far"});
+  }
+  const LinearisedModel linearised(rows.robot, rows.data, quick(), {});
   Diagnosis diagnosis;
   diagnosis.verdict.effect = kNone;
-  diagnosis.gap.rows = 30;
-  diagnosis.gap.noise_floor = 35e-6;
-  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 100e-6;
-  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis), HasSubstr("calibration leaves 0.1 mm"));
-  // The geometry of 60 rows is in doubt, too.
-  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 50e-6;
-  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
-  diagnosis.gap.rms_before = diagnosis.gap.rms_after = 100e-6;
-  diagnosis.gap.rows = 5;
-  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
+  diagnosis.noise = kTrackerNoise;
+  diagnosis.outliers = outliers;
+  return doubt_of(linearised, rows.data, diagnosis);
+}
+
+TEST(Doubt, DoesNotCallNoiseWhatRowsKeptAsideAreFarBeyond) {
+  EXPECT_THAT(doubt_of_rows_kept_aside(20, 10 * kTrackerNoise), HasSubstr("times what noise"));
+  // The 40 others leave the geometry in doubt, too: three sigma of noise are within that.
+  EXPECT_EQ(doubt_of_rows_kept_aside(20, 0), "");
+  EXPECT_EQ(doubt_of_rows_kept_aside(5, 3 * kTrackerNoise), "");
+}
+
+TEST(Doubt, LeavesOutAFewRowsKeptAsideThatAreFalseAndNoMore) {
+  EXPECT_EQ(doubt_of_rows_kept_aside(3, 1000 * kTrackerNoise, 3), "");
+  EXPECT_THAT(doubt_of_rows_kept_aside(20, 1000 * kTrackerNoise, 20),
+              HasSubstr("times what noise"));
 }
 
 TEST(Doubt, NamesNothingThatHardlyClosesWhatSoMuchNoiseLeaves) {

@@ -100,7 +100,7 @@ std::vector<const char*> agreeing_sets() {
     return {"motoman-tracker", "mukca-panda-1",  "mukca-panda-3",
             "mukca-panda-6",   "mukca-kuka-14",  "ipa-ur10-random",
             "ipa-ur10-joint",  "motoman-planes", "motoman-selfcontact"};
-  return {"mukca-panda-3"};
+  return {"mukca-panda-3", "mukca-kuka-14"};
 }
 
 class Agreement : public testing::TestWithParam<const char*> {};
