@@ -10,6 +10,7 @@
 #include "io/files/yaml.h"
 #include "io/models/mjcf_effects.h"
 #include "io/models/mujoco.h"
+#include "kinematics/expects.h"
 
 namespace selfcal {
 namespace {
@@ -50,7 +51,9 @@ Set position_set(const std::string& name, const DataSet& real) {
   if (all(&Method::frame_unknown)) entry.set("frame", Node::of(std::string("unknown")));
   if (all(&Method::point_unknown)) entry.set("point", Node::of(std::string("unknown")));
   Problems problems;
-  return make_set(name, entry, problems);
+  Set set = make_set(name, entry, problems);
+  expects(problems.list.empty(), "the entry of a set that is made here is sound");
+  return set;
 }
 
 Observations simulated_rows(const Observations& real, const ToolPoses& tool) {

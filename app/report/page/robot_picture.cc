@@ -38,6 +38,18 @@ std::vector<RobotLine> platform_lines(const Robot& robot, const Eigen::VectorXd&
   return lines;
 }
 
+/// Of links that reach the tool each by a rod of its own: a linear delta's carriages.
+std::vector<RobotLine> rod_lines(const Robot& robot, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd xi = values(robot);
+  const Eigen::Vector3d effector = locate(robot, xi, q, Body::last_link).p;
+  std::vector<RobotLine> lines;
+  for (int k = 0; k < static_cast<int>(robot.links().size()); ++k)
+    lines.push_back(
+        {robot.links()[static_cast<size_t>(k)], {locate(robot, xi, q, link_body(k)).p, effector}});
+  lines.push_back({"tool", {effector, locate(robot, xi, q, Body::endpoint).p}});
+  return lines;
+}
+
 bool closes(const Robot& robot, const Eigen::VectorXd& q) {
   if (!robot.has_loops()) return true;
   Locations X;
@@ -48,8 +60,9 @@ bool closes(const Robot& robot, const Eigen::VectorXd& q) {
 
 std::vector<RobotLine> robot_lines(const Robot& robot, const Eigen::VectorXd& q) {
   if (const Statics* statics = robot.statics()) return {serial_line(*statics, q)};
-  if (!robot.passive_joints().empty() && closes(robot, q)) return platform_lines(robot, q);
-  return {};
+  if (!closes(robot, q)) return {};
+  if (!robot.passive_joints().empty()) return platform_lines(robot, q);
+  return robot.links().empty() ? std::vector<RobotLine>() : rod_lines(robot, q);
 }
 
 nlohmann::ordered_json robot_picture(const Robot& robot, const Eigen::MatrixXd& q, int most) {
