@@ -10,11 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "constraints/estimation/adjustment.h"
-#include "constraints/estimation/angles.h"
-#include "constraints/estimation/judgement.h"
-#include "constraints/fitting/fit.h"
-#include "constraints/identifiability/gauge.h"
+#include "constraints/slips/misfit.h"
 #include "constraints/slips/slips_of_rows.h"
 #include "constraints/slips/two_planes.h"
 #include "constraints/statistics.h"
@@ -28,71 +24,9 @@ constexpr double kGross = 2;
 constexpr double kSlipCollapse = 0.2;
 constexpr double kWithin = 0.1;       // of what tolerances leave: less is not looked into
 constexpr double kLeastGross = 2e-3;  // of the robot's size, or rad: less is no slip
-constexpr double kWide = 20;          // times the tolerance, of base and tool: a metre, a radian
 constexpr double kLeastZero = 0.02;   // unit of readings: less is found by calibration
-constexpr int kFitSteps = 60;
-constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
-
-/// What may move beside the base and the sets' own unknowns.
-struct Moves {
-  bool tool = true;
-  int zero_of = -1;  ///< a joint, whose zero may be anywhere
-};
-
-struct Misfit {
-  double left = 0, tool_moved = 0;
-  int equations = 0, unknowns = 0;
-  double zero_moved = 0;  ///< rad or m, of the joint that was asked for
-  bool lengths = true, any = false;
-  std::vector<double> by_set = {};       ///< as `left`, of each set; 0 where it has no lengths
-  std::vector<std::string> angles = {};  ///< what is told of sets whose angles do not fit
-};
-
-/// How far base and tool alone, and what else moves, bring the robot to the rows.
-Misfit misfit(const Robot& robot, const DataSet& data, const Moves& moves) {
-  Misfit result;
-  const Equations equations(robot, data, Use::fit);
-  Prior prior;
-  prior.centre = nominal_values(robot);
-  prior.sigma.resize(prior.centre.size());
-  const auto& parameters = robot.parameters();
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const bool placed =
-        is_placed(parameters[i]) && (moves.tool || parameters[i].part != Part::tool);
-    prior.free.push_back(placed && parameters[i].free && parameters[i].tolerance > 0);
-    prior.sigma[static_cast<Eigen::Index>(i)] = kWide * parameters[i].tolerance;
-  }
-  for (const auto& notes : {held_base(robot, equations), held_orientation(robot, equations)})
-    for (const Note& note : notes) prior.free[find_parameter(robot, note.parameter)] = 0;
-  const int zero = moves.zero_of < 0 ? -1 : robot.variable_parameter(moves.zero_of);
-  if (zero >= 0) {
-    prior.free[static_cast<size_t>(zero)] = 1;
-    prior.sigma[zero] = robot.joints()[static_cast<size_t>(moves.zero_of)].range() / 2;
-  }
-  State start{values(robot), {}, {}};
-  equations.start(start);
-  FitRule rule;
-  rule.most_iterations = kFitSteps;
-  const Fit placed = fit(equations, start, prior, rule);
-  result.equations = placed.at.equations;
-  result.unknowns =
-      static_cast<int>(std::ranges::count(prior.free, char{1})) + equations.nuisance_dimensions();
-  const Judged judged = judge(robot, data, equations, placed);
-  std::vector<double> lengths, angles;
-  for (const RowResidual& row : judged.fit)
-    (row.lengths > 0 ? lengths : angles).push_back(row.size());
-  result.any = !lengths.empty() || !angles.empty();
-  result.lengths = !lengths.empty();
-  if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
-  std::vector<std::vector<double>> of_set(data.sets.size());
-  for (const RowResidual& row : judged.fit)
-    if (row.lengths > 0) of_set[static_cast<size_t>(row.set)].push_back(row.size());
-  for (std::vector<double>& each : of_set) result.by_set.push_back(median(std::move(each)));
-  if (moves.tool) result.angles = gross_angles(robot, data, judged, judged);
-  result.tool_moved = tool_moved(robot, placed.state.xi);
-  if (zero >= 0) result.zero_moved = placed.state.xi[zero] - prior.centre[zero];
-  return result;
-}
+constexpr double kOfRows = 0.8;       // of the equations as given, that a slip must meet
+constexpr int kMostLookedAt = 2000;   // of a set: more tell no more of a slip
 
 /// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs
 /// carry they turn, by a length over that of a leg.
@@ -185,8 +119,11 @@ std::string silent_joints(const Robot& robot, const Observations& rows) {
 
 /// What each slip leaves, best first. One that makes all positions nearly one leaves little of any
 /// rows, and is none.
+///
+/// Nor is one with which few of the rows have a place: of at least so many equations, and of more
+/// than there are unknowns.
 std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
-                             const std::vector<Slip>& others) {
+                             const std::vector<Slip>& others, double least_equations) {
   std::vector<Slip> slips = others;
   std::ranges::move(slips_of_rows(robot, data), std::back_inserter(slips));
   std::vector<TriedSlip> list;
@@ -194,7 +131,8 @@ std::vector<TriedSlip> tried(const Robot& robot, const DataSet& data,
     DataSet changed = data;
     if (slip.rows) changed.rows = *slip.rows;
     const Misfit left = misfit(slip.robot ? *slip.robot : robot, changed, {});
-    if (left.any && left.left < kSlipCollapse * spread_of(changed.rows))
+    if (left.any && left.left < kSlipCollapse * spread_of(changed.rows) &&
+        left.equations > left.unknowns && left.equations >= least_equations)
       list.push_back({slip.what, left.left});
   }
   std::ranges::move(moved_zeros(robot, data), std::back_inserter(list));
@@ -212,7 +150,7 @@ FirstLook where_no_row_has_a_place(const Robot& robot, const DataSet& data,
       std::ranges::any_of(data.sets, [](const Set& s) { return s.method->has_lengths(); });
   look.left = HUGE_VAL;
   look.expected = expected_misfit(robot, look.lengths);
-  look.tried = tried(robot, data, others);
+  look.tried = tried(robot, data, others, 0);
   look.explained = !look.tried.empty() && look.tried.front().left < kGross * look.expected;
   if (look.explained) look.found = look.tried.front().what;
   return look;
@@ -233,15 +171,6 @@ double gross_misfit(const Robot& robot, bool lengths) {
   return kGross * expected_misfit(robot, lengths);
 }
 
-double tool_moved(const Robot& robot, const Eigen::VectorXd& values) {
-  const auto& parameters = robot.parameters();
-  double squares = 0;
-  for (size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].part == Part::tool && parameters[i].quantity == Quantity::length)
-      squares += std::pow(values[static_cast<Eigen::Index>(i)] - parameters[i].nominal, 2);
-  return std::sqrt(squares);
-}
-
 FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& whole,
                      const std::vector<Slip>& others) {
   FirstLook look;
@@ -256,9 +185,9 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;
   if (!given.angles.empty()) look.found = given.angles.front();
-  double as_one = 0;
-  if (const auto planes = two_planes_as_one(*robot, data, given, as_one)) {
-    look.left = as_one;
+  double of_set = 0;
+  if (const auto planes = two_planes_as_one(*robot, data, given, of_set)) {
+    look.left = of_set;
     look.tried = {*planes};
     look.explained = true;
     look.found = planes->what;
@@ -268,7 +197,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
       std::max(kLeastGross * (given.lengths ? size_of(*robot) : 1), kWithin * look.expected);
   const double gross = gross_misfit(*robot, given.lengths);
   if (look.left < least && look.tool_held < gross) return look;
-  look.tried = tried(*robot, data, others);
+  look.tried = tried(*robot, data, others, kOfRows * given.equations);
   const double best = look.tried.empty() ? look.left : look.tried.front().left;
   look.explained = look.left > least && best < kSlipCollapse * look.left;
   const std::string silent = silent_joints(*robot, data.rows);

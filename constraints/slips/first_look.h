@@ -37,9 +37,6 @@ struct FirstLook {
 /// what base and tool leave of the rows is gross beyond it.
 double gross_misfit(const Robot& robot, bool lengths);
 
-/// How far `values` of the robot's parameters put the tool from where its maker has it (m).
-double tool_moved(const Robot& robot, const Eigen::VectorXd& values);
-
 /// Tries every slip of the rows and `others`, which the caller knows of the files. No row, or none
 /// that gives an equation: nothing is found. Of a set with very many rows a part is looked at.
 FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& data,

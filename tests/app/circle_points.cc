@@ -98,6 +98,24 @@ TEST_F(CirclePointsByProgram, GiveANominalRobotFromWhichATrackerLeadsToTheTruth)
   EXPECT_LT(after, std::sqrt(3.0) * 20e-6 * 1.06 * (1 + 4 / std::sqrt(300.0)));
 }
 
+TEST_F(CirclePointsByProgram, AreOfNoRobotWhoseFileSaysOtherwise) {
+  const fs::path by_circles = circles();
+  const std::string sound = text_of(by_circles / "rx90.robot.yaml");
+  const Ran near = run_selfcal("identify " + by_circles.string());
+  EXPECT_EQ(near.out.find("by the robot's file"), std::string::npos) << near.out;
+  // A link of 500 mm that would be half as long again.
+  std::string other = sound;
+  const auto at = other.find("d: 0.5");
+  ASSERT_NE(at, std::string::npos);
+  other.replace(at, 6, "d: 0.75");
+  std::ofstream(by_circles / "rx90.robot.yaml") << other;
+  const Ran ran = run_selfcal("identify " + by_circles.string());
+  EXPECT_EQ(ran.status, 1) << ran.out;
+  EXPECT_EQ(ran.out.find("Not determined"), 0U) << ran.out;
+  EXPECT_NE(ran.out.find("by the robot's file: look at the files first"), std::string::npos)
+      << ran.out;
+}
+
 TEST_F(CirclePointsByProgram, OfARealRobotGiveARobotFileNearItsMakersTable) {
   SELFCAL_NEED_SHARED();
   const Ran ran = run_selfcal("identify " + (shared_dir() / "data/r2000ic-circlepoint").string() +

@@ -2,10 +2,12 @@
 #include "app/commands/support/circle_robot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "kinematics/expects.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -16,9 +18,41 @@ Failure bad_circles(const LoadedDataSet& loaded, const std::vector<std::string>&
   return {kBadInput, loaded.name + ": " + all};
 }
 
+/// Tolerances that a link may be from what its robot's file says: more is no manufacture.
+constexpr double kFarFromFile = 10;
+
 void set_tolerances(serial::Model& model, double tolerance) {
   for (serial::Frame& frame : model.frames) frame.tolerance.setConstant(tolerance);
   model.frames.back().tolerance.setConstant(-1);  // no axis tells of the tool
+}
+
+/// "r4 is 12794 mm by these rows, where …", of the link that is farthest from what the robot's file
+/// says over its tolerance; empty where all are near, or where the file gives no lengths at all.
+std::string far_from_file(const Robot& file, const Solution& solution) {
+  const auto is_length = [](const Parameter& p) {
+    return p.part == Part::link && p.quantity == Quantity::length && p.nominal != 0;
+  };
+  if (std::ranges::none_of(file.parameters(), is_length)) return {};
+  const ParameterResult* worst = nullptr;
+  double most = kFarFromFile;
+  for (const ParameterResult& each : solution.parameters) {
+    const Parameter& p = each.parameter;
+    if (p.part != Part::link || each.status != Status::identified) continue;
+    const int own = find_parameter(file, p.name);
+    const double tolerance =
+        own < 0 ? serial::kLinkTolerance : file.parameters()[static_cast<size_t>(own)].tolerance;
+    const double away = (std::abs(each.value - p.nominal) - each.sigma) / tolerance;
+    if (!(away > most)) continue;
+    most = away;
+    worst = &each;
+  }
+  if (!worst) return {};
+  const std::string unit(worst->parameter.unit());
+  return worst->parameter.name + " is " + in_readable_unit(worst->value, unit) +
+         " by these rows, and " + in_readable_unit(worst->parameter.nominal, unit) +
+         " by the robot's file: look at the files first (metres? the signs and zeros of the "
+         "joints? "
+         "another robot?); where the file does not know, it says so by a wide tolerance";
 }
 
 }  // namespace
@@ -38,7 +72,7 @@ Result<CircleRobot> circle_robot(const LoadedDataSet& loaded) {
   set_tolerances(model->found, kLittleKnown);
   auto found = robot_of(write_yaml(serial::write(model->found)), "the robot of the axes");
   if (!found) return tl::unexpected(found.error());
-  return CircleRobot{std::move(*found), std::move(*model)};
+  return CircleRobot{std::move(*found), std::move(*model), loaded.robot};
 }
 
 void compare_with_file(const CircleRobot& start, Solution& solution) {
@@ -47,6 +81,11 @@ void compare_with_file(const CircleRobot& start, Solution& solution) {
     const auto same = std::ranges::find(made, each.parameter.name, &Parameter::name);
     if (same != made.end()) each.parameter.nominal = same->value;
   }
+  const std::string apart = far_from_file(*start.file, solution);
+  if (apart.empty()) return;
+  solution.warnings.insert(solution.warnings.begin(), apart);
+  solution.verdict.answer = Answer::not_determined;
+  solution.verdict.why += "; " + apart;
 }
 
 std::string nominal_text(const CircleRobot& start, const Solution& solution) {

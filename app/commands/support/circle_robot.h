@@ -13,12 +13,15 @@ namespace selfcal {
 struct CircleRobot {
   std::shared_ptr<const Robot> robot;  ///< as the axes say, hardly held to it: kLittleKnown
   AxisModel model;
+  std::shared_ptr<const Robot> file;  ///< the robot that the file describes
 };
 
 /// The robot that the rows of `loaded` say, whose sets are all of circle points, or what they lack.
 Result<CircleRobot> circle_robot(const LoadedDataSet& loaded);
 
 /// Puts the figures of the robot's file, in the frames of the axes, into `solution` as nominal.
+/// Where the file gives lengths, and the rows have links far beyond their tolerances elsewhere, the
+/// two are not of one robot: then nothing is determined, with words that say which.
 void compare_with_file(const CircleRobot& start, Solution& solution);
 
 /// The file of a robot that has what `solution` found for its maker's figures, each with its sigma

@@ -6,6 +6,7 @@
 
 #include "app/report/format.h"
 #include "app/report/next_steps.h"
+#include "constraints/slips/misfit.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
 #include "kinematics/readable.h"
