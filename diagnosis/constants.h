@@ -114,8 +114,9 @@ struct DiagnosisConstants {
     /// those that are: of what 0.9 and more was said beside it, half was there; 0.2 to 0.7 [trials]
     double beside_unknown = 0.4;
     /// Of causes that nothing speaks against, those that are another one, which the list lacks and
-    /// which looks the same; 0.02 to 0.15 [trials]
-    double imitated = 0.05;
+    /// which looks the same, seen as large as the noise; and at most, of what is hardly seen; 0.02
+    /// to 0.15, 0.1 to 0.4 [trials]
+    double imitated = 0.05, mostly_imitated = 0.25;
     /// Of the gap, that what is named leaves: structure beside it is as little a doubt, in
     /// proportion, as it leaves less; 0.02 to 0.2 [habit]
     double hardly_left = 0.1;

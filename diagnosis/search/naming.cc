@@ -79,6 +79,14 @@ double lacking(const std::vector<CauseResult>& causes) {
   return std::max(unknown - by_order, 0.0);
 }
 
+/// How probably it is another cause, which no list has and which looks the same: the less of it is
+/// seen, the less do the rows tell the one law from the other, by the squares that these differ by.
+double imitated(const CauseResult& each) {
+  constexpr auto& naming = kDiagnosis.naming;
+  const double seen = std::min(each.visible * each.visible, 1.0);
+  return seen > 0 ? std::min(naming.imitated / seen, naming.mostly_imitated) : naming.imitated;
+}
+
 /// At some place.
 bool steps_again(const CauseResult& cause) {
   return std::ranges::any_of(cause.correction, [&](const FoundEffect& found) {
@@ -196,7 +204,7 @@ void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdic
                                 lacking(causes);
   const auto lower = [&](CauseResult& each) {
     if (!names_effect(each.effect)) return;
-    const double kept = (1 - kDiagnosis.naming.imitated) * (may_be_order(each) ? 1 : beside);
+    const double kept = (1 - imitated(each)) * (may_be_order(each) ? 1 : beside);
     each.probability *= kept;
     each.together *= kept;
   };
