@@ -118,7 +118,9 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
 /// What was moved that the rows are all measured against.
 std::string moved_at_once(const Diagnosis& diagnosis) {
   const auto surely = [](const CauseResult& each) {
-    return is_moved_at_once(each) && each.of_its_kind() > kDiagnosis.report.beside;
+    return is_moved_at_once(each) && std::ranges::any_of(each.parameters, [](const NamedValue& v) {
+             return std::abs(v.value) > kDiagnosis.report.sigmas * v.sigma;
+           });
   };
   return std::ranges::any_of(diagnosis.named, surely)
              ? ". The instrument or the robot's base was moved then: give the rows before and "

@@ -65,12 +65,12 @@ std::map<std::string, Figure> figures_of(const json& diagnosis, const json& effe
   return figures;
 }
 
-/// Whether a cause that is named is the sound set's as well: named there or as probable as not, at
-/// the same place, and of the same size within their sigmas or a half.
+/// Whether a cause that is named is the sound set's as well: named there or as probable as not, or
+/// as it is named, at the same place, and of the same size within their sigmas or a half.
 bool is_the_same(const Figure& spoiled, const Figure& sound) {
-  constexpr double kSigmas = 4, kShare = 0.5;
+  constexpr double kSigmas = 4, kShare = 0.5, kNearly = 0.05;
   const double off = std::abs(spoiled.value - sound.value);
-  return (sound.named || sound.probability >= 0.5) &&
+  return (sound.named || sound.probability >= std::min(0.5, spoiled.probability - kNearly)) &&
          (off < kSigmas * std::hypot(spoiled.sigma, sound.sigma) ||
           off < kShare * std::max(std::abs(spoiled.value), std::abs(sound.value)));
 }
