@@ -9,17 +9,21 @@ namespace selfcal {
 
 struct PossibleRows;
 
-/// Prior odds, and how far the search goes.
+/// Prior odds, and how far the search goes; each with its range and where it comes from, as in
+/// constants.h.
 struct SearchRule {
-  double family_odds = 0.10;  ///< of one family against its absence
-  double unknown_odds = 0.4;  ///< of structure that no known effect explains
-  double another = 0.25;      ///< factor on the odds of each cause after the first
-  double same_family = 0.5;   ///< odds that a cause acts at one more place
-  int extended_singles = 14, extended_pairs = 14;
+  double family_odds = 0.10;  ///< of one family against its absence; 0.03 to 0.2 [habit]
+  /// Of structure that no known effect explains; 0.1 to 1 [trials]
+  double unknown_odds = 0.4;
+  double another = 0.25;  ///< factor on the odds of each cause after the first; 0.1 to 0.5 [habit]
+  /// Odds that a cause acts at one more place: the joints of a robot are made alike; 0.2 to 1
+  /// [physics]
+  double same_family = 0.5;
+  int extended_singles = 14, extended_pairs = 14;  ///< 6 to 30 [cost]
   /// Triples and larger sets, by what their families have elsewhere; 0: none, and sets that no
-  /// machine can have count as any other.
+  /// machine can have count as any other; 2 to 8 [cost].
   int extended_further = 4;
-  int most_structures = 4;  ///< kept for pairs and triples
+  int most_structures = 4;  ///< kept for pairs and triples; 2 to 8 [cost]
   /// True: the rows are whitened by what their best explanation leaves. False: each structure takes
   /// its noise from what its own best cause leaves.
   bool noise_is_known = false;
@@ -28,7 +32,7 @@ struct SearchRule {
 struct DiagnosisOptions {
   SearchRule search;
   /// A cause is named when `none` is less probable than the first of these, and noise looks as much
-  /// like a cause less often than the second.
+  /// like a cause less often than the second; 0.05 to 0.2, 0.01 to 0.05 [habit].
   double name_below_none = 0.1, name_below_p = 0.025;
   int resamples = 199;          ///< of the null distribution
   int simulated_sessions = 30;  ///< simulated sessions that calibrate probabilities; 0: none
