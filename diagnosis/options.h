@@ -19,6 +19,7 @@ struct SearchRule {
   /// Odds that a cause acts at one more place: the joints of a robot are made alike; 0.2 to 1
   /// [physics]
   double same_family = 0.5;
+  double again = 0.3;  ///< the same at one place: another wave, another moment; 0.1 to 0.5 [habit]
   int extended_singles = 14, extended_pairs = 14;  ///< 6 to 30 [cost]
   /// Triples and larger sets, by what their families have elsewhere; 0: none, and sets that no
   /// machine can have count as any other; 2 to 8 [cost].

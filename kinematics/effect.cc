@@ -49,8 +49,8 @@ std::string likely_slip(std::string_view unit) {
 /// Of a quantity of this unit, on a machine `size` times as large: errors of lengths grow with it,
 /// errors of angles and what a force makes stay.
 double in_proportion(std::string_view unit, double size) {
-  if (unit == "m" || unit == "m/K") return size;
-  return unit == "1/m" ? 1 / size : 1;
+  if (unit == "m" || unit == "m/K" || unit == "m/rad") return size;
+  return unit == "1/m" || unit == "rad/m" ? 1 / size : 1;
 }
 
 /// Far beyond what any machine has. A fit may find a little of the wrong sign.
@@ -167,10 +167,13 @@ std::unique_ptr<Effect> make_effect(const Node& node, const Robot& robot,
     const bool unusual = fields.flag("unusual", false);
     for (EffectParameter& p : effect->parameters_) {
       const double size = in_proportion(p.unit, size_of(robot) / kUsualSize);
+      EffectParameter widest = p;  // a tool may be large on a small robot
+      widest.usual_most *= std::max(size, 1.0);
       p.usual_least *= size;
       p.usual_most *= size;
       p.value = fields.number(p.name, 0.0);
-      if (!unusual && impossible(p, p.value)) fields.fail(p.name, possible_range(p));
+      widest.value = p.value;
+      if (!unusual && impossible(widest, p.value)) fields.fail(p.name, possible_range(widest));
     }
     fields.refuse_unknown();
     return problems.list.size() > before ? nullptr : std::move(effect);

@@ -95,16 +95,18 @@ bool nominal_explains(const Adjusted& adjusted, const Identifiability& rank, con
   return f_exceeds(gain / extra / (after / left), extra, left) > 0.01;
 }
 
-/// All rows that identify are repeats of one configuration.
+/// All rows that identify, two and more, are repeats of one configuration.
 bool at_one_configuration(const Observations& rows) {
-  std::optional<int> one;
+  if (rows.repeat.empty()) return false;
+  const std::vector<int> configuration = configurations(rows);
+  int one = -1, count = 0;
   for (int row = 0; row < rows.rows(); ++row) {
     if (rows.check[static_cast<size_t>(row)]) continue;
-    const int repeat = rows.repeat.empty() ? -1 : rows.repeat[static_cast<size_t>(row)];
-    if (repeat < 0 || (one && *one != repeat)) return false;
-    one = repeat;
+    const int own = configuration[static_cast<size_t>(row)];
+    if (count++ > 0 && own != one) return false;
+    one = own;
   }
-  return one.has_value();
+  return count > 1;
 }
 
 /// Most `poses` (a row each) have a joint beyond its least or its most reading of the rows that
@@ -244,7 +246,8 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));
   if (at_one_configuration(data.rows))
     grounds.contradictions.emplace_back(
-        "the rows that identify all stand at one configuration, which says nothing of the robot");
+        "the rows that identify all stand at one configuration, which tells no length from "
+        "another");
   for (const FrameStep& step : solution.frame_steps)
     if (step.shift > data.target) grounds.contradictions.push_back(step_words(step));
   solution.verdict = verdict(before, solution.residual, grounds);

@@ -45,8 +45,11 @@ EvidenceEvaluator::EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovar
     if (!rule_.noise_is_known) agree(marginal_likelihoods_.back(), seen, AC, products, own);
   }
   spectra_.resize(marginal_likelihoods_.size());
-  log_odds_ = {
-      std::log(rule_.family_odds), std::log(rule_.same_family), std::log(rule_.another), {}};
+  log_odds_ = {std::log(rule_.family_odds),
+               std::log(rule_.same_family),
+               std::log(rule_.again),
+               std::log(rule_.another),
+               {}};
   for (int s = 0; s < this->structures(); ++s)
     log_odds_.structure.push_back(std::log(structure(s).probability) +
                                   (structure(s).kind > 0 ? std::log(rule_.unknown_odds) : 0));
@@ -194,7 +197,9 @@ double EvidenceEvaluator::log_prior(std::span<const int> candidates, int structu
         if (number[candidates[j]] == number[c]) return true;
       return false;
     };
-    if (has(numbers_.family))
+    if (has(numbers_.cause))
+      sum += log_odds_.again;
+    else if (has(numbers_.family))
       sum += log_odds_.same_family;
     else
       sum += log_odds_.family + (++families > 1 ? log_odds_.another : 0);

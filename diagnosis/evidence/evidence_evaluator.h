@@ -142,7 +142,7 @@ class EvidenceEvaluator {
   std::vector<std::size_t> spectrum_at_ = {0};  ///< by candidate
   /// Logarithms of the rule's odds, and of each structure's probability.
   struct LogOdds {
-    double family = 0, same_family = 0, another = 0;
+    double family = 0, same_family = 0, again = 0, another = 0;
     std::vector<double> structure;
   } log_odds_;
   std::vector<Block> blocks_;

@@ -118,7 +118,7 @@ class Search {
   std::vector<Visit> best_of(int size, int most, Beside which = Beside::any) const {
     std::vector<const Visit*> list;
     for (const Visit& each : visited_)
-      if (each.count == size && kept_[each.structure] &&
+      if (each.count == size && kept_[each.structure] && std::isfinite(each.log_weight) &&
           (which == Beside::any || evaluator_.structure(each.structure).kind == 0))
         list.push_back(&each);
     const auto worse = [](const Visit* a, const Visit* b) {
@@ -142,7 +142,9 @@ class Search {
   /// than one that looks like both, neither pair that leads there may be among the best.
   void add_exchanged(std::vector<Visit>& pairs) {
     if (pairs.empty()) return;
-    const Visit best = pairs.front();
+    const Visit best = *std::ranges::max_element(visited_, {}, [](const Visit& each) {
+      return each.count == 2 ? each.log_weight : -INFINITY;
+    });
     const std::vector<int>& cause = evaluator_.numbers_.cause;
     std::vector<Visit> alone;
     for (const Visit& each : visited_)
@@ -153,16 +155,18 @@ class Search {
     keep_best();
     for (const int out : {best.candidates[0], best.candidates[1]}) {
       const int kept = out == best.candidates[0] ? best.candidates[1] : best.candidates[0];
+      const auto beside = [&](const Visit& each) {
+        return each.candidates[0] == kept ? each.candidates[1] : each.candidates[0];
+      };
       std::vector<const Visit*> others;
       for (const Visit& each : visited_)
         if (each.count == 2 && each.structure == best.structure &&
-            std::ranges::count(each.all(), kept) > 0 &&
-            std::ranges::none_of(each.all(), [&](int c) { return cause[c] == cause[out]; }))
+            std::ranges::count(each.all(), kept) > 0 && cause[beside(each)] != cause[out])
           others.push_back(&each);
       std::ranges::sort(others, std::ranges::greater{}, &Visit::log_weight);
       std::vector<int> in;  // causes
       for (const Visit* each : others) {
-        const int c = each->candidates[0] == kept ? each->candidates[1] : each->candidates[0];
+        const int c = beside(*each);
         if (static_cast<int>(in.size()) == kDiagnosis.evidence.exchanged) break;
         if (std::ranges::count(in, cause[c]) > 0) continue;
         in.push_back(cause[c]);
@@ -229,6 +233,9 @@ class Search {
   enum class Of { all, same_families };
   void extend(const std::vector<Visit>& from, Of which = Of::all) {
     for (const Visit& each : from) {
+      const auto done = [&](const Visit& other) { return other.key() == each.key(); };
+      if (which == Of::all && std::ranges::any_of(extended_, done)) continue;
+      if (which == Of::all) extended_.push_back(each);
       const Hypothesis h = each.hypothesis();
       const MarginalLikelihood& own = evaluator_.marginal_likelihoods_[h.structure];
       const std::vector<MarginalLikelihood::Term> terms = evaluator_.terms(h);
@@ -281,6 +288,8 @@ class Search {
         if (!kept_[s] || s == each.structure) continue;
         Visit other = each;
         other.structure = s;
+        if (std::ranges::any_of(visited_, [&](const Visit& v) { return v.key() == other.key(); }))
+          continue;
         Hypothesis h = other.hypothesis();
         const Eigen::MatrixXd G = evaluator_.gram(h);
         const double log_evidence = evaluator_.sized(h, G);
@@ -301,7 +310,8 @@ class Search {
   int candidates_;
   std::vector<char> kept_;  ///< by structure: pairs and triples are tried in it
   std::vector<Visit> visited_;
-  std::size_t distinct_ = 0;  ///< the first of them that are known to be
+  std::size_t distinct_ = 0;     ///< the first of them that are known to be
+  std::vector<Visit> extended_;  ///< by every candidate
 };
 
 Posterior EvidenceEvaluator::search() const {

@@ -31,6 +31,10 @@ class LinearisedModel {
   const std::shared_ptr<const Robot>& shared_geometry() const { return geometry_; }
   /// The robot's file is silent of masses: geometry() has that of robots of its size.
   bool mass_of_its_size() const { return geometry_ != given_; }
+  /// kg, that the robot may carry by its file; 0: not told.
+  double rated_payload() const {
+    return given_->statics() ? given_->statics()->mechanics().payload : 0;
+  }
   const MeasurementContext& context() const { return context_; }
   const Candidates& candidates() const { return candidates_; }
   const std::vector<EffectParameter>& parameters() const { return parameters_; }

@@ -54,6 +54,10 @@ MarginalLikelihood MarginalLikelihood::given(std::span<const Term> terms,
       Eigen::MatrixXd::Identity(D.size(), D.size()) +
       Eigen::MatrixXd(D.asDiagonal() * products(Eigen::all, columns) * D.asDiagonal());
   const Eigen::MatrixXd L = cholesky_root(H);
+  if (!L.allFinite()) {  // alike but for rounding: no set of causes
+    rest.constant_ = -INFINITY;
+    return rest;
+  }
   const Eigen::MatrixXd seen = solve_lower(L, D.asDiagonal() * products);
   const Eigen::VectorXd z = solve_lower(L, D.cwiseProduct(g_(columns)));
   rows().products().add(seen, -1, rest.kept_);

@@ -41,7 +41,8 @@ std::shared_ptr<const Robot> with_mass_of_its_size(std::shared_ptr<const Robot> 
   if (!(mass > 0)) return robot;
   Node node = robot->text().describe(values(*robot));
   node.set("mass", Node::of(mass));
-  node.set("payload", Node::of(kDiagnosis.shapes.payload * mass));
+  if (!(statics->mechanics().payload > 0))
+    node.set("payload", Node::of(kDiagnosis.shapes.payload * mass));
   Problems problems;
   std::shared_ptr<const Robot> heavy = make_robot(node, problems);
   expects(heavy != nullptr, problems.any() ? problems.list.front() : "a file with a mass is read");

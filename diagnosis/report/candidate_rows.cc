@@ -11,10 +11,13 @@
 #include "diagnosis/constants.h"
 #include "kinematics/expects.h"
 #include "kinematics/linear_algebra.h"
+#include "kinematics/readable.h"
 #include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
+
+constexpr double kLeastPayload = 0.1;  // kg: less tells nothing
 
 /// Rows of `data` that spread over the fit rows, evenly.
 std::vector<int> spread_rows(const DataSet& data) {
@@ -102,16 +105,22 @@ class CandidateSet {
   }
 
   void with_payload() {
-    if (!robot_.statics()) return;
+    if (!robot_.statics() || robot_.statics()->mechanics().gravity.norm() == 0) return;
     const Mechanics& mechanics = robot_.statics()->mechanics();
     double mass = 0;
     for (const Link& link : mechanics.links) mass += link.mass.value_or(0);
-    // What it may carry is the file's to say: without that no figure is asked of anybody.
-    const bool rated = mechanics.payload > 0 && !linearised_.mass_of_its_size();
+    // What it may carry is the file's to say: without that no figure is asked of anybody. Of that
+    // the tool has what the rows say of it.
+    const double carried = copies_.rows.wrench.rows() == 0
+                               ? 0
+                               : copies_.rows.wrench.leftCols<3>().rowwise().norm().maxCoeff() /
+                                     mechanics.gravity.norm();
+    const bool rated = linearised_.rated_payload() > 0;
+    if (rated && linearised_.rated_payload() - carried < kLeastPayload) return;
     const double usual = mechanics.masses_known()
                              ? std::max(1.0, std::round(kDiagnosis.further_rows.of_mass * mass))
                              : kDiagnosis.further_rows.on_paper;
-    const double payload = rated ? mechanics.payload : usual;
+    const double payload = rated ? linearised_.rated_payload() - carried : usual;
     DataSet loaded = copies_;
     Observations& rows = loaded.rows;
     if (rows.wrench.rows() == 0) rows.wrench.setZero(rows.q.rows(), 6);
@@ -119,7 +128,7 @@ class CandidateSet {
       rows.wrench.row(row).head<3>() +=
           payload *
           (endpoint(rows.q.row(row).transpose()).at.R.transpose() * mechanics.gravity).transpose();
-    add(rated ? "with the " + format_number(payload) + " kg that the robot may carry"
+    add(rated ? "with the " + plain_figure(payload) + " kg more that the robot may carry"
               : "with a payload within the robot's rating",
         std::move(loaded), "what gives way to a load");
   }

@@ -33,12 +33,16 @@ void add_named(Hypothesis& h, const CauseResult& cause, const Candidates& all,
 }  // namespace
 
 bool names(const CauseResult& cause, const Candidate& candidate) {
-  const auto at_once = [&](const FoundEffect& each) {
-    return each.what.shape.moment.has_value() == candidate.shape.moment.has_value();
-  };
-  return candidate.effect == cause.effect &&
-         (cause.where.empty() || std::ranges::count(cause.where, candidate.at) > 0) &&
-         (cause.correction.empty() || std::ranges::any_of(cause.correction, at_once));
+  if (candidate.effect != cause.effect ||
+      (!cause.where.empty() && std::ranges::count(cause.where, candidate.at) == 0))
+    return false;
+  bool other = false;  // it is there, and in the other way
+  for (const FoundEffect& each : cause.correction) {
+    if (each.what.at != candidate.at) continue;
+    if (each.what.shape.moment.has_value() == candidate.shape.moment.has_value()) return true;
+    other = true;
+  }
+  return !other;
 }
 
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate) {

@@ -83,8 +83,8 @@ double lacking(const std::vector<CauseResult>& causes) {
 /// seen, the less do the rows tell the one law from the other, by the squares that these differ by.
 double imitated(const CauseResult& each) {
   constexpr auto& naming = kDiagnosis.naming;
-  const double seen = std::min(each.visible * each.visible, 1.0);
-  return seen > 0 ? std::min(naming.imitated / seen, naming.mostly_imitated) : naming.imitated;
+  const double seen = std::clamp(each.visible * each.visible, 1e-6, 1.0);
+  return std::min(naming.imitated / seen, naming.mostly_imitated);
 }
 
 /// At some place.

@@ -18,7 +18,7 @@ class LegThermalGrowth final : public Effect {
   std::string needs() const override { return "temperatures that change"; }
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
-    const double warmer = warmth_.above(at.temperature);
+    const double warmer = warmth_.above(at);
     if (leg_ < 0)
       into.tip.col(0) = warmer * at.legs * at.leg_lengths;
     else

@@ -10,9 +10,13 @@
 namespace selfcal {
 namespace {
 
+/// Of an instrument that follows the temperature, over one that is off: most allow for it.
+constexpr double kAllowedFor = 0.1;
+
 class ScaleError final : public Effect {
  public:
-  ScaleError(const EffectPlan& plan, int set) : set_(set), warmth_(warmth_by(plan)) {
+  ScaleError(const EffectPlan& plan, int set)
+      : set_(set), warmth_(warmth_by(plan, Warmth::Follows::with_lag)) {
     if (const auto written = plan.fields.numbers("origin", 3))
       origin_ = *written;
     else if (set >= 0 && !plan.context.sets[set].without_rows)
@@ -30,7 +34,7 @@ class ScaleError final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     if (at.set != set_ || set_ < 0) return;
-    const double share = warmth_ ? warmth_->above(at.temperature) : 1;
+    const double share = warmth_ ? warmth_->above(at) : 1;
     into.tip.col(0).head<3>() =
         share * (at.poses.back().translation() - origin_.value_or(Eigen::Vector3d::Zero()));
   }
@@ -55,14 +59,18 @@ std::unique_ptr<Effect> make_scale_error(const EffectPlan& plan) {
 }
 
 void suppose_scale_error(const Supposed& rows, const EffectPlace& place, Suppositions& to) {
-  // An instrument's unit may be off, or grow with the air's temperature: most allow for that, and
-  // the arm before them grows in any case.
+  // An instrument's unit may be off, or grow with the air's temperature.
   if (place.set < 0 || !rows.shows(place.set)) return;
   if (!rows.context.sets[static_cast<size_t>(place.set)].lengths) return;
   to.add(place.name);
   if (!rows.warms) return;
-  to.add(place.name, {.by = "temperature"});
-  to.last().share = 0.1;
+  const std::vector<double> lags = supposed_lags(rows.context);
+  const auto suppose = [&](const EffectShape& shape) {
+    to.add(place.name, shape);
+    to.last().share = kAllowedFor / (1.0 + static_cast<double>(lags.size()));
+  };
+  suppose({.by = "temperature"});
+  for (const double lag : lags) suppose({.lag = lag, .by = "temperature"});
 }
 
 }  // namespace selfcal

@@ -29,7 +29,7 @@ class ZeroShift final : public Effect {
 
   void regressor(const RegressorInput& at, Regressor& into) const override {
     const bool stepped = at.time >= moment_;
-    into.joints(joint_, 0) = warmth_ ? warmth_->above(at.temperature) : stepped;
+    into.joints(joint_, 0) = warmth_ ? warmth_->above(at) : stepped;
   }
 
  private:

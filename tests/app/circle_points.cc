@@ -116,6 +116,16 @@ TEST_F(CirclePointsByProgram, AreOfNoRobotWhoseFileSaysOtherwise) {
       << ran.out;
 }
 
+TEST_F(CirclePointsByProgram, TakeHalfATurnOneWayForHalfATurnTheOther) {
+  std::string turned = text_of(folder / "rx90.robot.yaml");
+  const auto j3 = turned.find("name: j3,");
+  ASSERT_NE(j3, std::string::npos);
+  turned.insert(j3 + 9, " theta: pi,");
+  std::ofstream(folder / "rx90.robot.yaml") << turned;
+  const Ran ran = run_selfcal("identify " + circles());
+  EXPECT_EQ(ran.out.find("by the robot's file"), std::string::npos) << ran.out;
+}
+
 TEST_F(CirclePointsByProgram, OfARealRobotGiveARobotFileNearItsMakersTable) {
   SELFCAL_NEED_SHARED();
   const Ran ran = run_selfcal("identify " + (shared_dir() / "data/r2000ic-circlepoint").string() +

@@ -113,8 +113,30 @@ TEST(Candidates, LookForThePitchOfTheScrewsOfSlides) {
         for (const double k : each.shape.waves) waves = std::max(waves, k);
     return waves;
   };
-  EXPECT_EQ(finest("x"), 500);  // of 2 mm
+  EXPECT_EQ(finest("x"), 500);     // of 2 mm
   EXPECT_EQ(finest("turn"), 322);  // twice a turn of the generator of a gear of 161 to 1
+}
+
+TEST(Candidates, LetGrowWhatCarriesTheRobotWhereThatIsSomething) {
+  const auto of = [](const std::string& base, const std::string& first) {
+    Session session(50);
+    session.robot =
+        robot_of("robot: grows\nkind: serial\nframes:\n" + base + "  - {name: x, joint: " + first +
+                 ", limits: [0, 2]}\n  - {name: turn, joint: revolute}\n" +
+                 "  - {name: tool, joint: fixed, d: 1}\n");
+    session.data.rows.q = Eigen::MatrixXd::Zero(50, 2);
+    session.data.rows.temperature = Eigen::VectorXd::LinSpaced(50, 20, 30);
+    double carried = 0, alone = 0;
+    for (const Candidate& each : session.candidates().list)
+      if (each.effect == "thermal_expansion")
+        (each.shape.base ? carried : alone) += std::exp(each.log_prior);
+    return carried / alone;
+  };
+  const std::string column = "  - {name: base, joint: fixed, r: 1.5}\n";
+  EXPECT_NEAR(of(column, "prismatic"), 1, 1e-9) << "a gantry's columns are of its machine";
+  EXPECT_NEAR(of(column, "revolute"), 0.1, 1e-9) << "an arm's floor hardly";
+  EXPECT_EQ(of("  - {name: base, joint: fixed}\n", "prismatic"), 0);
+  EXPECT_EQ(of("", "prismatic"), 0);
 }
 
 TEST(Candidates, LetTheBaseDriftSettleWanderAndBeMovedAtOnce) {
@@ -152,7 +174,7 @@ TEST(Candidates, LetTheToolMoveAndGiveWayAndTheDeviceBeOff) {
   EXPECT_EQ(count("scale_error", "leica"), 1);
   EXPECT_EQ(count("scale_error", "table"), 0);
   session.data.rows.temperature = Eigen::VectorXd::LinSpaced(50, 20, 21);
-  EXPECT_EQ(count("scale_error", "leica"), 2);
+  EXPECT_EQ(count("scale_error", "leica"), 6) << "following at once, and with four lags";
   session.data.rows.time.resize(0);
   EXPECT_EQ(count("tool_shift", "probe"), 0);
 }

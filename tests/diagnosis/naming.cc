@@ -128,9 +128,13 @@ TEST(ShareOfStructure, FallsWithTheLogarithmOfHowOftenNoiseShowsAsMuch) {
 
 TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   std::vector<CauseResult> causes = {
-      {.effect = "backlash", .probability = 0.9, .together = 0.9},
+      {.effect = "backlash", .probability = 0.9, .together = 0.9, .visible = 1},
       {.effect = kUnknown, .probability = 0.8},
-      {.effect = "base_drift", .probability = 0.5, .together = 0.95, .confounded_with = {kUnknown}},
+      {.effect = "base_drift",
+       .probability = 0.5,
+       .together = 0.95,
+       .visible = 2,
+       .confounded_with = {kUnknown}},
       {.effect = kNone, .probability = 0.01}};
   CauseResult verdict = causes.front();
   std::vector<CauseResult> named = {causes[0], causes[2]};
@@ -149,8 +153,9 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
 
 TEST(AllowForTheUnknown, SaysUnknownWhereTheCauseIsNoLongerMoreProbableThanNot) {
   for (const double probability : {0.8, 0.95}) {
-    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = probability},
-                                       {.effect = kUnknown, .probability = 1}};
+    std::vector<CauseResult> causes = {
+        {.effect = "backlash", .probability = probability, .visible = 1},
+        {.effect = kUnknown, .probability = 1}};
     CauseResult verdict = causes.front();
     std::vector<CauseResult> named = {causes[0]};
     allow_for_the_unknown(causes, verdict, named, 0.3);
@@ -160,7 +165,7 @@ TEST(AllowForTheUnknown, SaysUnknownWhereTheCauseIsNoLongerMoreProbableThanNot) 
 
 TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
   const auto kept = [](double left) {
-    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 0.9},
+    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 0.9, .visible = 1},
                                        {.effect = kUnknown, .probability = 1}};
     CauseResult verdict = causes.front();
     std::vector<CauseResult> named = {causes[0]};
@@ -173,6 +178,20 @@ TEST(AllowForTheUnknown, IsLessWhereWhatIsNamedLeavesHardlyAnything) {
   EXPECT_NEAR(kept(0.6), all * (1 - most), 1e-12);
   EXPECT_NEAR(kept(kDiagnosis.naming.hardly_left / 2), all * (1 - most / 2), 1e-12);
   EXPECT_NEAR(kept(-0.01), all, 1e-12) << "all is closed";
+}
+
+TEST(AllowForTheUnknown, IsMoreTheLessOfTheCauseIsSeen) {
+  const auto doubt = [](double visible) {
+    std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 1, .visible = visible},
+                                       {.effect = kUnknown, .probability = 0}};
+    CauseResult verdict = causes.front();
+    std::vector<CauseResult> named = {causes[0]};
+    allow_for_the_unknown(causes, verdict, named, 0);
+    return 1 - verdict.probability;
+  };
+  EXPECT_NEAR(doubt(3), kDiagnosis.naming.imitated, 1e-12);
+  EXPECT_NEAR(doubt(0.5), 4 * kDiagnosis.naming.imitated, 1e-12);
+  EXPECT_NEAR(doubt(0.1), kDiagnosis.naming.mostly_imitated, 1e-12);
 }
 
 /// Of probability 0.9, with steps at these places.

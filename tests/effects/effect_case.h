@@ -62,6 +62,7 @@ inline std::vector<EffectCase> effect_cases() {
        false, true},
       {"ScaleError", "effect: scale_error, at: tracker"},
       {"ScaleErrorByTemperature", "effect: scale_error, at: tracker, by: temperature"},
+      {"ScaleErrorThatLags", "effect: scale_error, at: tracker, by: temperature, lag: 600"},
       {"LegCompliance", "effect: leg_compliance, at: JOINT", "gough-stewart"},
       {"LegComplianceOfADelta", "effect: leg_compliance, at: JOINT, mass: 0", "linear-delta"},
       {"LegComplianceOfAHexaSlide", "effect: leg_compliance, at: JOINT, mass: 9", "hexaslide"},

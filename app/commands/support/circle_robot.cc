@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
@@ -19,11 +20,22 @@ Failure bad_circles(const LoadedDataSet& loaded, const std::vector<std::string>&
 }
 
 /// Tolerances that a link may be from what its robot's file says: more is no manufacture.
-constexpr double kFarFromFile = 10;
+constexpr double kFarFromFile = 10, kSigmas = 3;
 
 void set_tolerances(serial::Model& model, double tolerance) {
   for (serial::Frame& frame : model.frames) frame.tolerance.setConstant(tolerance);
   model.frames.back().tolerance.setConstant(-1);  // no axis tells of the tool
+}
+
+/// What the file believes of a frame's field, of the widest of its frame where it has another one.
+double tolerance_of(const Robot& file, const std::string& frame, const std::string& field) {
+  double own = 0, widest = 0;
+  for (const Parameter& p : file.parameters()) {
+    if (p.part != Part::link || p.frame != frame) continue;
+    if (p.field == field) own = p.tolerance;
+    widest = std::max(widest, p.tolerance);
+  }
+  return own > 0 ? own : widest > 0 ? widest : serial::kLinkTolerance;
 }
 
 /// "r4 is 12794 mm by these rows, where …", of the link that is farthest from what the robot's file
@@ -38,10 +50,8 @@ std::string far_from_file(const Robot& file, const Solution& solution) {
   for (const ParameterResult& each : solution.parameters) {
     const Parameter& p = each.parameter;
     if (p.part != Part::link || each.status != Status::identified) continue;
-    const int own = find_parameter(file, p.name);
-    const double tolerance =
-        own < 0 ? serial::kLinkTolerance : file.parameters()[static_cast<size_t>(own)].tolerance;
-    const double away = (std::abs(each.value - p.nominal) - each.sigma) / tolerance;
+    const double away = (std::abs(each.value - p.nominal) - kSigmas * each.sigma) /
+                        tolerance_of(file, p.frame, p.field);
     if (!(away > most)) continue;
     most = away;
     worst = &each;
@@ -51,8 +61,7 @@ std::string far_from_file(const Robot& file, const Solution& solution) {
   return worst->parameter.name + " is " + in_readable_unit(worst->value, unit) +
          " by these rows, and " + in_readable_unit(worst->parameter.nominal, unit) +
          " by the robot's file: look at the files first (metres? the signs and zeros of the "
-         "joints? "
-         "another robot?); where the file does not know, it says so by a wide tolerance";
+         "joints? another robot?); where the file does not know, it says so by a wide tolerance";
 }
 
 }  // namespace
@@ -77,9 +86,13 @@ Result<CircleRobot> circle_robot(const LoadedDataSet& loaded) {
 
 void compare_with_file(const CircleRobot& start, Solution& solution) {
   const std::vector<Parameter> made = serial::parameters(start.model.made);
+  constexpr double kTurn = 2 * std::numbers::pi;
   for (ParameterResult& each : solution.parameters) {
     const auto same = std::ranges::find(made, each.parameter.name, &Parameter::name);
-    if (same != made.end()) each.parameter.nominal = same->value;
+    if (same == made.end()) continue;
+    const bool angle = each.parameter.quantity == Quantity::angle;
+    const double turns = angle ? std::round((each.value - same->value) / kTurn) : 0;
+    each.parameter.nominal = same->value + kTurn * turns;
   }
   const std::string apart = far_from_file(*start.file, solution);
   if (apart.empty()) return;
