@@ -25,6 +25,11 @@ void SyncedCycles::add(const CanFrame& frame, Nanoseconds t, std::vector<Encoder
   }
   newest_ = std::max(newest_, t);
   if (frame.id == *map_->sync) {
+    if (sync_ && t <= *sync_) {  // two at once: no cycle lies between them
+      faults_->note(CanFault::duplicated, t, "SYNC");
+      spoilt_ = true;
+      return;
+    }
     end(out);
     begin(t);
     return;

@@ -121,6 +121,19 @@ TEST_F(Synced, AreNoneWhenFramesAreStampedBackwards) {
   EXPECT_EQ(bus.count(CanFault::out_of_order), 1u);
 }
 
+TEST_F(Synced, AreNoneOfACycleThatBeginsTwiceAtOnce) {
+  good(0);
+  bus.sync(t(1));
+  bus.frame(0, 1010, t(1));
+  bus.frame(1, -1010, t(1));
+  bus.sync(t(1));
+  run(2, 4);
+  ASSERT_EQ(bus.samples.size(), 2u);
+  EXPECT_EQ(bus.samples[0].time, 1'000'000'000);
+  EXPECT_EQ(bus.samples[1].time, 1'020'000'000);
+  EXPECT_EQ(bus.count(CanFault::duplicated), 1u);
+}
+
 TEST_F(Synced, AreNoneWhenSyncWasLost) {
   run(0, 3);
   // The SYNC of cycle 3 is lost; its frames come all the same.
