@@ -11,6 +11,7 @@
 #include "io/models/mjcf_effects.h"
 #include "io/models/mujoco.h"
 #include "kinematics/expects.h"
+#include "kinematics/make_robot.h"
 
 namespace selfcal {
 namespace {
