@@ -14,6 +14,15 @@ const char* const kColumn =
     "  - {name: j2, joint: revolute, d: 0.8}\n"
     "  - {name: tool, joint: fixed, d: 0.1}\n";
 
+/// How far 5 K, 20 ppm/K each, move the tip of kColumn at `q`, with `more` keys.
+Eigen::Vector3d grown(const std::string& more, const Eigen::VectorXd& q) {
+  Held held{q};
+  held.temperature = 25;
+  return moved(kColumn, "[{effect: thermal_expansion, reference: 20, alpha: 2.0e-5" + more + "}]",
+               held)
+      .p;
+}
+
 TEST(ThermalExpansionByHand, GrowsTheLengthsOfTheMovingLinks) {
   // 5 K x 20e-6 /K = 1e-4 of (0.3 + 0.2 + 0.8, 0, 0.4) m = (130, 0, 40) um: neither the pedestal
   // nor the tool takes part.
@@ -30,22 +39,14 @@ TEST(ThermalExpansionByHand, GrowsTheLengthsOfTheMovingLinks) {
 
 TEST(ThermalExpansionByHand, GrowsTheToolAsWellWhereToldSo) {
   // 1e-4 of the tool's 0.1 m too, which lies against x at q1 = q2 = 90 degrees.
-  const std::string warm =
-      "[{effect: thermal_expansion, tool: true, reference: 20, alpha: 2.0e-5}]";
-  Held held{numbers({0, 0})};
-  held.temperature = 25;
-  expect_near(moved(kColumn, warm, held).p, 140e-6, 0, 40e-6, 1e-15);
-  held.q = numbers({90 * kDegree, 90 * kDegree});
-  expect_near(moved(kColumn, warm, held).p, 20e-6, 100e-6, 40e-6, 1e-15);
+  expect_near(grown(", tool: true", numbers({0, 0})), 140e-6, 0, 40e-6, 1e-15);
+  expect_near(grown(", tool: true", numbers({90 * kDegree, 90 * kDegree})), 20e-6, 100e-6, 40e-6,
+              1e-15);
 }
 
 TEST(ThermalExpansionByHand, GrowsWhatCarriesTheRobotWhereToldSo) {
   // 1e-4 of the pedestal's 0.5 m too.
-  const std::string warm =
-      "[{effect: thermal_expansion, base: true, reference: 20, alpha: 2.0e-5}]";
-  Held held{numbers({0, 0})};
-  held.temperature = 25;
-  expect_near(moved(kColumn, warm, held).p, 130e-6, 0, 90e-6, 1e-15);
+  expect_near(grown(", base: true", numbers({0, 0})), 130e-6, 0, 90e-6, 1e-15);
 }
 
 TEST(ThermalExpansionByHand, HasTheWorldsOriginForAFootWithoutABaseFrame) {
