@@ -53,6 +53,7 @@ class Iteration {
     fit_.state = system_.state();
     fit_.at = system_.take_factor();
     count_rows();
+    of_lengths_.clear();
     NoiseRule told = noise_rule(stage_, fit_.covariance);
     told.pool = false;  // each set's own
     noise_.estimated = estimate_noise(equations_, fit_.at.norms, told).estimated;
@@ -81,12 +82,14 @@ class Iteration {
     rule.pool = stage != NoiseStage::nuisance;
     return rule;
   }
-  NoiseRule noise_rule(NoiseStage stage, const Eigen::MatrixXd& covariance) const {
+  NoiseRule noise_rule(NoiseStage stage, const Eigen::MatrixXd& covariance) {
     NoiseRule rule = noise_rule(stage);
     rule.global_freedom = freedom(covariance);
-    if (stage == NoiseStage::nuisance)
+    if (stage != NoiseStage::nuisance) return rule;
+    if (of_lengths_.empty())
       for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
-        rule.of_lengths.push_back(part_of_lengths(s, covariance));
+        of_lengths_.push_back(part_of_lengths(s, covariance));
+    rule.of_lengths = of_lengths_;
     return rule;
   }
 
@@ -269,6 +272,8 @@ class Iteration {
   Fit fit_;
   double lambda_ = 0;
   bool done_ = false;
+  /// By set, its part_of_lengths() where the geometry had settled; the end takes it anew.
+  std::vector<double> of_lengths_;
   std::set<int> unmasked_;  ///< rows that were put aside as masked outliers
   int regroupings_ = 0;     ///< changes of the rows put aside since the noise is kept
 };
