@@ -90,10 +90,10 @@ void look_first(const std::string& path, const LoadedDataSet& loaded,
                 Solution& solution) {
   if (solution.sets.empty()) return;
   const Figures& before = solution.residual.fit;
-  const std::string wrong =
-      likely_wrong(path, loaded, as_filed,
-                   {before.rms_before, !before.angle_alone, robot, solution.values})
-          .words;
+  const std::string wrong = likely_wrong(path, loaded, as_filed,
+                                         {before.rms_before, !before.angle_alone, robot,
+                                          solution.values, 0, before.angle.rms_after})
+                                .words;
   if (!wrong.empty()) solution.warnings.insert(solution.warnings.begin(), wrong);
 }
 

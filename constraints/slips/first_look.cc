@@ -26,7 +26,8 @@ constexpr double kWithin = 0.1;       // of what tolerances leave: less is not l
 constexpr double kLeastGross = 2e-3;  // of the robot's size, or rad: less is no slip
 constexpr double kLeastZero = 0.02;   // unit of readings: less is found by calibration
 constexpr double kOfRows = 0.8;       // of the equations as given, that a slip must meet
-constexpr int kMostLookedAt = 2000;   // of a set: more tell no more of a slip
+constexpr double kPlainly = 0.99;  // of what a slip leaves, another one leaves that is told instead
+constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
 
 /// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs
 /// carry they turn, by a length over that of a leg.
@@ -93,6 +94,25 @@ std::optional<TriedSlip> two_planes_as_one(const Robot& robot, const DataSet& da
       return TriedSlip{"the touches of set " + data.sets[s].name + " are of two planes", worse};
   }
   return std::nullopt;
+}
+
+/// What is told of sets whose angles do not fit: the way to read those that instruments measured
+/// by which all do best, of all sets or of one. By what they spread, too: angles that are made
+/// small fit as much better.
+std::string of_angles(const Robot& robot, const DataSet& data, const Misfit& given) {
+  std::string found = given.angles.front();
+  double best = kSlipCollapse * given.angle / spread_of_angles(data, data.rows) / kPlainly;
+  for (int set = -1; set < static_cast<int>(data.sets.size()); ++set)
+    for (const Slip& slip : slips_of_angles(data, set)) {
+      DataSet changed = data;
+      changed.rows = *slip.rows;
+      const Misfit left = misfit(robot, changed, {});
+      const double share = left.angle / spread_of_angles(data, changed.rows);
+      if (!left.any || !left.angles.empty() || !(share < kPlainly * best)) continue;
+      best = share;
+      found = slip.what;
+    }
+  return found;
 }
 
 /// How far half the measured positions are from their middle (m); infinite where none is measured.
@@ -184,7 +204,8 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.tool_moved = given.tool_moved;
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;
-  if (!given.angles.empty()) look.found = given.angles.front();
+  look.angles = !given.angles.empty();
+  if (look.angles) look.found = of_angles(*robot, data, given);
   double of_set = 0;
   if (const auto planes = two_planes_as_one(*robot, data, given, of_set)) {
     look.left = of_set;
@@ -200,6 +221,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.tried = tried(*robot, data, others, kOfRows * given.equations);
   const double best = look.tried.empty() ? look.left : look.tried.front().left;
   look.explained = look.left > least && best < kSlipCollapse * look.left;
+  look.angles = look.angles && !look.explained;
   const std::string silent = silent_joints(*robot, data.rows);
   look.tool = !look.explained && silent.empty() && look.left < kSlipCollapse * look.tool_held &&
               look.tool_held > gross && look.tool_moved > tool_tolerance(*robot);

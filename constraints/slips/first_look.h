@@ -30,6 +30,7 @@ struct FirstLook {
   std::vector<TriedSlip> tried;  ///< best first
   bool explained = false;        ///< the best of them is believed
   bool tool = false;             ///< the tool's frame is
+  bool angles = false;           ///< what is found speaks of the angles alone
   std::string found;             ///< what is likely wrong; empty where nothing is
 };
 

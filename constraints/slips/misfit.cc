@@ -54,10 +54,14 @@ Misfit misfit(const Robot& robot, const DataSet& data, const PlacedBy& moves) {
   result.any = !lengths.empty() || !angles.empty();
   result.lengths = !lengths.empty();
   if (result.any) result.left = median(std::move(result.lengths ? lengths : angles));
-  std::vector<std::vector<double>> of_set(data.sets.size());
-  for (const RowResidual& row : judged.fit)
+  std::vector<std::vector<double>> of_set(data.sets.size()), turned = of_set;
+  for (const RowResidual& row : judged.fit) {
     if (row.lengths > 0) of_set[static_cast<size_t>(row.set)].push_back(row.size());
+    if (row.angles > 0) turned[static_cast<size_t>(row.set)].push_back(row.angle);
+  }
   for (std::vector<double>& each : of_set) result.by_set.push_back(median(std::move(each)));
+  for (std::vector<double>& each : turned)
+    if (!each.empty()) result.angle = std::max(result.angle, median(std::move(each)));
   if (moves.tool) result.angles = gross_angles(robot, data, judged, judged);
   result.tool_moved = tool_moved(robot, placed.state.xi);
   if (zero >= 0) result.zero_moved = placed.state.xi[zero] - prior.centre[zero];

@@ -22,6 +22,7 @@ struct Misfit {
   bool lengths = true, any = false;
   std::vector<double> by_set = {};       ///< as `left`, of each set; 0 where it has no lengths
   std::vector<std::string> angles = {};  ///< what is told of sets whose angles do not fit
+  double angle = 0;  ///< median of the angular residuals of the set with the largest (rad)
 };
 
 /// How far base and tool alone, and what else moves, bring the robot to the rows.

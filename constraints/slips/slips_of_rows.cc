@@ -1,8 +1,11 @@
 #include "constraints/slips/slips_of_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -10,7 +13,18 @@ namespace selfcal {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kGon = std::numbers::pi / 200;
 constexpr double kProportional = 1e-6;  // 1 - correlation of readings that are one in truth
+
+/// The columns of one number a row that the sets' methods read as such a quantity.
+std::set<std::string> measured(const DataSet& data, Quantity quantity) {
+  std::set<std::string> names;
+  for (const Set& set : data.sets)
+    for (const MeasuredColumn& column : set.method->measures())
+      if (column.quantity == quantity && data.rows.measured.contains(column.name))
+        names.insert(column.name);
+  return names;
+}
 
 class SlipsOfRows {
  public:
@@ -25,6 +39,7 @@ class SlipsOfRows {
           if (joint(j).quantity == Quantity::angle) o.q.col(j) *= kDegree;
       });
     of_units();
+    std::ranges::move(slips_of_angles(data_, -1), std::back_inserter(list_));
     if (rows().position.rows() > 0) of_axes();
     return std::move(list_);
   }
@@ -97,19 +112,8 @@ class SlipsOfRows {
     return false;
   }
 
-  /// The columns of one number a row that the sets' methods read as such a quantity.
-  std::set<std::string> measured(Quantity quantity) const {
-    std::set<std::string> names;
-    for (const Set& set : data_.sets)
-      for (const MeasuredColumn& column : set.method->measures())
-        if (column.quantity == quantity && rows().measured.contains(column.name))
-          names.insert(column.name);
-    return names;
-  }
-
   void of_units() {
-    const std::set<std::string> lengths = measured(Quantity::length),
-                                angles = measured(Quantity::angle);
+    const std::set<std::string> lengths = measured(data_, Quantity::length);
     const bool places = rows().position.rows() > 0;
     const std::string what = !places                        ? "distances"
                              : lengths.contains("distance") ? "positions and distances"
@@ -122,10 +126,6 @@ class SlipsOfRows {
           if (places) o.position *= scale;
           for (const std::string& name : lengths) o.column(name) *= scale;
         });
-    if (angles.empty()) return;
-    add("the measured angles are degrees", [&](Observations& o) {
-      for (const std::string& name : angles) o.column(name) *= kDegree;
-    });
   }
 
   void of_axes() {
@@ -153,6 +153,58 @@ class SlipsOfRows {
 
 std::vector<Slip> slips_of_rows(const Robot& robot, const DataSet& data) {
   return SlipsOfRows(robot, data).take();
+}
+
+std::vector<Slip> slips_of_angles(const DataSet& data, int set) {
+  const std::set<std::string> names = measured(data, Quantity::angle);
+  const std::string of = set < 0 ? "" : " of set " + data.sets[static_cast<std::size_t>(set)].name;
+  std::vector<Slip> list;
+  const auto add = [&](std::string what, auto change) {
+    Observations changed = data.rows;
+    for (int row = 0; row < changed.rows(); ++row)
+      if (set < 0 || changed.set[static_cast<std::size_t>(row)] == set) change(changed, row);
+    list.push_back({std::move(what), nullptr, std::move(changed)});
+  };
+  if (names.empty()) return list;
+  for (const auto& [unit, radians] : {std::pair{"degrees", kDegree}, std::pair{"gons", kGon}})
+    add("the measured angles" + of + " are " + unit,
+        [&, scale = radians](Observations& o, int row) {
+          for (const std::string& name : names) o.column(name)[row] *= scale;
+        });
+  for (const std::string& name : names) {
+    add("the column " + name + of + " has the other sign",
+        [&](Observations& o, int row) { o.column(name)[row] *= -1; });
+    add("the column " + name + of +
+            " counts from a right angle away, the other way round (a zenith angle)",
+        [&](Observations& o, int row) {
+          o.column(name)[row] = std::numbers::pi / 2 - o.column(name)[row];
+        });
+  }
+  for (const std::string& name : names)
+    for (const std::string& other : names)
+      if (other < name)
+        add("the columns " + other + " and " + name + of + " are exchanged",
+            [&](Observations& o, int row) {
+              std::swap(o.column(name)[row], o.column(other)[row]);
+            });
+  return list;
+}
+
+double spread_of_angles(const DataSet& data, const Observations& rows) {
+  double squares = 0, count = 0;
+  for (const std::string& name : measured(data, Quantity::angle)) {
+    std::vector<std::vector<double>> of_set(data.sets.size());
+    for (int row = 0; row < rows.rows(); ++row)
+      if (const double read = rows.column(name)[row]; std::isfinite(read))
+        of_set[static_cast<std::size_t>(rows.set[static_cast<std::size_t>(row)])].push_back(read);
+    for (const std::vector<double>& read : of_set) {
+      const auto n = static_cast<double>(read.size());
+      const double mean = std::accumulate(read.begin(), read.end(), 0.0) / std::max(n, 1.0);
+      for (const double each : read) squares += std::pow(each - mean, 2);
+      count += n;
+    }
+  }
+  return std::sqrt(squares / std::max(count, 1.0));
 }
 
 bool is_silent(const Observations& rows, Eigen::Index j) {

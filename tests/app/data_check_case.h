@@ -44,6 +44,13 @@ inline const std::string kBar = kErrors + "  bar: {method: distance, noise: 2.0e
 inline const std::string kLevels =
     kErrors + "  tilt: {method: inclinometers, noise_angle: 2.0e-5, rows: 90}\n";
 
+/// Two theodolites, and touches that give the scale.
+inline const std::string kTheodolites =
+    kErrors +
+    "  one: {method: bearing, frame: unknown, noise: 2.0e-5, rows: 60}\n"
+    "  two: {method: bearing, frame: unknown, noise: 2.0e-5, rows: 60}\n"
+    "  bar: {method: distance, noise: 2.0e-5, rows: 60}\n";
+
 using Cells = std::vector<std::string>;
 
 class DataCheck : public Program {

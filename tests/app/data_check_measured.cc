@@ -37,8 +37,31 @@ TEST_F(DataCheck, SaysThatInclinationsAreDegrees) {
   expect_likely_wrong("the measured angles are degrees");
 }
 
-TEST_F(DataCheck, FindsNothingInSoundDistancesAndInclinations) {
-  for (const std::string& sets : {kBar, kLevels}) {
+TEST_F(DataCheck, SaysWhatIsWrongWithTheAnglesOfTheodolitesBesideSoundLengths) {
+  using Slip = std::function<void(std::vector<double>&)>;
+  const auto times = [](double factor) -> Slip {
+    return [=](std::vector<double>& angles) {
+      for (double& each : angles) each *= factor;
+    };
+  };
+  const std::pair<Slip, const char*> slips[] = {
+      {times(180 / std::numbers::pi), "the measured angles are degrees"},
+      {times(200 / std::numbers::pi), "the measured angles are gons"},
+      {[](auto& angles) { angles[0] *= -1; }, "the column azimuth has the other sign"},
+      {[](auto& angles) { angles[1] = std::numbers::pi / 2 - angles[1]; },
+       "the column elevation counts from a right angle away"},
+      {[](auto& angles) { std::swap(angles[0], angles[1]); },
+       "the columns azimuth and elevation are exchanged"}};
+  for (const auto& [slip, said] : slips) {
+    simulate_sets(kTheodolites);
+    change_rows({"azimuth", "elevation"}, slip);
+    expect_likely_wrong(said);
+    EXPECT_THAT(run_selfcal("identify " + (folder_ / "data").string()).out, HasSubstr(said));
+  }
+}
+
+TEST_F(DataCheck, FindsNothingInSoundDistancesAnglesAndInclinations) {
+  for (const std::string& sets : {kBar, kLevels, kTheodolites}) {
     simulate_sets(sets);
     const Ran ran = run_selfcal("data check " + (folder_ / "data").string());
     EXPECT_EQ(ran.status, 0) << ran.out;

@@ -104,11 +104,13 @@ LikelyWrong likely_wrong(const std::string& path, const LoadedDataSet& loaded,
   const double tool = nominal.lengths ? tool_moved(nominal.model, nominal.values) : 0;
   // Calibration takes in most of what the maker's tolerances leave.
   const bool taken_in = nominal.calibrated <= kMostLeftOfGross * gross;
-  if (nominal.rms <= gross && tool <= gross && taken_in) return {};
+  const bool turned = nominal.angle > gross_misfit(*robot, false);
+  if (nominal.rms <= gross && tool <= gross && taken_in && !turned) return {};
   const auto look = look_at_files(path, loaded, robot);
   if (!look || look->found.empty()) return {};
   const std::string unit = look->lengths ? "mm" : "mrad";
   std::string text = std::string(kFilesFirst) + look->found;
+  if (look->angles) return {text + "."};
   if (std::isinf(look->left))
     text += " (without this the robot of its file can take no row)";
   else if (look->explained)

@@ -27,6 +27,7 @@ struct NominalFit {
   const Robot& model;   ///< whose parameters `values` are
   const Eigen::VectorXd& values;
   double calibrated = 0;  ///< what calibration leaves of it; 0 where that is not known
+  double angle = 0;       ///< rad, what it leaves of angles beside lengths; 0 where none are known
 };
 
 /// The same look for somebody who asked for something else.
