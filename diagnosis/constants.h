@@ -255,6 +255,9 @@ struct DiagnosisConstants {
     /// Of the squares that a moved instrument leaves: named effects that leave less tell it better;
     /// 0.5 to 1 [habit]
     double better_than_moved = 0.8;
+    /// 1 sigma of a gear's ratio that a file may have wrongly, where a cause would be named that is
+    /// far beyond its usual size; 0.003 to 0.1 [physics]
+    double wrong_ratio = 0.03;
     /// Of a gear's error, in what the rows move its joint by: of fewer whatever grows along it
     /// looks like one; 0.5 to 1.5 [physics]
     double fewest_waves = 0.75;

@@ -30,7 +30,7 @@ class Adjustment {
     adjusted_.prior.centre = nominal_values(robot_);
     adjusted_.prior.sigma.resize(adjusted_.prior.centre.size());
     for (Eigen::Index i = 0; i < adjusted_.prior.sigma.size(); ++i)
-      adjusted_.prior.sigma[i] = robot_.parameters()[i].tolerance;
+      adjusted_.prior.sigma[i] = tolerance(robot_.parameters()[i]);
     const auto effects = static_cast<Eigen::Index>(options.effect_sigma.size());
     adjusted_.prior.sigma.tail(effects) =
         Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
@@ -67,6 +67,10 @@ class Adjustment {
 
  private:
   const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
+
+  double tolerance(const Parameter& p) const {
+    return options_.gear_sigma > 0 && p.part == Part::gear ? options_.gear_sigma : p.tolerance;
+  }
 
   void choose_free() {
     for (const Parameter& p : parameters())
@@ -235,7 +239,7 @@ class Adjustment {
     if (!adjusted_.priors_fail) return;
     for (size_t i = 0; i < parameters().size(); ++i)
       if (is_own(parameters()[i]))
-        adjusted_.prior.sigma[i] = adjusted_.widening * parameters()[i].tolerance;
+        adjusted_.prior.sigma[i] = adjusted_.widening * tolerance(parameters()[i]);
     adjusted_.fitted =
         run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
   }

@@ -10,6 +10,7 @@
 #include "constraints/slips/first_look.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/report/beyond_noise.h"
+#include "diagnosis/report/given_wrongly.h"
 #include "diagnosis/report/named.h"
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/report/verdict.h"
@@ -91,24 +92,8 @@ bool hardly_closes(const Diagnosis& diagnosis) {
 
 bool drifts_too_far(const std::vector<CauseResult>& named) {
   return std::ranges::any_of(named, [](const CauseResult& each) {
-    return each.effect == "base_drift" &&
-           std::ranges::any_of(each.parameters, [](const NamedValue& v) {
-             return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
-                    kDiagnosis.report.too_far * v.usual_most;
-           });
+    return each.effect == "base_drift" && beyond_usual(each, kDiagnosis.report.too_far) != nullptr;
   });
-}
-
-/// What calibration with all that was found leaves of the rows.
-double left_of(const LinearisedModel& linearised, const DataSet& data, const Correction& found) {
-  Problems problems;
-  const std::shared_ptr<const Robot> robot =
-      correct(linearised.shared_geometry(), entries_of(found), linearised.context(), problems);
-  expects(robot != nullptr, "what was found is effects that the robot can have");
-  Options options;
-  for (const Parameter& p : robot->parameters())
-    if (p.part == Part::effect) options.free.push_back(p.name);
-  return identify(*robot, data, options).residual.fit.rms_after;
 }
 
 /// A joint, a link or a tool is said to give way, and does so better without the forces of the
@@ -118,8 +103,8 @@ std::string forces_that_never_were(const LinearisedModel& linearised, const Data
   if (std::ranges::none_of(diagnosis.named, gives_way) || data.rows.wrench.rows() == 0) return {};
   DataSet unforced = data;
   unforced.rows.wrench.resize(0, 6);
-  const double with = left_of(linearised, data, diagnosis.found);
-  const double without = left_of(linearised, unforced, diagnosis.found);
+  const double with = left_with(linearised, data, diagnosis.found);
+  const double without = left_with(linearised, unforced, diagnosis.found);
   if (!(without < kDiagnosis.report.forces_cost * with)) return {};
   return "the rows fit better without their forces and torques (fx to tz), " +
          in_readable_unit(without, "m") + " in place of " + in_readable_unit(with, "m") +
@@ -132,15 +117,10 @@ std::vector<FrameStep> steps_beside_what_stays(const LinearisedModel& linearised
   Correction stays;
   std::ranges::copy_if(found, std::back_inserter(stays),
                        [](const FoundEffect& each) { return !moves(each.what.effect); });
-  Problems problems;
-  const std::shared_ptr<const Robot> robot =
-      correct(linearised.shared_geometry(), entries_of(stays), linearised.context(), problems);
-  expects(robot != nullptr, "what was found is effects that the robot can have");
-  Options options;
+  const std::shared_ptr<const Robot> robot = with_effects(linearised, stays);
+  Options options = free_effects(*robot);
   for (const FoundEffect& each : stays)
     options.effect_sigma.insert(options.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
-  for (const Parameter& p : robot->parameters())
-    if (p.part == Part::effect) options.free.push_back(p.name);
   const Solution calibrated = identify(*robot, data, options);
   return frame_steps(*robot, calibrated.values, data, calibrated.residual.rows);
 }
@@ -154,24 +134,8 @@ bool named_tells_better(const LinearisedModel& linearised, const DataSet& data,
     return false;
   const double with_step =
       (1 - calibrated.frame_steps.front().share) * std::pow(calibrated.residual.fit.rms_after, 2);
-  return std::pow(left_of(linearised, data, named_of(diagnosis.found)), 2) <
+  return std::pow(left_with(linearised, data, named_of(diagnosis.found)), 2) <
          kDiagnosis.report.better_than_moved * with_step;
-}
-
-/// Something moved farther than any machine errs may be so; a length given wrongly looks the same.
-std::string given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated) {
-  const auto moved_far = [](const CauseResult& each) {
-    return lasting_of(each.effect) == EffectLasting::moved_at_will &&
-           std::ranges::any_of(each.parameters, [](const NamedValue& v) {
-             return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
-                    kDiagnosis.report.impossible * v.usual_most;
-           });
-  };
-  const RobotScale& scale = calibrated.scale;
-  if (!scale.against_maker || scale.contradictions.empty() ||
-      std::ranges::none_of(diagnosis.named, moved_far))
-    return {};
-  return scale.contradictions.front();
 }
 
 /// Rows of which some were taken with the instrument, or the base, elsewhere.
@@ -231,7 +195,8 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   const Solution calibrated = identify(linearised.geometry(), data);
   if (std::string why = moved_between_rows(linearised, data, diagnosis, calibrated); !why.empty())
     return why;
-  if (std::string why = given_wrongly(diagnosis, calibrated); !why.empty()) return why;
+  if (std::string why = length_given_wrongly(diagnosis, calibrated); !why.empty()) return why;
+  if (std::string why = ratio_given_wrongly(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;

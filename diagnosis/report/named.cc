@@ -50,13 +50,19 @@ bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate
                              [&](const CauseResult& each) { return names(each, candidate); });
 }
 
+bool is_beyond_usual(const NamedValue& v, double times) {
+  return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma > times * v.usual_most;
+}
+
+const NamedValue* beyond_usual(const CauseResult& cause, double times) {
+  const auto found = std::ranges::find_if(
+      cause.parameters, [&](const NamedValue& v) { return is_beyond_usual(v, times); });
+  return found == cause.parameters.end() ? nullptr : &*found;
+}
+
 const NamedValue* of_impossible_size(const CauseResult& cause) {
   if (lasting_of(cause.effect) == EffectLasting::moved_at_will) return nullptr;
-  const auto found = std::ranges::find_if(cause.parameters, [](const NamedValue& v) {
-    return std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
-           kDiagnosis.report.impossible * v.usual_most;
-  });
-  return found == cause.parameters.end() ? nullptr : &*found;
+  return beyond_usual(cause, kDiagnosis.report.impossible);
 }
 
 std::vector<CauseResult> take_idle(std::vector<CauseResult>& named) {

@@ -12,6 +12,11 @@ namespace selfcal {
 bool names(const CauseResult& cause, const Candidate& candidate);
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate);
 
+/// It is so many times the usual largest, by two sigma.
+bool is_beyond_usual(const NamedValue& v, double times);
+/// The first of its parameters that is; null where there is none.
+const NamedValue* beyond_usual(const CauseResult& cause, double times);
+
 /// A parameter far beyond what any machine has; null where there is none, and of what a person
 /// moves at will. It speaks of the rows, see doubt.h.
 const NamedValue* of_impossible_size(const CauseResult& cause);

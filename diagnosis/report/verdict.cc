@@ -107,8 +107,7 @@ std::string unusual_sizes(const std::vector<CauseResult>& named) {
   std::string words;
   for (const CauseResult& each : named)
     for (const NamedValue& v : each.parameters)
-      if (std::abs(v.value) - kDiagnosis.report.sigmas * v.sigma >
-          kDiagnosis.report.far_beyond * v.usual_most)
+      if (is_beyond_usual(v, kDiagnosis.report.far_beyond))
         words += "; " + v.name + " = " + in_readable_unit(v.value, v.unit) +
                  " is far beyond the usual " + in_readable_unit(v.usual_least, v.unit) + " to " +
                  in_readable_unit(v.usual_most, v.unit) + ": something else may look like it";

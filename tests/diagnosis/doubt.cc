@@ -49,6 +49,14 @@ TEST(Doubt, NamesNothingWhereOneJointIsReadWithTheOtherSign) {
   EXPECT_THAT(diagnosis.why, HasSubstr("look at the rows and files first"));
 }
 
+TEST(Doubt, NamesTheJointWhoseGearRatioIsNotTheFiles) {
+  Rows rows;
+  rows.data.rows.q.col(1) *= 1.005;
+  const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
+  EXPECT_TRUE(diagnosis.named.empty());
+  EXPECT_THAT(diagnosis.why, HasSubstr("with the gear ratio of j2 -0.5 % off"));
+}
+
 TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {
   Rows rows;
   rows.disturb(50 * kTrackerNoise);

@@ -1,0 +1,91 @@
+#include "diagnosis/report/given_wrongly.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/estimation/identification.h"
+#include "diagnosis/constants.h"
+#include "diagnosis/report/named.h"
+#include "diagnosis/validation/correction.h"
+#include "kinematics/corrected_robot.h"
+#include "kinematics/description.h"
+#include "kinematics/effect.h"
+#include "kinematics/expects.h"
+#include "kinematics/readable.h"
+
+namespace selfcal {
+namespace {
+
+/// The gear whose ratio is off by the most sigmas; none where no more than a few are.
+const ParameterResult* farthest_off(const Solution& calibrated) {
+  const ParameterResult* farthest = nullptr;
+  double most = kDiagnosis.report.gear_sigmas;
+  for (const ParameterResult& each : calibrated.parameters) {
+    if (each.parameter.part != Part::gear || !(each.sigma > 0)) continue;
+    const double sigmas = std::abs(each.value - each.parameter.nominal) / each.sigma;
+    if (sigmas <= most) continue;
+    most = sigmas;
+    farthest = &each;
+  }
+  return farthest;
+}
+
+}  // namespace
+
+std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated) {
+  const RobotScale& scale = calibrated.scale;
+  const auto moved_far = [](const CauseResult& each) {
+    return lasting_of(each.effect) == EffectLasting::moved_at_will &&
+           beyond_usual(each, kDiagnosis.report.impossible) != nullptr;
+  };
+  if (!scale.against_maker || scale.contradictions.empty() ||
+      std::ranges::none_of(diagnosis.named, moved_far))
+    return {};
+  return scale.contradictions.front();
+}
+
+std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet& data,
+                                const Diagnosis& diagnosis) {
+  if (std::ranges::none_of(diagnosis.named, [](const CauseResult& each) {
+        return beyond_usual(each, kDiagnosis.report.far_beyond) != nullptr;
+      }))
+    return {};
+  Options options;
+  options.gears = true;
+  options.gear_sigma = kDiagnosis.report.wrong_ratio;
+  const Solution calibrated = identify(linearised.geometry(), data, options);
+  const double left = calibrated.residual.fit.rms_after;
+  const double with_named = left_with(linearised, data, named_of(diagnosis.found));
+  const ParameterResult* gear = farthest_off(calibrated);
+  if (gear == nullptr ||
+      kDiagnosis.report.better_than_moved * std::pow(left, 2) > std::pow(with_named, 2))
+    return {};
+  return "with the gear ratio of " + gear->parameter.frame + " " +
+         with_figures("%.2g", 100 * (gear->value / gear->parameter.nominal - 1)) +
+         " % off what the robot's file says (" + gear->parameter.name + " = " +
+         with_figures("%.5g", gear->value) + "), calibration leaves " + in_readable_unit(left, "m") +
+         ", as little as with what would be named (" + in_readable_unit(with_named, "m") + ")";
+}
+
+std::shared_ptr<const Robot> with_effects(const LinearisedModel& linearised,
+                                          const Correction& found) {
+  Problems problems;
+  std::shared_ptr<const Robot> robot =
+      correct(linearised.shared_geometry(), entries_of(found), linearised.context(), problems);
+  expects(robot != nullptr, "what was found is effects that the robot can have");
+  return robot;
+}
+
+Options free_effects(const Robot& robot) {
+  Options options;
+  for (const Parameter& p : robot.parameters())
+    if (p.part == Part::effect) options.free.push_back(p.name);
+  return options;
+}
+
+double left_with(const LinearisedModel& linearised, const DataSet& data, const Correction& found) {
+  const std::shared_ptr<const Robot> robot = with_effects(linearised, found);
+  return identify(*robot, data, free_effects(*robot)).residual.fit.rms_after;
+}
+
+}  // namespace selfcal
