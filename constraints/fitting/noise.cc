@@ -57,6 +57,8 @@ struct Squares {
     fitted_angles += other.fitted_angles;
   }
 
+  double freedoms() const { return lengths + angles - fitted_lengths - fitted_angles; }
+
   /// 1 sigma of one scalar; 1 of a quantity that there is none of.
   Scale sigma() const {
     return {lengths > 0 ? std::sqrt(length / lengths) * freedom_factor(lengths, fitted_lengths) : 1,
@@ -115,12 +117,24 @@ bool find_outliers(const SetNoise& set, const Scale& scale, const NoiseRule& rul
   return far.size() > most;
 }
 
-/// By set, the squares of all sets of its instrument together.
+/// By set, the squares of all sets of its instrument together. Where no data sheet bounds the noise
+/// and too few freedoms tell it, of all sets of its method or else of all: rows that are met nearly
+/// exactly would take all the weight.
 std::vector<Squares> pooled(const std::vector<Set>& sets, const std::vector<Squares>& by_set) {
-  std::map<Instrument, Squares> sums;
-  for (size_t s = 0; s < sets.size(); ++s) sums[instrument_of(sets[s])] += by_set[s];
+  std::map<Instrument, Squares> of_instrument;
+  std::map<std::string_view, Squares> of_method;
+  Squares all;
+  for (size_t s = 0; s < sets.size(); ++s) {
+    of_instrument[instrument_of(sets[s])] += by_set[s];
+    of_method[sets[s].method->name()] += by_set[s];
+    all += by_set[s];
+  }
   std::vector<Squares> list;
-  for (const Set& set : sets) list.push_back(sums[instrument_of(set)]);
+  for (const Set& set : sets) {
+    const Squares &own = of_instrument[instrument_of(set)], &like = of_method[set.method->name()];
+    const bool told = set.noise > 0 || set.noise_angle > 0 || own.freedoms() >= kFewFreedoms;
+    list.push_back(told ? own : like.freedoms() >= kFewFreedoms ? like : all);
+  }
   return list;
 }
 

@@ -39,6 +39,14 @@ TEST(NoiseOfSets, ThatAreMetExactlySaysNothingOfTheOthers) {
   EXPECT_NEAR(found, 1, 3 / std::sqrt(2 * 10 * 20.0));
 }
 
+TEST(NoiseOfSets, WithoutADataSheetAndFreedomsIsThatOfTheOthers) {
+  const std::string few = ": {method: plane, noise_true: 1.0e-4, rows: 4}\n",
+                    many = ": {method: plane, noise: 1.0e-4, rows: 30}\n",
+                    tracker = "  tracker: {method: position, noise: 1.0e-4, rows: 30}\n";
+  EXPECT_NEAR(noise_found("  few" + few + "  many" + many + tracker, 1e-4, 10), 1, 0.3);
+  EXPECT_NEAR(noise_found("  few" + few + tracker, 1e-4, 10), 1, 0.3) << "of another method";
+}
+
 TEST(NoiseOfSets, WithSharedPointsIsEachOnesOwn) {
   // Of one kind, one of them twenty times as noisy. Half of the equations go into the points.
   const double found = noise_found(
