@@ -82,8 +82,13 @@ struct DiagnosisConstants {
   };
   /// Of candidates.
   struct Shapes {
-    int moments = 24;         ///< at which a step may have happened; 8 to 100 [cost]
-    int few_times = 40;       ///< up to which it may have between any two; 10 to 100 [cost]
+    int moments = 24;    ///< at which a step may have happened; 8 to 100 [cost]
+    int few_times = 40;  ///< up to which it may have between any two; 10 to 100 [cost]
+    /// Over the usual time from one row to the next, the longest of which a step may lie in; 3 to
+    /// 20, 0 to 10 [cost]
+    double pause = 5;
+    std::size_t most_pauses = 4;
+    double plain = 10;        ///< log evidence of a step, tried at more moments; 5 to 30 [cost]
     double likely = 1e-6;     ///< probability from which a step is tried at more; 0 to 0.1 [cost]
     double fewest_times = 8;  ///< below which none is looked for; 4 to 20 [habit]
     int most_waves = 64;      ///< a turn; 10 to 200 [physics]
@@ -125,6 +130,9 @@ struct DiagnosisConstants {
     double nothing_beside = 0.005, nothing_alone = 0.02;
     /// Of causes that step again and again at one place, those that did; 0.3 to 0.9 [trials]
     double steps_again = 0.5;
+    double settles =
+        0.1;  ///< of the session: steps so near each other are one; 0.02 to 0.2 [habit]
+    double as_probable = 0.05;   ///< of probability: causes so near are alike; 0.01 to 0.1 [habit]
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise, that what is found may leave: the larger part leads; 0.2 to 0.8
     /// [habit]
@@ -265,7 +273,6 @@ struct DiagnosisConstants {
     /// they do by chance; 3 to 8, 1e-4 to 0.01 [habit]
     int fewest_alike = 4;
     double alike_by_chance = 1e-3;
-    double pause = 5;          ///< over the usual time from one row to the next; 3 to 20 [habit]
     double beyond_sheet = 10;  ///< of the data sheet's noise; 3 to 30 [physics]
     /// Of the noise: repeats that show so much confirm it; 0.1 to 1 [habit]
     double confirmed = 0.3;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "constraints/statistics.h"
 #include "diagnosis/constants.h"
 #include "kinematics/suppositions.h"
 
@@ -170,21 +171,35 @@ class Maker {
     return {behind == t.begin() ? moment : *(behind - 1), behind == t.end() ? moment : *behind};
   }
 
-  /// Between the rows of a set (-1: of all), as many rows from one to the next; of few rows between
-  /// any two.
+  /// Between the rows of a set (-1: of all), as many rows from one to the next, and where they
+  /// pause, for then something is moved; of few rows between any two.
   std::vector<double> moments(int set) const {
     const std::vector<double> t = times(set);
-    std::vector<double> list;
     const auto n = static_cast<double>(t.size());
+    if (n < kDiagnosis.shapes.fewest_times) return {};
     const int most = n <= kDiagnosis.shapes.few_times ? static_cast<int>(t.size()) - 1
                                                       : kDiagnosis.shapes.moments;
-    for (int i = 1; i <= most && n >= kDiagnosis.shapes.fewest_times; ++i) {
+    std::set<double> list;
+    const auto add_before = [&](size_t row) { list.insert((t[row - 1] + t[row]) / 2); };
+    for (int i = 1; i <= most; ++i) {
       const auto at = static_cast<size_t>(std::lround(n * i / (most + 1)));
-      if (at == 0 || at >= t.size()) continue;
-      const double moment = (t[at - 1] + t[at]) / 2;
-      if (list.empty() || moment > list.back()) list.push_back(moment);
+      if (at > 0 && at < t.size()) add_before(at);
     }
-    return list;
+    for (const size_t row : after_pauses(t)) add_before(row);
+    return {list.begin(), list.end()};
+  }
+
+  /// The rows after the longest pauses, by far longer than is usual.
+  static std::vector<size_t> after_pauses(const std::vector<double>& t) {
+    std::vector<double> steps;
+    for (size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+    const double usual = median(steps);
+    std::vector<size_t> rows;
+    for (size_t i = 1; i < t.size(); ++i)
+      if (steps[i - 1] > kDiagnosis.shapes.pause * usual) rows.push_back(i);
+    std::ranges::sort(rows, std::ranges::greater{}, [&](size_t row) { return steps[row - 1]; });
+    rows.resize(std::min(rows.size(), kDiagnosis.shapes.most_pauses));
+    return rows;
   }
 
   void spread_priors() {

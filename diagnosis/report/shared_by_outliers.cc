@@ -45,7 +45,7 @@ std::vector<Trait> traits_of(const DataSet& data, const std::vector<Joint>& join
   std::vector<double> gaps;
   for (std::size_t i = 1; i < count; ++i)
     gaps.push_back(rows.time[order[i]] - rows.time[order[i - 1]]);
-  const double long_gap = kDiagnosis.report.pause * median(gaps);
+  const double long_gap = kDiagnosis.shapes.pause * median(gaps);
   add("were taken after a pause", [&](int row) {
     const std::size_t i = place[static_cast<std::size_t>(row)];
     return i > 0 && gaps[i - 1] > long_gap;

@@ -85,7 +85,23 @@ class Weighing {
           steps.push_back({each.effect, each.at, each.shape});
       if (!steps.empty()) break;
     }
+    if (const Candidate* step = plainest_step())
+      steps.push_back({step->effect, step->at, step->shape});
     return steps;
+  }
+
+  /// The step that alone explains most, where that is much: a row on its wrong side speaks against
+  /// it so loudly that it may be in no probable hypothesis yet.
+  const Candidate* plainest_step() const {
+    const std::vector<Candidate>& list = linearised_.candidates().list;
+    const Candidate* plainest = nullptr;
+    double most = kDiagnosis.shapes.plain;
+    for (int c = 0; c < static_cast<int>(list.size()); ++c)
+      if (list[static_cast<std::size_t>(c)].shape.moment && evaluator_->evidence(c) > most) {
+        most = evaluator_->evidence(c);
+        plainest = &list[static_cast<std::size_t>(c)];
+      }
+    return plainest;
   }
 
   /// The rows that were not put `aside` until a step was supposed at one of few moments, and lie
