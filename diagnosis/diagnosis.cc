@@ -52,6 +52,7 @@ class Diagnostician {
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named,
                           closed ? 1 - *closed : kDiagnosis.naming.most_left);
     doubt_repeated_steps(result_.candidates, result_.verdict, result_.named);
+    let_the_larger_share_lead(result_.verdict, result_.named);
     NextSteps next = next_steps(linearised_, data_, result_, options_);
     result_.next = std::move(next.steps);
     result_.next_why = std::move(next.why);

@@ -45,6 +45,7 @@ struct CauseResult {
   double visible = 0;  ///< rms of its visible part over the noise
   std::string shape = {};  ///< since when, how fast: "from 1840 s on"; empty where there is no such
   std::optional<std::pair<double, double>> between = {};  ///< s, rows: of a step, likely
+  double settles = 0;  ///< s, rows: steps at one place no farther apart are one that settles
   std::vector<NamedValue> parameters = {};
   std::vector<std::string> confounded_with = {};
   /// Of the search on noise that it answers to, (1 + k) / (1 + B); NaN where it was not asked.

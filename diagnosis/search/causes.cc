@@ -106,6 +106,8 @@ class Teller {
 
   /// Size and parameters, from the most probable hypothesis that has the cause.
   void describe(CauseResult& cause) const {
+    cause.settles =
+        kDiagnosis.naming.settles * (linearised_.context().end - linearised_.context().begin);
     const std::string at = cause.where.empty() ? "" : cause.where.front();
     const auto found =
         std::find_if(posterior_.hypotheses.begin(), posterior_.hypotheses.end(),

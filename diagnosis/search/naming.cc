@@ -226,9 +226,14 @@ void let_the_larger_lead(const std::vector<CauseResult>& causes, double left,
 }
 
 std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at) {
-  return std::ranges::count_if(cause.correction, [&](const FoundEffect& found) {
-    return found.what.at == at && found.what.shape.moment;
-  });
+  std::vector<double> moments;
+  for (const FoundEffect& found : cause.correction)
+    if (found.what.at == at && found.what.shape.moment) moments.push_back(*found.what.shape.moment);
+  std::ranges::sort(moments);
+  std::ptrdiff_t steps = 0;
+  for (std::size_t i = 0; i < moments.size(); ++i)
+    steps += i == 0 || moments[i] - moments[i - 1] > cause.settles;
+  return steps;
 }
 
 void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
@@ -260,6 +265,25 @@ void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict
     }
   }
   std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
+}
+
+void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& named) {
+  const auto is_verdict = [&](const CauseResult& each) {
+    return each.effect == verdict.effect && each.where == verdict.where;
+  };
+  const auto share = [](const CauseResult& each) {
+    return each.closes_alone.value_or(0) + each.closes_beside.value_or(0);
+  };
+  const auto leading = std::ranges::find_if(named, is_verdict);
+  if (leading == named.end()) return;
+  auto largest = leading;
+  for (auto each = named.begin(); each != named.end(); ++each)
+    if (each->of_its_kind() > leading->of_its_kind() - kDiagnosis.naming.as_probable &&
+        share(*each) > share(*largest))
+      largest = each;
+  if (largest == leading) return;
+  verdict = *largest;
+  std::rotate(named.begin(), largest, largest + 1);
 }
 
 void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict) {

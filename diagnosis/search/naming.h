@@ -36,7 +36,7 @@ CauseResult decided(CauseResult named, const Posterior& posterior, const ByNoise
 CauseResult unless_none(CauseResult verdict, const std::vector<CauseResult>& causes,
                         const DiagnosisOptions& options);
 
-/// Moments at which it stepped at that place.
+/// How often it stepped at that place: moments of which the next is near are of one step.
 std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at);
 
 /// Of the probability of structure, what is left where noise shows as much in `p` of cases: all of
@@ -72,6 +72,10 @@ void let_the_larger_lead(const std::vector<CauseResult>& causes, double left, Ca
 /// the verdict, which another that is named leads then, or the unknown where that is surer.
 void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
                           std::vector<CauseResult>& named);
+
+/// Of named causes as probable as the verdict's the one leads that closes the largest part of the
+/// gap: on average, alone and beside the others.
+void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& named);
 
 /// The verdict becomes `unknown`, of this probability at least; the others give way in proportion.
 void say_unknown(double probability, std::vector<CauseResult>& causes, CauseResult& verdict);

@@ -236,6 +236,32 @@ TEST(DoubtRepeatedSteps, SaysUnknownOfWhatStepsAgainAtOnePlace) {
   EXPECT_NEAR(doubted.named.front().probability, half, 1e-12);
 }
 
+TEST(DoubtRepeatedSteps, TakesStepsNearEachOtherForOneThatSettles) {
+  CauseResult cause = stepping("zero_shift", {"j4", "j4"});  // at 100 and 200 s
+  cause.settles = 100;
+  EXPECT_EQ(Doubted({cause, kRarelyUnknown}).verdict.effect, "zero_shift");
+  cause.settles = 99;
+  EXPECT_EQ(Doubted({cause, kRarelyUnknown}).verdict.effect, kUnknown);
+}
+
+TEST(LetTheLargerShareLead, IsOfCausesThatAreAsProbable) {
+  const auto leads = [](double probability) {
+    std::vector<CauseResult> named = {
+        {.effect = "joint_compliance", .probability = 0.9, .closes_alone = 0.7, .closes_beside = 0},
+        {.effect = "backlash",
+         .probability = probability,
+         .closes_alone = 0.6,
+         .closes_beside = 0.3}};
+    CauseResult verdict = named.front();
+    let_the_larger_share_lead(verdict, named);
+    EXPECT_EQ(named.front().effect, verdict.effect);
+    EXPECT_EQ(named.size(), 2u);
+    return verdict.effect;
+  };
+  EXPECT_EQ(leads(0.89), "backlash");
+  EXPECT_EQ(leads(0.8), "joint_compliance");
+}
+
 TEST(DoubtRepeatedSteps, AddsToAnUnknownThatLeadsAlready) {
   const Doubted doubted(
       {{.effect = kUnknown, .probability = 0.95}, stepping("zero_shift", {"j4", "j4"})});
