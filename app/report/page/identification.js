@@ -195,11 +195,14 @@ function parameters_of(data) {
 function residual_words(u) {
   const words = [];
   const r = u.residuals, fit = u.lack_of_fit;
-  if (known(fit.p_value))
+  if (known(fit.p_value)) {
+    const ratio = "F = " + figure(fit.F) + " of " + figure(fit.freedoms) + " and " + figure(fit.repeat_freedoms) +
+      " freedoms, p " + probability(fit.p_value);
     words.push(fit.p_value < 0.05
-      ? "The model leaves more than repeats of the same pose scatter (p " + probability(fit.p_value) +
+      ? "The model leaves more than repeats of the same pose scatter (" + ratio +
         "): something that it does not describe is at work; selfcal diagnose tells what."
-      : "What is left is no more than repeats of the same pose scatter (p " + probability(fit.p_value) + ").");
+      : "What is left is no more than repeats of the same pose scatter (" + ratio + ").");
+  }
   if (known(r.normality_p))
     words.push(r.normality_p < 0.05
       ? "What is left is not spread as normal noise is (p " + probability(r.normality_p) + ")."
@@ -212,13 +215,30 @@ function residual_words(u) {
   return bullets(words);
 }
 
+// Parameters of which the rows tell the sum or the difference, and each alone the less.
+function correlation_table(u, names) {
+  const pairs = [...u.correlations].sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+  return pairs.length ? folded("Parameters that these rows hardly tell apart (" + pairs.length + ")",
+    table([{title: "parameter"}, {title: "goes with"}, {title: "correlation", number: true}],
+      pairs.map(each => [names[each.a] || each.a, names[each.b] || each.b, fixed(each.value, 3)]))) : null;
+}
+
+function region_table(u) {
+  const cells = u.grid.filter(cell => known(cell.sigma));
+  return cells.length ? folded("How well the end position is known, by region (" + cells.length + ")",
+    table([{title: "about x, y, z, m", number: true}, {title: "1 sigma, mm", number: true},
+           {title: "expected bias, mm", number: true}, {title: "rows there", number: true}],
+      cells.map(cell => [cell.center.map(each => fixed(each, 2)).join(", "), mm(cell.sigma), mm(cell.bias),
+                         String(cell.rows)]))) : null;
+}
+
 function uncertainty_of(data) {
   const result = data.result, u = result.uncertainty, endpoint = result.endpoint_sigma;
   const parts = [];
   const work = endpoint.workspace;
   parts.push(tiles([
     [known(work.rms) ? mm(work.rms) + " mm" : null, "end position in the workspace, 1 sigma"],
-    [u ? "± " + mm(u.expanded) + " mm" : null, u ? "95 % (k = " + figure(u.k95) + ")" : ""],
+    [u ? "± " + mm(u.expanded) + " mm" : null, u ? "95 % (k = " + figure(u.k95) + ", " + figure(u.freedoms) + " freedoms)" : ""],
     [mm(data.data.target) + " mm", "wanted, 1 sigma"],
     [known(work.angle_rms) ? mm(work.angle_rms) + " mrad" : null, "how it is turned, 1 sigma"],
     [known(endpoint.rms) ? mm(endpoint.rms) + " mm" : null, "over the whole range of the joints, 1 sigma"],
@@ -229,7 +249,7 @@ function uncertainty_of(data) {
     if (lines.length)
       parts.push(chart(bars(lines.map(each => ({label: wrapped(each.source), value: 1e3 * each.sigma})), "1 sigma, mm"),
         "What the doubt of the end position is made of; the squares add up.", "", 4 + 2.4 * lines.length));
-    parts.push(residual_words(u));
+    parts.push(residual_words(u), correlation_table(u, data.full_names), region_table(u));
   }
   const scale = result.scale.stands_on;
   if (scale.length)
