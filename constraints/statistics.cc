@@ -94,6 +94,15 @@ double log_chi_square_below(double value, double freedom) {
   return a * std::log(x) - x - std::lgamma(a + 1) + std::log(sum);
 }
 
+double effective_freedoms(const std::vector<VariancePart>& parts) {
+  double sum = 0, uncertain = 0;
+  for (const VariancePart& part : parts) {
+    sum += part.variance;
+    uncertain += part.variance * part.variance / std::max(part.freedoms, 1.0);
+  }
+  return uncertain > 0 ? sum * sum / uncertain : HUGE_VAL;
+}
+
 double f_exceeds(double value, double upper_freedom, double lower_freedom) {
   if (!(value > 0 && upper_freedom > 0 && lower_freedom > 0)) return 1;
   if (std::isinf(value)) return 0;

@@ -12,6 +12,13 @@ double chi_square_exceeds(double value, double freedom);
 /// Logarithm of the probability that it stays below `value` (positive), also where that is too
 /// small for a number.
 double log_chi_square_below(double value, double freedom);
+/// A variance that others add up to, and the freedoms that tell it; infinite where it is known.
+struct VariancePart {
+  double variance = 0, freedoms = 0;
+};
+/// Freedoms of the sum of `parts` (Welch and Satterthwaite); infinite where all that is in it is
+/// known.
+double effective_freedoms(const std::vector<VariancePart>& parts);
 /// Probability that an F variable exceeds `value`.
 double f_exceeds(double value, double upper_freedom, double lower_freedom);
 

@@ -131,10 +131,11 @@ std::vector<CovarianceSource> noise_parts(const Equations& equations, const Adju
     repeats += repeated * of_its_rows;
     shared += in_common * of_its_rows;
   }
-  return {{kNoiseOfRows, all - encoders - repeats},
+  const double freedoms = freedoms_left(equations, adjusted);
+  return {{kNoiseOfRows, all - encoders - repeats, freedoms},
           {"resolution of the encoders", encoders},
-          {"repeatability, from repeats", repeats},
-          {"noise that repeats share", shared}};
+          {"repeatability, from repeats", repeats, freedoms},
+          {"noise that repeats share", shared, freedoms}};
 }
 
 /// The end position's, of a covariance whose first columns are the robot's parameters (m^2).
@@ -146,7 +147,14 @@ double squared(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& C) {
 struct BeyondChance {
   Eigen::MatrixXd in_time;
   Eigen::MatrixXd beside;  ///< what those of the configurations show more of than these
+  double freedoms_in_time = HUGE_VAL, freedoms_beside = HUGE_VAL;
 };
+
+/// A sum of squares of normal variables is nearly a chi-square of these freedoms (Satterthwaite).
+double freedoms_of(const Eigen::MatrixXd& weight, const Eigen::MatrixXd& expected) {
+  const Eigen::MatrixXd of_normal = product(weight, expected);
+  return std::pow(of_normal.trace(), 2) / of_normal.cwiseProduct(of_normal.transpose()).sum();
+}
 
 /// `noise` is what the rows' noise makes, and `by_repeats` what repeats share makes more of it: of
 /// halves in proportion.
@@ -162,27 +170,36 @@ BeyondChance beyond_chance(const Equations& equations, const Adjusted& adjusted,
   const double in_time = squared(weight, halves.in_time.seen);
   const double of_time =
       std::max(0.0, in_time - kMoreThanChance * more * squared(weight, halves.in_time.expected));
-  if (of_time > 0) found.in_time = of_time / in_time * halves.in_time.seen;
+  if (of_time > 0) {
+    found.in_time = of_time / in_time * halves.in_time.seen;
+    found.freedoms_in_time = kHalvesInTime * freedoms_of(weight, halves.in_time.expected);
+  }
   double most = of_time;
   for (const HalfSamples& each : halves.by_configuration) {
     const double seen = squared(weight, each.seen);
     const double expected = more * squared(weight, each.expected);
-    // A sum of squares of normal variables is nearly a chi-square of these freedoms
-    // (Satterthwaite).
-    const Eigen::MatrixXd of_normal = product(weight, each.expected);
-    const double freedoms =
-        std::pow(of_normal.trace(), 2) / of_normal.cwiseProduct(of_normal.transpose()).sum();
+    const double freedoms = freedoms_of(weight, each.expected);
     const double tries = static_cast<double>(halves.by_configuration.size());
     if (seen - expected <= most ||
         chi_square_exceeds(freedoms * seen / expected, freedoms) > kByChance / tries)
       continue;
     found.beside = (seen - expected - of_time) / seen * each.seen;
+    found.freedoms_beside = freedoms;
     most = seen - expected;
   }
   return found;
 }
 
 }  // namespace
+
+double freedoms_left(const Equations& equations, const Adjusted& adjusted) {
+  const Eigen::MatrixXd& C = adjusted.fitted.covariance;
+  double determined = equations.nuisance_dimensions();
+  for (int c = 0; c < equations.robot_columns(); ++c)
+    if (adjusted.prior.free[static_cast<size_t>(c)])
+      determined += 1 - C(c, c) * std::pow(prior_weight(equations, adjusted.prior, c), 2);
+  return adjusted.fitted.at.equations - determined;
+}
 
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
@@ -202,8 +219,8 @@ std::vector<CovarianceSource> covariance_sources(const Equations& equations,
   sources.push_back({"the maker's tolerances", priors});
   sources.push_back({"held scale", exact - fitted});
   sources.push_back({kWhatWasGiven, posterior(equations, adjusted, R, true, structure) - exact});
-  sources.push_back({kSharedErrors, std::move(halves.in_time)});
-  sources.push_back({kImitatedLaws, std::move(halves.beside)});
+  sources.push_back({kSharedErrors, std::move(halves.in_time), halves.freedoms_in_time});
+  sources.push_back({kImitatedLaws, std::move(halves.beside), halves.freedoms_beside});
   return sources;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace selfcal {
 struct CovarianceSource {
   std::string_view name;
   Eigen::MatrixXd C;
+  double freedoms = HUGE_VAL;  ///< that tell its size; infinite where that is given
 };
 
 /// Noise of the rows (beside the rounding of the encoders and what repeats differ by, and what
@@ -23,6 +25,9 @@ struct CovarianceSource {
 std::vector<CovarianceSource> covariance_sources(const Equations& equations,
                                                  const Adjusted& adjusted, const Eigen::MatrixXd& R,
                                                  const Eigen::MatrixXd& weight);
+
+/// Equations that took part, less the freedoms of the unknowns that these determine.
+double freedoms_left(const Equations& equations, const Adjusted& adjusted);
 
 /// The sum of all.
 Eigen::MatrixXd sum(const std::vector<CovarianceSource>& sources);

@@ -25,7 +25,7 @@ constexpr int kStretches = 4;
 constexpr double kUntold = 1e-10;
 constexpr double kHardlyMoves = 0.02;  // of a joint's range
 /// The stretches that make the first half with the first one.
-constexpr std::array kSplits = {1, 2, 3};
+constexpr std::array<int, kHalvesInTime> kSplits = {1, 2, 3};
 
 /// By row of the data set, 0 in the first of four stretches of its set's rows in the order of their
 /// times and in stretch `with`, 1 in the other two; -1 of other rows.

@@ -17,6 +17,9 @@ struct HalfSamples {
   Eigen::MatrixXd expected;
 };
 
+/// Splits by the order of the times; one apart from the other.
+inline constexpr int kHalvesInTime = 3;
+
 struct HalfSampling {
   /// Each set's rows in four stretches in the order of their times: every way to make two halves of
   /// these is a split.

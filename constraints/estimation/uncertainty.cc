@@ -1,8 +1,8 @@
-// Freedoms: equations less what they determine. Lack of fit: F of what is left beyond the spread of
-// immediate repeats over that spread. Residuals against noise: Jarque and Bera's test of their
-// distribution, and the correlation of successive ones within a set. Accuracy and repeatability of
-// poses that repeat as in ISO 9283: |mean| of the residual vectors, and l + 3 s of their distances
-// from it.
+// Freedoms: of each source of the doubt, added up as Welch and Satterthwaite do. Lack of fit: F of
+// what is left beyond the spread of immediate repeats over that spread. Residuals against noise:
+// Jarque and Bera's test of their distribution, and the correlation of successive ones within a
+// set. Accuracy and repeatability of poses that repeat as in ISO 9283: |mean| of the residual
+// vectors, and l + 3 s of their distances from it.
 #include "constraints/estimation/uncertainty.h"
 
 #include <algorithm>
@@ -17,15 +17,6 @@ namespace {
 constexpr double kCoverage = 0.95;
 constexpr double kCorrelated = 0.9;
 constexpr int kCells = 3;  ///< of the grid along each axis
-
-double determined(const Equations& equations, const Adjusted& adjusted) {
-  const Eigen::MatrixXd& C = adjusted.fitted.covariance;
-  double sum = equations.nuisance_dimensions();
-  for (int c = 0; c < equations.robot_columns(); ++c)
-    if (adjusted.prior.free[static_cast<size_t>(c)])
-      sum += 1 - C(c, c) * std::pow(prior_weight(equations, adjusted.prior, c), 2);
-  return sum;
-}
 
 /// Residuals that took part, over the noise of their sets, in the order of their times.
 std::vector<const RowResidual*> used_rows(const DataSet& data, const Judged& after,
@@ -220,14 +211,17 @@ Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
   const Noise& noise = adjusted.fitted.noise;
   const Eigen::Index n = equations.robot_columns();
   Uncertainty result;
-  result.freedoms = adjusted.fitted.at.equations - determined(equations, adjusted);
+  std::vector<VariancePart> parts;
+  for (const CovarianceSource& source : sources) {
+    const double sigma_of_it = endpoint_rms(deviations.weight, source.C.topLeftCorner(n, n));
+    result.budget.push_back({std::string(source.name), sigma_of_it});
+    parts.push_back({std::pow(sigma_of_it, 2), source.freedoms});
+  }
+  result.freedoms = effective_freedoms(parts);
   result.k = student_quantile((1 + kCoverage) / 2, std::max(result.freedoms, 1.0));
-  for (const CovarianceSource& source : sources)
-    result.budget.push_back(
-        {std::string(source.name), endpoint_rms(deviations.weight, source.C.topLeftCorner(n, n))});
   result.expanded = result.k * sigma.rms;
   const std::vector<const RowResidual*> rows = used_rows(data, after, noise);
-  result.lack_of_fit = lack_of_fit(data, rows, noise, result.freedoms);
+  result.lack_of_fit = lack_of_fit(data, rows, noise, freedoms_left(equations, adjusted));
   result.residuals = residual_tests(rows, noise);
   result.correlations = correlations(equations.robot(), sum(sources));
   result.repeats = pose_repeats(data, after);

@@ -154,6 +154,13 @@ TEST(SignedRank, IsOneHalfOrMoreForASymmetricSampleAndSmallForPositiveOnes) {
   EXPECT_DOUBLE_EQ(signed_rank_p(differences(20, 210)), std::pow(0.5, 20));
 }
 
+TEST(EffectiveFreedoms, AreThoseOfWelchAndSatterthwaite) {
+  EXPECT_DOUBLE_EQ(effective_freedoms({{2, 7}}), 7);
+  EXPECT_DOUBLE_EQ(effective_freedoms({{1, 10}, {1, 10}}), 20);
+  EXPECT_DOUBLE_EQ(effective_freedoms({{1, 10}, {3, HUGE_VAL}}), 160) << "4^2 / (1 / 10)";
+  EXPECT_TRUE(std::isinf(effective_freedoms({{1, HUGE_VAL}})));
+}
+
 TEST(Median, IsTheMiddleOne) {
   EXPECT_EQ(median({3, 1, 2}), 2);
   EXPECT_EQ(median({}), 0);
