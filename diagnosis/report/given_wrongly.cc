@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "constraints/estimation/identification.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/report/named.h"
-#include "diagnosis/validation/correction.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/description.h"
 #include "kinematics/effect.h"
@@ -46,25 +46,34 @@ std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& cal
 
 std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet& data,
                                 const Diagnosis& diagnosis) {
-  if (std::ranges::none_of(diagnosis.named, [](const CauseResult& each) {
-        return beyond_usual(each, kDiagnosis.report.far_beyond) != nullptr;
-      }))
-    return {};
-  Options options;
+  const auto is_far_beyond = [](const CauseResult& each) {
+    return beyond_usual(each, kDiagnosis.report.far_beyond) != nullptr;
+  };
+  if (std::ranges::none_of(diagnosis.named, is_far_beyond)) return {};
+  Correction usual;
+  std::ranges::remove_copy_if(
+      diagnosis.found, std::back_inserter(usual), [&](const FoundEffect& found) {
+        return std::ranges::any_of(diagnosis.named, [&](const CauseResult& each) {
+          return is_far_beyond(each) && is_of(each, found);
+        });
+      });
+  const std::shared_ptr<const Robot> robot = with_effects(linearised, usual);
+  Options options = free_effects(*robot);
   options.gears = true;
   options.gear_sigma = kDiagnosis.report.wrong_ratio;
-  const Solution calibrated = identify(linearised.geometry(), data, options);
+  const Solution calibrated = identify(*robot, data, options);
   const double left = calibrated.residual.fit.rms_after;
-  const double with_named = left_with(linearised, data, named_of(diagnosis.found));
+  const double with_all = left_with(linearised, data, diagnosis.found);
   const ParameterResult* gear = farthest_off(calibrated);
   if (gear == nullptr ||
-      kDiagnosis.report.better_than_moved * std::pow(left, 2) > std::pow(with_named, 2))
+      kDiagnosis.report.better_than_moved * std::pow(left, 2) > std::pow(with_all, 2))
     return {};
   return "with the gear ratio of " + gear->parameter.frame + " " +
          with_figures("%.2g", 100 * (gear->value / gear->parameter.nominal - 1)) +
          " % off what the robot's file says (" + gear->parameter.name + " = " +
-         with_figures("%.5g", gear->value) + "), calibration leaves " + in_readable_unit(left, "m") +
-         ", as little as with what would be named (" + in_readable_unit(with_named, "m") + ")";
+         with_figures("%.5g", gear->value) + "), calibration leaves " +
+         in_readable_unit(left, "m") + ", as little as with what would be named (" +
+         in_readable_unit(with_all, "m") + ")";
 }
 
 std::shared_ptr<const Robot> with_effects(const LinearisedModel& linearised,

@@ -45,6 +45,11 @@ bool names(const CauseResult& cause, const Candidate& candidate) {
   return !other;
 }
 
+bool is_of(const CauseResult& cause, const FoundEffect& found) {
+  return names(cause,
+               {.effect = found.what.effect, .at = found.what.at, .shape = found.what.shape});
+}
+
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate) {
   return std::ranges::any_of(named,
                              [&](const CauseResult& each) { return names(each, candidate); });

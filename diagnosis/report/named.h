@@ -10,6 +10,8 @@ namespace selfcal {
 /// The candidate is of the cause's effect, at one of its places and, where the cause is something
 /// that steps or something that does not, as it does.
 bool names(const CauseResult& cause, const Candidate& candidate);
+/// The same of an effect that was found.
+bool is_of(const CauseResult& cause, const FoundEffect& found);
 bool names_any(const std::vector<CauseResult>& named, const Candidate& candidate);
 
 /// It is so many times the usual largest, by two sigma.

@@ -91,7 +91,7 @@ class CorrectionValidation {
     std::vector<char> rows(static_cast<size_t>(data_.rows.rows()), 0);
     for (const FoundEffect& found : correction)
       for (const CauseResult& each : result_.candidates) {
-        if (!found.what.shape.moment || !each.between || !of(each, found)) continue;
+        if (!found.what.shape.moment || !each.between || !is_of(each, found)) continue;
         const int set = linearised_.context().find(found.what.at);
         for (size_t row = 0; row < rows.size(); ++row) {
           const double time = data_.rows.time[static_cast<Eigen::Index>(row)];
@@ -181,7 +181,7 @@ class CorrectionValidation {
     for (CauseResult& each : result_.named) {
       std::vector<char> alone, others;
       for (const FoundEffect& found : result_.found) {
-        const bool own = of(each, found);
+        const bool own = is_of(each, found);
         alone.push_back(found.named && own);
         others.push_back(found.named && !own);
       }
@@ -199,7 +199,7 @@ class CorrectionValidation {
     std::vector<std::string> words;
     for (const CauseResult& each : idle) {
       for (FoundEffect& found : result_.found)
-        if (of(each, found)) found.named = false;
+        if (is_of(each, found)) found.named = false;
       if (each.effect == result_.verdict.effect && each.where == result_.verdict.where)
         result_.verdict = result_.named.front();
       words.push_back(each.effect + (each.where.empty() ? "" : " at " + listed(each.where)) +
@@ -212,11 +212,6 @@ class CorrectionValidation {
     result_.gap = gap_of(result_.validation_rows, options_.seed, freedom_);
     share_among_named();
     return words;
-  }
-
-  static bool of(const CauseResult& cause, const FoundEffect& found) {
-    return names(cause,
-                 {.effect = found.what.effect, .at = found.what.at, .shape = found.what.shape});
   }
 
   /// What each of the probable causes would leave alone.
