@@ -16,13 +16,15 @@
 namespace selfcal {
 namespace {
 
-/// The gear whose ratio is off by the most sigmas; none where no more than a few are.
+/// The gear whose ratio is off by the most sigmas; none where no more than a few are, or farther
+/// than any file's is.
 const ParameterResult* farthest_off(const Solution& calibrated) {
   const ParameterResult* farthest = nullptr;
   double most = kDiagnosis.report.gear_sigmas;
   for (const ParameterResult& each : calibrated.parameters) {
     if (each.parameter.part != Part::gear || !(each.sigma > 0)) continue;
-    const double sigmas = std::abs(each.value - each.parameter.nominal) / each.sigma;
+    const double off = std::abs(each.value - each.parameter.nominal), sigmas = off / each.sigma;
+    if (off > kDiagnosis.report.gear_sigmas * kDiagnosis.report.wrong_ratio) return nullptr;
     if (sigmas <= most) continue;
     most = sigmas;
     farthest = &each;

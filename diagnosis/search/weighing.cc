@@ -151,7 +151,7 @@ std::string lacking(const EvidenceEvaluator& evaluator) {
   const double freedom = evaluator.marginal_likelihood(0).freedom();
   if (freedom >= kDiagnosis.rows.fewest_freedoms) return {};
   return "too few rows for a diagnosis: beyond what calibration takes they leave " +
-         format_number(std::floor(freedom)) + " equations, at least " +
+         format_number(std::max(0.0, std::floor(freedom))) + " equations, at least " +
          format_number(kDiagnosis.rows.fewest_freedoms) + " are needed";
 }
 
