@@ -4,6 +4,7 @@
 //   dp = sum g_i ((p - c_i) . dc_i + l_i dl_i).
 #include "kinematics/robots/linear_delta.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -62,6 +63,10 @@ class LinearDelta final : public Robot, public RobotText {
       joints_.push_back({tower_name(t), Quantity::length, model_.lower[t], model_.upper[t]});
       carriages_.push_back(tower_name(t));
     }
+    limited_ = std::ranges::any_of(model_.swing, [](double most) { return most > 0; });
+    Eigen::Vector3d middle;
+    for (int t = 0; t < kTowers; ++t) middle[t] = (joints_[t].lower + joints_[t].upper) / 2;
+    rest_ = rods_at(middle);
   }
 
   std::string_view kind() const override { return "linear-delta"; }
@@ -82,6 +87,16 @@ class LinearDelta final : public Robot, public RobotText {
   int leg_parameter(int joint) const override { return index(joint, kRod); }
   Eigen::VectorXd leg_lengths(const Eigen::VectorXd& xi, const Eigen::VectorXd&) const override {
     return Eigen::Vector3d(xi[index(0, kRod)], xi[index(1, kRod)], xi[index(2, kRod)]);
+  }
+  bool within_passive_limits(const Eigen::VectorXd& q) const override {
+    if (!limited_) return true;
+    const std::optional<Eigen::Matrix3d> rods = rods_at(q);
+    if (!rods || !rest_) return false;
+    for (int t = 0; t < kTowers; ++t) {
+      const double most = model_.swing[static_cast<std::size_t>(t)];
+      if (most > 0 && rods->col(t).dot(rest_->col(t)) < std::cos(most)) return false;
+    }
+    return true;
   }
   /// The nozzle or probe points down.
   Eigen::Vector3d tool_axis() const override { return -Eigen::Vector3d::UnitZ(); }
@@ -154,6 +169,17 @@ class LinearDelta final : public Robot, public RobotText {
   }
 
  private:
+  /// Where the rods of the file's robot point at readings `q`: unit vectors, column t that of tower
+  /// t; nothing where its loops do not close.
+  std::optional<Eigen::Matrix3d> rods_at(const Eigen::Vector3d& q) const {
+    const Eigen::VectorXd& xi = model_.nominal;
+    std::array<Tower, kTowers> towers;
+    for (int t = 0; t < kTowers; ++t) towers[t] = tower(xi, t);
+    const ClosedLoops at = close(xi, towers, q, Eigen::Vector3d::Zero());
+    if (!at.open.empty()) return std::nullopt;
+    return (at.p.replicate<1, kTowers>() - at.carriage).colwise().normalized();
+  }
+
   /// The carriage of tower `t`, which stands as its tower does.
   static void place_carriage(const Eigen::VectorXd& xi, const ClosedLoops& at,
                              const Eigen::Vector3d& q, int t, int lane, Locations& X,
@@ -199,6 +225,8 @@ class LinearDelta final : public Robot, public RobotText {
   std::optional<PointMasses> weights_;
   std::vector<Joint> joints_;
   std::vector<std::string> carriages_;
+  std::optional<Eigen::Matrix3d> rest_;  ///< rods_at() the middle of the readings
+  bool limited_ = false;                 ///< some rod's swing is
 };
 
 /// Evenly over the disc in which the rods stand steeply enough, then over the heights that the
@@ -226,6 +254,7 @@ Eigen::VectorXd LinearDelta::draw(const Eigen::MatrixX2d& span,
     p.z() = low + (high - low) * share;
     const auto q = readings_at(xi, p);
     if (!q) continue;
+    if (!within_passive_limits(*q)) continue;
     best = *q;
     if ((best.array() >= span.col(0).array() && best.array() <= span.col(1).array()).all()) break;
   }

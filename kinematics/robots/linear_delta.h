@@ -32,7 +32,10 @@ struct Delta : PartFigures {
 
   std::string name;
   std::array<double, kTowers> lower{}, upper{};  ///< of the readings; equal: none
-  LoopMasses masses;                             ///< effector, carriages and rods
+  /// Most that a rod turns from where it points with all carriages in the middle of their readings
+  /// (rad); 0: any.
+  std::array<double, kTowers> swing{};
+  LoopMasses masses;  ///< effector, carriages and rods
 };
 
 /// Reads a robot file of kind "linear-delta"; the result is meaningless after a problem.

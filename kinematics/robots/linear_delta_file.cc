@@ -1,10 +1,13 @@
 // The file of a linear delta, read and written (app/selfcal-data.5: towers, effector, tool).
 #include <cmath>
+#include <numbers>
 
 #include "kinematics/robots/linear_delta.h"
 
 namespace selfcal::linear_delta {
 namespace {
+
+constexpr double kWidestSwing = std::numbers::pi / 2;  // rad
 
 const std::vector<MassKey>& tower_masses() {
   static const std::vector<MassKey> keys = {{"effector", &LoopMasses::platform},
@@ -53,6 +56,11 @@ void read_tower(const Node& node, int t, Problems& problems, Delta& model) {
     model.lower[static_cast<size_t>(t)] = (*limits)[0];
     model.upper[static_cast<size_t>(t)] = (*limits)[1];
   }
+  if (fields.has("swing")) {
+    double& swing = model.swing[static_cast<size_t>(t)] = fields.angle("swing", 0);
+    if (!(swing > 0 && swing < kWidestSwing))
+      fields.fail("swing", "an angle in radians, above 0 and at most a right one");
+  }
   read_beside(fields, tower_names(t), problems, model);
   fields.refuse_unknown();
 }
@@ -92,6 +100,7 @@ Node write_tower(const Delta& model, int t) {
   const auto i = static_cast<size_t>(t);
   if (model.lower[i] < model.upper[i])
     node.set("limits", Node::of(std::vector<double>{model.lower[i], model.upper[i]}));
+  if (model.swing[i] > 0) node.set("swing", Node::of(model.swing[i]));
   write_beside(model, tower_names(t), node);
   return node;
 }

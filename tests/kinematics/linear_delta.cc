@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <random>
 
+#include "io/files/yaml.h"
 #include "kinematics/make_robot.h"
+#include "kinematics/robots/linear_delta.h"
 #include "tests/kinematics/kind_examples.h"
 #include "tests/kinematics/parsed_robot.h"
 
@@ -13,14 +17,13 @@ namespace {
 
 using testing::HasSubstr;
 
-std::unique_ptr<Robot> ideal(const std::string& more = "") {
-  return robot_of(R"(robot: ideal
-kind: linear-delta
-towers:
-  - {radius: 0.3, angle: 0.5235987755982988, rod: 0.5, endstop: 0.9, limits: [-0.5, 0]}
-  - {radius: 0.3, angle: 2.6179938779914944, rod: 0.5, endstop: 0.9, limits: [-0.5, 0]}
-  - {radius: 0.3, angle: -1.5707963267948966, rod: 0.5, endstop: 0.9, limits: [-0.5, 0]}
-)" + more);
+/// `more` after all, `of_towers` in each of them.
+std::unique_ptr<Robot> ideal(const std::string& more = "", const std::string& of_towers = "") {
+  std::string text = "robot: ideal\nkind: linear-delta\ntowers:\n";
+  for (const char* angle : {"0.5235987755982988", "2.6179938779914944", "-1.5707963267948966"})
+    text += std::string("  - {radius: 0.3, angle: ") + angle +
+            ", rod: 0.5, endstop: 0.9, limits: [-0.5, 0]" + of_towers + "}\n";
+  return robot_of(text + more);
 }
 
 Closure closure_at(const Robot& robot, const Eigen::Vector3d& q, Locations& X, PsiBlock& psi) {
@@ -79,6 +82,27 @@ TEST(LinearDelta, HoldsScalesAndToolUnlessTheirToleranceIsGiven) {
     EXPECT_FALSE(robot->parameters()[find_parameter(*robot, held)].free) << held;
   for (const char* free : {"radius1", "angle2", "rod3", "endstop1", "tilt_x2", "tool_z"})
     EXPECT_TRUE(robot->parameters()[find_parameter(*robot, free)].free) << free;
+}
+
+TEST(LinearDelta, KeepsItsRodsWithinTheirSwing) {
+  const auto robot = ideal("", ", swing: 0.2");
+  // With carriages level the rods point as they do in the middle, wherever that is.
+  EXPECT_TRUE(robot->within_passive_limits(Eigen::Vector3d(-0.1, -0.1, -0.1)));
+  // There 0.3 m across and 0.4 m down. 0.15 m towards tower 1 its rod is 0.15 m across and 0.477 m
+  // down: 0.305 rad off the vertical, in place of 0.644.
+  const Eigen::Vector3d p(0.15 * std::cos(std::numbers::pi / 6), 0.075, 0.1);
+  const auto q = linear_delta::readings_at(values(*robot), p);
+  ASSERT_TRUE(q);
+  EXPECT_FALSE(robot->within_passive_limits(*q));
+  EXPECT_TRUE(ideal()->within_passive_limits(*q)) << "without a swing";
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform;
+  Eigen::MatrixX2d span(3, 2);
+  span << -0.5, 0, -0.5, 0, -0.5, 0;
+  for (int i = 0; i < 50; ++i)
+    EXPECT_TRUE(robot->within_passive_limits(robot->draw(span, [&] { return uniform(random); })));
+  EXPECT_FALSE(
+      robot_of(write_yaml(robot->text().describe(values(*robot))))->within_passive_limits(*q));
 }
 
 TEST(LinearDelta, RefusesWhatIsNoDelta) {
