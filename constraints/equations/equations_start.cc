@@ -66,10 +66,23 @@ std::vector<int> thinned(const std::vector<SetPlan::Item>& items, int first, int
   return rows;
 }
 
+/// Moves locations so that their mean is that of others.
+void move_to_mean_of(const std::vector<Location>& others, std::vector<Location>& moved) {
+  Eigen::Vector3d by = Eigen::Vector3d::Zero();
+  for (const Location& each : others) by += each.p / static_cast<double>(others.size());
+  for (const Location& each : moved) by -= each.p / static_cast<double>(moved.size());
+  for (Location& each : moved) each.p += by;
+}
+
 }  // namespace
 
 void Equations::start(State& state) const {
   const Locator locator(*this, state.xi);
+  const auto rows_of = [&](int set) {
+    const std::vector<SetPlan::Item>& items = plans_[set].items;
+    return locator.closing(thinned(items, 0, static_cast<int>(items.size())),
+                           data_.sets[set].method->body());
+  };
   state.nuisance.resize(data_.sets.size());
   state.groups.resize(data_.sets.size());
   for (const bool referring : {false, true})
@@ -77,9 +90,15 @@ void Equations::start(State& state) const {
       const Set& set = data_.sets[s];
       const SetPlan& plan = plans_[s];
       if ((set.reference >= 0) != referring || plan.items.empty()) continue;
-      const std::vector<int> rows = locator.closing(
-          thinned(plan.items, 0, static_cast<int>(plan.items.size())), set.method->body());
-      state.nuisance[s] = set.method->start(locator.at(rows, set.method->body()), rows, data_.rows,
+      const std::vector<int> rows = rows_of(s);
+      std::vector<Location> X = locator.at(rows, set.method->body());
+      for (int other = 0; other < static_cast<int>(plans_.size()); ++other) {
+        if (data_.sets[other].reference != s || plans_[other].items.empty()) continue;
+        std::vector<Location> like = locator.at(rows_of(other), data_.sets[other].method->body());
+        move_to_mean_of(X, like);
+        X.insert(X.end(), like.begin(), like.end());
+      }
+      state.nuisance[s] = set.method->start(X, rows, data_.rows,
                                             referring ? &state.nuisance[set.reference] : nullptr,
                                             locator.tool(rows.front()));
       if (set.method->group_freedom() == 0) continue;

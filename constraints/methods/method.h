@@ -179,7 +179,8 @@ class Method {
   virtual int tangent_dimension() const { return 0; }
   /// What freedom `i` of the tangent changes: a length, an angle or a ratio.
   virtual Quantity tangent_quantity(int) const { return Quantity::length; }
-  /// Own values that fit locations X (of body()) of the rows best, as a start.
+  /// Own values that fit locations X (of body()) of the rows best, as a start. Behind those of the
+  /// rows X has those of sets that refer to this one, moved so that their mean is the rows'.
   virtual Eigen::VectorXd start(const std::vector<Location>& X, const std::vector<int>& rows,
                                 const Observations& data, const Eigen::VectorXd* reference,
                                 const Location& tool) const;

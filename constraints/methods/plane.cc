@@ -79,15 +79,15 @@ class Touch : public Method {
     if (probe_radius_ > 0) P -= probe_radius_ * in.data->normal.row(in.rows[lane]).transpose();
     return P;
   }
-  /// Where the mean of the points that were touched lies along n, of endpoints X.
+  /// Where the mean of the points that were touched in `rows` lies along n, of endpoints X.
   double distance_along(const Eigen::Vector3d& n, const std::vector<Location>& X,
                         const std::vector<int>& rows, const Observations& data) const {
     double sum = 0;
-    for (std::size_t i = 0; i < X.size(); ++i) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
       sum += n.dot(X[i].p);
       if (probe_radius_ > 0) sum -= probe_radius_ * data.normal.row(rows[i]).dot(n);
     }
-    return sum / static_cast<double>(X.size());
+    return sum / static_cast<double>(rows.size());
   }
 
  private:
