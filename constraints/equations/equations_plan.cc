@@ -33,18 +33,24 @@ bool is_check(const DataSet& data, const Item& item) {
   return data.rows.check[item.row] || (item.previous >= 0 && data.rows.check[item.previous]);
 }
 
+/// A frame turns about two of its points.
+constexpr int kPointsOfFrame = 3, kFrame = 6;
+
 /// The rows that identify give at least as many equations as the set has unknowns of its own,
 /// repeats of a configuration counted once: fewer leave it anywhere, and say nothing of other rows.
 bool is_placed(const DataSet& data, int set, const std::vector<Item>& items) {
   const Method& method = *data.sets[set].method;
   const auto equations = static_cast<int>(method.equations().size());
+  const int fewest = method.tangent_dimension() >= kFrame && equations == 3 ? kPointsOfFrame : 1;
   std::set<int> repeats;
   int configurations = 0;
   for (const Item& item : items) {
     if (is_check(data, item)) continue;
     const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[item.row];
     if (repeat >= 0 && !repeats.insert(repeat).second) continue;
-    if (++configurations * equations >= method.tangent_dimension()) return true;
+    ++configurations;
+    if (configurations >= fewest && configurations * equations >= method.tangent_dimension())
+      return true;
   }
   return false;
 }

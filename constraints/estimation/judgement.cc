@@ -120,6 +120,30 @@ bool is_to_look_at(const Judged& judged, size_t check_row) {
          (judged.foreseen.empty() || judged.foreseen[check_row] == 0);
 }
 
+/// Rows kept aside that are no more than what they place themselves are met exactly by any robot,
+/// and judge nothing.
+void leave_out_met_exactly(const DataSet& data, const Equations& align, Judged& judged) {
+  const auto met_exactly = [&](int set) {
+    const auto equations = align.plan(set).items.size() * data.sets[set].method->equations().size();
+    return equations > 0 &&
+           static_cast<int>(equations) <= align.tangent_dimension(set) + align.group_freedoms(set);
+  };
+  const int every = shown_every(data);
+  std::vector<RowResidual> check;
+  std::vector<RowPlace> places;
+  std::size_t shown = 0;
+  for (const RowResidual& row : judged.check) {
+    const bool shows = row.row % every == 0;
+    if (!judged.aligned[row.set] || !met_exactly(row.set)) {
+      check.push_back(row);
+      if (shows) places.push_back(judged.check_places[shown]);
+    }
+    shown += shows;
+  }
+  judged.check = std::move(check);
+  judged.check_places = std::move(places);
+}
+
 }  // namespace
 
 bool is_outlier(const RowResidual& r, const Judged& judged) {
@@ -157,6 +181,7 @@ Judged judge(const Robot& robot, const DataSet& data, const Equations& fit_equat
   const Equations check(robot, data, Use::check);
   judged.check = check.residuals(judged.state);
   judged.check_places = check.places(judged.state, shown_every(data));
+  leave_out_met_exactly(data, align, judged);
   judged.open = fit_equations.open_rows();
   judged.open_check = check.open_rows();
   return judged;
