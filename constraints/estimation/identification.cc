@@ -29,6 +29,23 @@
 namespace selfcal {
 namespace {
 
+constexpr double kFewestFreedoms = 3;  // that tell a noise which no data sheet states
+
+/// Why nobody knows how sure the result is; empty where the noise is stated, or rows enough tell
+/// it.
+std::string untold_noise(const Equations& equations, const Adjusted& adjusted) {
+  if (freedoms_left(equations, adjusted) >= kFewestFreedoms) return {};
+  for (size_t s = 0; s < equations.data().sets.size(); ++s) {
+    const Set& set = equations.data().sets[s];
+    if (set.noise <= 0 && set.noise_angle <= 0 &&
+        !equations.plan(static_cast<int>(s)).items.empty())
+      return "no `noise:` is stated for set " + set.name +
+             ", and so few rows leave nothing that tells it: how sure any of this is nobody knows; "
+             "state it, or add rows";
+  }
+  return {};
+}
+
 constexpr int kPoses = 500;  ///< at which the end position is judged
 
 std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
@@ -248,6 +265,10 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
     grounds.contradictions.emplace_back(
         "the rows that identify all stand at one configuration, which tells no length from "
         "another");
+  if (std::string why = untold_noise(equations, adjusted); !why.empty()) {
+    solution.warnings.push_back(why);
+    grounds.contradictions.push_back(std::move(why));
+  }
   for (const FrameStep& step : solution.frame_steps)
     if (step.shift > data.target) grounds.contradictions.push_back(step_words(step));
   solution.verdict = verdict(before, solution.residual, grounds);

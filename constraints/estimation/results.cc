@@ -55,8 +55,9 @@ void report_groups(const Equations& equations, int set, const Fit& fit, const Ei
   }
 }
 
-constexpr double kRedundant = 3;  // equations an unknown: fewer are met whatever the noise
-constexpr double kMisstated = 3;  // of the data sheet's noise that rows scatter by less
+constexpr double kRedundant = 3;         // equations an unknown: fewer are met whatever the noise
+constexpr double kQuietByChance = 1e-3;  // that noise as stated scatters so much less
+constexpr double kMisstated = 3;         // of the data sheet's noise that rows scatter by less
 /// Of the data sheet's noise, of that of immediate repeats.
 constexpr double kMoreThanSheet = 1.2, kMoreThanRepeats = 2;
 constexpr int kFewestFar = 3;     // rows kept aside beyond the noise, and their share,
@@ -247,7 +248,13 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
         solution.warnings.push_back(unexplained(set, scatter, noise, "its data sheet says",
                                                 ", unless the sheet states too little"));
       }
-    if (redundant && stated.length > kMisstated * set.noise_sigma && set.noise_sigma > 0)
+    const double freedoms =
+        set.used * static_cast<double>(data.sets[s].method->equations().size()) -
+        equations.tangent_dimension(static_cast<int>(s)) -
+        equations.group_freedoms(static_cast<int>(s));
+    const bool plainly =
+        1 - chi_square_exceeds(freedoms / (kMisstated * kMisstated), freedoms) < kQuietByChance;
+    if (redundant && plainly && stated.length > kMisstated * set.noise_sigma && set.noise_sigma > 0)
       solution.warnings.push_back(
           "set " + set.name + ": its data sheet's noise is " +
           ratio(stated.length, set.noise_sigma) +

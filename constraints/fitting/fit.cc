@@ -20,7 +20,8 @@ constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
 constexpr int kBarred = 3;           ///< of them barred by a loop that does not close
 constexpr double kRounding = 1e-13;  ///< a step this short (of the robot's size, or rad) is nothing
-constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
+constexpr double kManyEquations = 4;  ///< of a set, over the unknowns: its share of these is small
+constexpr double kNear = 1e-3;        ///< sigmas a parameter: where only rounding may be left
 
 /// What the noise is estimated from; it only goes forward.
 enum class NoiseStage {
@@ -85,12 +86,31 @@ class Iteration {
   NoiseRule noise_rule(NoiseStage stage, const Eigen::MatrixXd& covariance) {
     NoiseRule rule = noise_rule(stage);
     rule.global_freedom = freedom(covariance);
+    rule.fitted = fitted_by_small_sets(covariance, rule.global_freedom);
     if (stage != NoiseStage::nuisance) return rule;
     if (of_lengths_.empty())
       for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
         of_lengths_.push_back(part_of_lengths(s, covariance));
     rule.of_lengths = of_lengths_;
     return rule;
+  }
+
+  /// By set, the freedoms that the rows of a small one among others fit, the most so far: one that
+  /// is taken for quieter than it is is met the better for it, and would be taken for quieter
+  /// still. 0 of those with far more equations than unknowns, and of one set alone.
+  const std::vector<double>& fitted_by_small_sets(const Eigen::MatrixXd& covariance,
+                                                  double freedom) {
+    const auto& sets = equations_.data().sets;
+    fitted_.resize(sets.size(), 0);
+    for (int s = 0; sets.size() > 1 && s < static_cast<int>(sets.size()); ++s) {
+      const auto at = static_cast<std::size_t>(s);
+      const double equations = static_cast<double>(equations_.plan(s).items.size() *
+                                                   sets[at].method->equations().size());
+      if (equations > 0 && equations < kManyEquations * freedom)
+        fitted_[at] = std::max(
+            fitted_[at], fitted(s, noise_.used[at], covariance) + equations_.group_freedoms(s));
+    }
+    return fitted_;
   }
 
   /// Of the freedoms that the rows of a set fit, those of its lengths, by what lengths and angles
@@ -274,8 +294,9 @@ class Iteration {
   bool done_ = false;
   /// By set, its part_of_lengths() where the geometry had settled; the end takes it anew.
   std::vector<double> of_lengths_;
-  std::set<int> unmasked_;  ///< rows that were put aside as masked outliers
-  int regroupings_ = 0;     ///< changes of the rows put aside since the noise is kept
+  std::vector<double> fitted_;  ///< by set, see fitted_by_small_sets()
+  std::set<int> unmasked_;      ///< rows that were put aside as masked outliers
+  int regroupings_ = 0;         ///< changes of the rows put aside since the noise is kept
 };
 
 }  // namespace

@@ -181,6 +181,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
     if (set.count() == 0) continue;
     const double shared = std::max(rule.global_freedom - equations.nuisance_columns(), 0.0);
     set.fitted = set.own + (total > 0 ? shared * set.beyond_own() / total : 0);
+    if (!rule.fitted.empty()) set.fitted = std::max(set.fitted, rule.fitted[s]);
     left[s] = robust_squares(set);
     noise.estimated[s] = left[s].sigma();
     if (!rule.reject) continue;
