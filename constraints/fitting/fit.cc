@@ -87,6 +87,10 @@ class Iteration {
     NoiseRule rule = noise_rule(stage);
     rule.global_freedom = freedom(covariance);
     rule.fitted = fitted_by_small_sets(covariance, rule.global_freedom);
+    most_fitted_.resize(rule.fitted.size(), 0);
+    for (std::size_t s = 0; s < most_fitted_.size(); ++s)
+      most_fitted_[s] = std::max(most_fitted_[s], rule.fitted[s]);
+    rule.most_fitted = most_fitted_;
     if (stage != NoiseStage::nuisance) return rule;
     if (of_lengths_.empty())
       for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
@@ -95,22 +99,21 @@ class Iteration {
     return rule;
   }
 
-  /// By set, the freedoms that the rows of a small one among others fit, the most so far: one that
-  /// is taken for quieter than it is is met the better for it, and would be taken for quieter
-  /// still. 0 of those with far more equations than unknowns, and of one set alone.
-  const std::vector<double>& fitted_by_small_sets(const Eigen::MatrixXd& covariance,
-                                                  double freedom) {
+  /// By set, the freedoms that the rows of a small one among others fit: one that is taken for
+  /// quieter than it is is met the better for it, and would be taken for quieter still. Negative of
+  /// those with far more equations than unknowns, and of one set alone.
+  std::vector<double> fitted_by_small_sets(const Eigen::MatrixXd& covariance,
+                                           double freedom) const {
     const auto& sets = equations_.data().sets;
-    fitted_.resize(sets.size(), 0);
+    std::vector<double> list(sets.size(), -1);
     for (int s = 0; sets.size() > 1 && s < static_cast<int>(sets.size()); ++s) {
       const auto at = static_cast<std::size_t>(s);
       const double equations = static_cast<double>(equations_.plan(s).items.size() *
                                                    sets[at].method->equations().size());
       if (equations > 0 && equations < kManyEquations * freedom)
-        fitted_[at] = std::max(
-            fitted_[at], fitted(s, noise_.used[at], covariance) + equations_.group_freedoms(s));
+        list[at] = fitted(s, noise_.used[at], covariance) + equations_.group_freedoms(s);
     }
-    return fitted_;
+    return list;
   }
 
   /// Of the freedoms that the rows of a set fit, those of its lengths, by what lengths and angles
@@ -294,9 +297,9 @@ class Iteration {
   bool done_ = false;
   /// By set, its part_of_lengths() where the geometry had settled; the end takes it anew.
   std::vector<double> of_lengths_;
-  std::vector<double> fitted_;  ///< by set, see fitted_by_small_sets()
-  std::set<int> unmasked_;      ///< rows that were put aside as masked outliers
-  int regroupings_ = 0;         ///< changes of the rows put aside since the noise is kept
+  std::vector<double> most_fitted_;  ///< by set, of fitted_by_small_sets() so far
+  std::set<int> unmasked_;           ///< rows that were put aside as masked outliers
+  int regroupings_ = 0;              ///< changes of the rows put aside since the noise is kept
 };
 
 }  // namespace

@@ -30,6 +30,7 @@ struct SetNoise {
   int lengths = 0, angles = 0;  ///< scalars of a row
   double equations = 0;
   double own = 0, fitted = 0;  ///< freedoms of its own unknowns, and with its part of the robot's
+  double most_fitted = 0;      ///< NoiseRule's, or `fitted`
   double of_lengths = 0;       ///< part of these that the lengths carry
 
   /// So many equations are left to tell of the robot and of the noise.
@@ -47,6 +48,7 @@ struct Squares {
   double length = 0, angle = 0;  ///< m^2, rad^2
   double lengths = 0, angles = 0;
   double fitted_lengths = 0, fitted_angles = 0;
+  double most_fitted = 0;  ///< of both
 
   void operator+=(const Squares& other) {
     length += other.length;
@@ -55,9 +57,10 @@ struct Squares {
     angles += other.angles;
     fitted_lengths += other.fitted_lengths;
     fitted_angles += other.fitted_angles;
+    most_fitted += other.most_fitted;
   }
 
-  double freedoms() const { return lengths + angles - fitted_lengths - fitted_angles; }
+  double freedoms() const { return lengths + angles - most_fitted; }
 
   /// 1 sigma of one scalar; 1 of a quantity that there is none of.
   Scale sigma() const {
@@ -75,15 +78,20 @@ Squares robust_squares(const SetNoise& set) {
     for (size_t i = 0; i < norms.size(); ++i) norms[i] = set.part(i, angle);
     return rows * scalars * std::pow(median(std::move(norms)) / chi_quantile(scalars, 0.5), 2);
   };
-  return {square(set.lengths, false),  square(set.angles, true),
-          rows * set.lengths,          rows * set.angles,
-          set.of_lengths * set.fitted, (1 - set.of_lengths) * set.fitted};
+  return {square(set.lengths, false),
+          square(set.angles, true),
+          rows * set.lengths,
+          rows * set.angles,
+          set.of_lengths * set.fitted,
+          (1 - set.of_lengths) * set.fitted,
+          set.most_fitted};
 }
 
 Squares squares(const SetNoise& set, const std::vector<char>& outlier) {
   Squares sum;
   sum.fitted_lengths = set.of_lengths * set.fitted;
   sum.fitted_angles = (1 - set.of_lengths) * set.fitted;
+  sum.most_fitted = set.most_fitted;
   for (size_t i = 0; i < set.count(); ++i)
     if (!outlier[set.row(i)])
       sum += {std::pow(set.part(i, false), 2),
@@ -181,7 +189,11 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
     if (set.count() == 0) continue;
     const double shared = std::max(rule.global_freedom - equations.nuisance_columns(), 0.0);
     set.fitted = set.own + (total > 0 ? shared * set.beyond_own() / total : 0);
-    if (!rule.fitted.empty()) set.fitted = std::max(set.fitted, rule.fitted[s]);
+    set.most_fitted = set.fitted;
+    if (!rule.fitted.empty()) {
+      set.most_fitted = std::max(set.fitted, rule.most_fitted[s]);
+      if (rule.fitted[s] >= 0) set.fitted = rule.fitted[s];
+    }
     left[s] = robust_squares(set);
     noise.estimated[s] = left[s].sigma();
     if (!rule.reject) continue;
@@ -192,7 +204,7 @@ Noise estimate_noise(const Equations& equations, const std::vector<RowNorm>& nor
   const std::vector<Squares> together = pooled(sets, left);
   for (size_t s = 0; s < sets.size(); ++s)
     if (by_set[s].count() > 0 &&
-        (rule.pool || by_set[s].equations - by_set[s].fitted < kFewFreedoms))
+        (rule.pool || by_set[s].equations - by_set[s].most_fitted < kFewFreedoms))
       noise.estimated[s] = together[s].sigma();
   for (size_t s = 0; s < sets.size(); ++s) {
     noise.estimated[s] = at_least(noise.estimated[s], least.length, least.angle);

@@ -12,9 +12,10 @@ namespace selfcal {
 struct NoiseRule {
   double global_freedom = 0;  ///< parameters that the rows determine, spread over all equations
   double most_outliers = 0;   ///< share of a set's rows that may be put aside, and 2 sigma of it
-  /// By set, the freedoms that its rows fit at least, its own unknowns' among them; where they are
-  /// fewer, or this is empty, its share of `global_freedom` by its equations.
-  std::vector<double> fitted = {};
+  /// By set, the freedoms that its rows fit, its own unknowns' among them; negative, or empty: its
+  /// share of `global_freedom` by its equations. And the most that they did so far, by which a set
+  /// has too few left for a noise of its own: it must not come and go.
+  std::vector<double> fitted = {}, most_fitted = {};
   /// By set, the part of its fitted freedoms that its lengths carry, where it has angles, too;
   /// empty: that of their scalars.
   std::vector<double> of_lengths = {};
