@@ -132,6 +132,8 @@ struct DiagnosisConstants {
     double steps_again = 0.5;
     double settles =
         0.1;  ///< of the session: steps so near each other are one; 0.02 to 0.2 [habit]
+    /// Of the gap, that a cause as probable closes more and so leads; 0.05 to 0.3 [habit]
+    double plainly_larger = 0.15;
     double as_probable = 0.05;   ///< of probability: causes so near are alike; 0.01 to 0.1 [habit]
     double worth_telling = 0.1;  ///< probability from which look-alikes are; 0 to 0.5 [habit]
     /// Of the squares beyond noise, that what is found may leave: the larger part leads; 0.2 to 0.8

@@ -272,7 +272,7 @@ void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& n
     return each.effect == verdict.effect && each.where == verdict.where;
   };
   const auto share = [](const CauseResult& each) {
-    return each.closes_alone.value_or(0) + each.closes_beside.value_or(0);
+    return (each.closes_alone.value_or(0) + each.closes_beside.value_or(0)) / 2;
   };
   const auto leading = std::ranges::find_if(named, is_verdict);
   if (leading == named.end()) return;
@@ -281,7 +281,7 @@ void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& n
     if (each->of_its_kind() > leading->of_its_kind() - kDiagnosis.naming.as_probable &&
         share(*each) > share(*largest))
       largest = each;
-  if (largest == leading) return;
+  if (share(*largest) < share(*leading) + kDiagnosis.naming.plainly_larger) return;
   verdict = *largest;
   std::rotate(named.begin(), largest, largest + 1);
 }

@@ -74,7 +74,7 @@ void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict
                           std::vector<CauseResult>& named);
 
 /// Of named causes as probable as the verdict's the one leads that closes the largest part of the
-/// gap: on average, alone and beside the others.
+/// gap, where it is plainly larger: on average, alone and beside the others.
 void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& named);
 
 /// The verdict becomes `unknown`, of this probability at least; the others give way in proportion.

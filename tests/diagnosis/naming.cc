@@ -245,13 +245,13 @@ TEST(DoubtRepeatedSteps, TakesStepsNearEachOtherForOneThatSettles) {
 }
 
 TEST(LetTheLargerShareLead, IsOfCausesThatAreAsProbable) {
-  const auto leads = [](double probability) {
+  const auto leads = [](double probability, double beside = 0.6) {
     std::vector<CauseResult> named = {
         {.effect = "joint_compliance", .probability = 0.9, .closes_alone = 0.7, .closes_beside = 0},
         {.effect = "backlash",
          .probability = probability,
          .closes_alone = 0.6,
-         .closes_beside = 0.3}};
+         .closes_beside = beside}};
     CauseResult verdict = named.front();
     let_the_larger_share_lead(verdict, named);
     EXPECT_EQ(named.front().effect, verdict.effect);
@@ -260,6 +260,7 @@ TEST(LetTheLargerShareLead, IsOfCausesThatAreAsProbable) {
   };
   EXPECT_EQ(leads(0.89), "backlash");
   EXPECT_EQ(leads(0.8), "joint_compliance");
+  EXPECT_EQ(leads(0.89, 0.3), "joint_compliance") << "hardly more of the gap";
 }
 
 TEST(DoubtRepeatedSteps, AddsToAnUnknownThatLeadsAlready) {
