@@ -98,7 +98,7 @@ double effective_freedoms(const std::vector<VariancePart>& parts) {
   double sum = 0, uncertain = 0;
   for (const VariancePart& part : parts) {
     sum += part.variance;
-    uncertain += part.variance * part.variance / std::max(part.freedoms, 1.0);
+    uncertain += part.variance * part.variance / (part.freedoms > 1 ? part.freedoms : 1);
   }
   return uncertain > 0 ? sum * sum / uncertain : HUGE_VAL;
 }

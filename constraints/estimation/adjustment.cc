@@ -69,7 +69,9 @@ class Adjustment {
   const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
 
   double tolerance(const Parameter& p) const {
-    return options_.gear_sigma > 0 && p.part == Part::gear ? options_.gear_sigma : p.tolerance;
+    return options_.gear_sigma > 0 && p.part == Part::gear
+               ? options_.gear_sigma * std::abs(p.nominal)
+               : p.tolerance;
   }
 
   void choose_free() {

@@ -120,11 +120,17 @@ bool is_to_look_at(const Judged& judged, size_t check_row) {
          (judged.foreseen.empty() || judged.foreseen[check_row] == 0);
 }
 
-/// Rows kept aside that are no more than what they place themselves are met exactly by any robot,
-/// and judge nothing.
+/// Rows kept aside that are no more than what they place themselves, repeats of a configuration
+/// counted once, are met exactly by any robot, and judge nothing.
 void leave_out_met_exactly(const DataSet& data, const Equations& align, Judged& judged) {
   const auto met_exactly = [&](int set) {
-    const auto equations = align.plan(set).items.size() * data.sets[set].method->equations().size();
+    std::set<int> repeats;
+    std::size_t configurations = 0;
+    for (const SetPlan::Item& item : align.plan(set).items) {
+      const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[item.row];
+      configurations += repeat < 0 || repeats.insert(repeat).second;
+    }
+    const auto equations = configurations * data.sets[set].method->equations().size();
     return equations > 0 &&
            static_cast<int>(equations) <= align.tangent_dimension(set) + align.group_freedoms(set);
   };

@@ -211,12 +211,14 @@ Uncertainty uncertainty(const Equations& equations, const Adjusted& adjusted,
   const Noise& noise = adjusted.fitted.noise;
   const Eigen::Index n = equations.robot_columns();
   Uncertainty result;
-  std::vector<VariancePart> parts;
+  std::map<double, double> variance;  // by the freedoms: one estimate told all that has the same
   for (const CovarianceSource& source : sources) {
     const double sigma_of_it = endpoint_rms(deviations.weight, source.C.topLeftCorner(n, n));
     result.budget.push_back({std::string(source.name), sigma_of_it});
-    parts.push_back({std::pow(sigma_of_it, 2), source.freedoms});
+    variance[source.freedoms > 1 ? source.freedoms : 1] += std::pow(sigma_of_it, 2);
   }
+  std::vector<VariancePart> parts;
+  for (const auto& [freedoms, each] : variance) parts.push_back({each, freedoms});
   result.freedoms = effective_freedoms(parts);
   result.k = student_quantile((1 + kCoverage) / 2, std::max(result.freedoms, 1.0));
   result.expanded = result.k * sigma.rms;

@@ -27,6 +27,7 @@ constexpr double kLeastGross = 2e-3;  // of the robot's size, or rad: less is no
 constexpr double kLeastZero = 0.02;   // unit of readings: less is found by calibration
 constexpr double kOfRows = 0.8;       // of the equations as given, that a slip must meet
 constexpr double kPlainly = 0.99;  // of what a slip leaves, another one leaves that is told instead
+constexpr int kFewestLookedAt = 30;  // of a set, at least, where many are
 constexpr int kMostLookedAt = 2000;  // of a set: more tell no more of a slip
 
 /// What the maker's tolerances leave at the end (m, or rad where `lengths` is false). What legs
@@ -47,14 +48,13 @@ double expected_misfit(const Robot& robot, bool lengths) {
 
 /// The data set without most rows of a large set: every so manieth one, or where rows belong to
 /// groups, and each may be measured from the one before, the first ones.
-DataSet part_of(const DataSet& data) {
+DataSet part_of(const DataSet& data, int most) {
   std::vector<int> count(data.sets.size(), 0), seen = count, kept;
   for (const int set : data.rows.set) ++count[set];
   for (int row = 0; row < data.rows.rows(); ++row) {
     const int set = data.rows.set[row], place = seen[set]++;
-    const int stride = (count[set] + kMostLookedAt - 1) / kMostLookedAt;
-    if (data.rows.group[row] >= 0 ? place < kMostLookedAt : place % stride == 0)
-      kept.push_back(row);
+    const int stride = (count[set] + most - 1) / most;
+    if (data.rows.group[row] >= 0 ? place < most : place % stride == 0) kept.push_back(row);
   }
   return {data.sets,   taken(data.rows, kept), data.speeds, data.order_is_time,
           data.target, data.workspace};
@@ -98,21 +98,28 @@ std::optional<TriedSlip> two_planes_as_one(const Robot& robot, const DataSet& da
 
 /// What is told of sets whose angles do not fit: the way to read those that instruments measured
 /// by which all do best, of all sets or of one. By what they spread, too: angles that are made
-/// small fit as much better.
-std::string of_angles(const Robot& robot, const DataSet& data, const Misfit& given) {
-  std::string found = given.angles.front();
+/// small fit as much better. Of few rows: a fit of rows that are wrong takes its time.
+std::string of_angles(const Robot& robot, const DataSet& whole, std::string otherwise) {
+  const auto sets = static_cast<int>(whole.sets.size());
+  const DataSet data = part_of(whole, std::max(kFewestLookedAt, kMostLookedAt / sets));
+  const Misfit given = misfit(robot, data, {});
   double best = kSlipCollapse * given.angle / spread_of_angles(data, data.rows) / kPlainly;
-  for (int set = -1; set < static_cast<int>(data.sets.size()); ++set)
-    for (const Slip& slip : slips_of_angles(data, set)) {
+  const auto look_at = [&](int set) {
+    const std::vector<Slip> slips = slips_of_angles(data, set);
+    for (const Slip& slip : slips) {
       DataSet changed = data;
       changed.rows = *slip.rows;
       const Misfit left = misfit(robot, changed, {});
       const double share = left.angle / spread_of_angles(data, changed.rows);
       if (!left.any || !left.angles.empty() || !(share < kPlainly * best)) continue;
       best = share;
-      found = slip.what;
+      otherwise = slip.what;
     }
-  return found;
+    return !slips.empty();
+  };
+  if (!look_at(-1)) return otherwise;
+  for (int set = 0; set < sets; ++set) look_at(set);
+  return otherwise;
 }
 
 /// How far half the measured positions are from their middle (m); infinite where none is measured.
@@ -194,7 +201,7 @@ double gross_misfit(const Robot& robot, bool lengths) {
 FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& whole,
                      const std::vector<Slip>& others) {
   FirstLook look;
-  const DataSet data = part_of(whole);
+  const DataSet data = part_of(whole, kMostLookedAt);
   const Misfit given = misfit(*robot, data, {});
   if (!given.any) return where_no_row_has_a_place(*robot, data, others);
   look.lengths = given.lengths;
@@ -204,14 +211,16 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.tool_moved = given.tool_moved;
   look.expected = expected_misfit(*robot, given.lengths);
   look.tool_held = misfit(*robot, data, {.tool = false}).left;
-  look.angles = !given.angles.empty();
-  if (look.angles) look.found = of_angles(*robot, data, given);
+  if (!given.angles.empty()) look.found = of_angles(*robot, data, given.angles.front());
+  const std::string angles = look.found;
+  look.angles = !angles.empty();
   double of_set = 0;
   if (const auto planes = two_planes_as_one(*robot, data, given, of_set)) {
     look.left = of_set;
     look.tried = {*planes};
     look.explained = true;
     look.found = planes->what;
+    look.angles = false;
     return look;
   }
   const double least =
@@ -221,7 +230,6 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
   look.tried = tried(*robot, data, others, kOfRows * given.equations);
   const double best = look.tried.empty() ? look.left : look.tried.front().left;
   look.explained = look.left > least && best < kSlipCollapse * look.left;
-  look.angles = look.angles && !look.explained;
   const std::string silent = silent_joints(*robot, data.rows);
   look.tool = !look.explained && silent.empty() && look.left < kSlipCollapse * look.tool_held &&
               look.tool_held > gross && look.tool_moved > tool_tolerance(*robot);
@@ -239,6 +247,7 @@ FirstLook first_look(const std::shared_ptr<const Robot>& robot, const DataSet& w
     look.found =
         "none of the usual slips explains the rows: they are of another robot, or a file "
         "is wrong elsewhere";
+  look.angles = look.angles && look.found == angles;
   return look;
 }
 

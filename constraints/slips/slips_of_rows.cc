@@ -156,7 +156,13 @@ std::vector<Slip> slips_of_rows(const Robot& robot, const DataSet& data) {
 }
 
 std::vector<Slip> slips_of_angles(const DataSet& data, int set) {
-  const std::set<std::string> names = measured(data, Quantity::angle);
+  std::set<std::string> names = measured(data, Quantity::angle);
+  if (set >= 0)
+    std::erase_if(names, [&](const std::string& name) {
+      return std::ranges::none_of(
+          data.sets[static_cast<std::size_t>(set)].method->measures(),
+          [&](const MeasuredColumn& column) { return column.name == name; });
+    });
   const std::string of = set < 0 ? "" : " of set " + data.sets[static_cast<std::size_t>(set)].name;
   std::vector<Slip> list;
   const auto add = [&](std::string what, auto change) {

@@ -16,16 +16,17 @@
 namespace selfcal {
 namespace {
 
-/// The gear whose ratio is off by the most sigmas; none where no more than a few are, or farther
-/// than any file's is.
+/// The gear whose ratio is off by the most sigmas, no farther than any file's is; none where that
+/// is no more than a few.
 const ParameterResult* farthest_off(const Solution& calibrated) {
   const ParameterResult* farthest = nullptr;
   double most = kDiagnosis.report.gear_sigmas;
   for (const ParameterResult& each : calibrated.parameters) {
     if (each.parameter.part != Part::gear || !(each.sigma > 0)) continue;
     const double off = std::abs(each.value - each.parameter.nominal), sigmas = off / each.sigma;
-    if (off > kDiagnosis.report.gear_sigmas * kDiagnosis.report.wrong_ratio) return nullptr;
-    if (sigmas <= most) continue;
+    if (sigmas <= most || off > kDiagnosis.report.gear_sigmas * kDiagnosis.report.wrong_ratio *
+                                    std::abs(each.parameter.nominal))
+      continue;
     most = sigmas;
     farthest = &each;
   }
@@ -63,10 +64,16 @@ std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet
   Options options = free_effects(*robot);
   options.gears = true;
   options.gear_sigma = kDiagnosis.report.wrong_ratio;
+  const Solution with_any = identify(*robot, data, options);
+  const ParameterResult* suspect = farthest_off(with_any);
+  if (suspect == nullptr) return {};
+  options.gears = false;
+  options.free.push_back(suspect->parameter.name);
   const Solution calibrated = identify(*robot, data, options);
-  const double left = calibrated.residual.fit.rms_after;
-  const double with_all = left_with(linearised, data, diagnosis.found);
   const ParameterResult* gear = farthest_off(calibrated);
+  const Figures& fit = calibrated.residual.fit;
+  const double left = fit.rms_after, with_all = left_with(linearised, data, diagnosis.found);
+  const char* unit = fit.angle_alone ? "rad" : "m";
   if (gear == nullptr ||
       kDiagnosis.report.better_than_moved * std::pow(left, 2) > std::pow(with_all, 2))
     return {};
@@ -74,8 +81,8 @@ std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet
          with_figures("%.2g", 100 * (gear->value / gear->parameter.nominal - 1)) +
          " % off what the robot's file says (" + gear->parameter.name + " = " +
          with_figures("%.5g", gear->value) + "), calibration leaves " +
-         in_readable_unit(left, "m") + ", as little as with what would be named (" +
-         in_readable_unit(with_all, "m") + ")";
+         in_readable_unit(left, unit) + ", as little as with what would be named (" +
+         in_readable_unit(with_all, unit) + ")";
 }
 
 std::shared_ptr<const Robot> with_effects(const LinearisedModel& linearised,

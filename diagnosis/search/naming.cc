@@ -231,8 +231,12 @@ std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at) {
     if (found.what.at == at && found.what.shape.moment) moments.push_back(*found.what.shape.moment);
   std::ranges::sort(moments);
   std::ptrdiff_t steps = 0;
-  for (std::size_t i = 0; i < moments.size(); ++i)
-    steps += i == 0 || moments[i] - moments[i - 1] > cause.settles;
+  double first = -HUGE_VAL;  // of the step that settles
+  for (const double moment : moments) {
+    if (moment - first <= cause.settles) continue;
+    ++steps;
+    first = moment;
+  }
   return steps;
 }
 

@@ -96,11 +96,13 @@ class Weighing {
     const std::vector<Candidate>& list = linearised_.candidates().list;
     const Candidate* plainest = nullptr;
     double most = kDiagnosis.shapes.plain;
-    for (int c = 0; c < static_cast<int>(list.size()); ++c)
-      if (list[static_cast<std::size_t>(c)].shape.moment && evaluator_->evidence(c) > most) {
-        most = evaluator_->evidence(c);
-        plainest = &list[static_cast<std::size_t>(c)];
-      }
+    for (int c = 0; c < static_cast<int>(list.size()); ++c) {
+      const Candidate& each = list[static_cast<std::size_t>(c)];
+      const double evidence = each.shape.moment ? evaluator_->evidence(c) : 0;
+      if (evidence <= most) continue;
+      most = evidence;
+      plainest = &each;
+    }
     return plainest;
   }
 

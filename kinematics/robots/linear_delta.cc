@@ -235,7 +235,10 @@ Eigen::VectorXd LinearDelta::draw(const Eigen::MatrixX2d& span,
                                   const std::function<double()>& uniform) const {
   constexpr int kTries = 200;
   const Eigen::VectorXd xi = model_.nominal;
-  const double most = working_radius(xi);
+  double most = working_radius(xi);
+  for (int t = 0; t < kTowers; ++t)
+    if (const double swing = model_.swing[static_cast<std::size_t>(t)]; swing > 0)
+      most = std::min(most, xi[index(t, kRod)] * std::sin(swing));
   Eigen::Vector3d best = span.rowwise().mean();
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const double r = most * std::sqrt(uniform()), a = 2 * std::numbers::pi * uniform(),

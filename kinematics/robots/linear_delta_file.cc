@@ -59,7 +59,7 @@ void read_tower(const Node& node, int t, Problems& problems, Delta& model) {
   if (fields.has("swing")) {
     double& swing = model.swing[static_cast<size_t>(t)] = fields.angle("swing", 0);
     if (!(swing > 0 && swing < kWidestSwing))
-      fields.fail("swing", "an angle in radians, above 0 and at most a right one");
+      fields.fail("swing", "an angle in radians, above 0 and below a right one");
   }
   read_beside(fields, tower_names(t), problems, model);
   fields.refuse_unknown();

@@ -39,9 +39,18 @@ TEST(SmallSets, JudgeNothingWhereAnyRobotMeetsThem) {
       "  b: {method: plane, rows: 3, noise: 2.0e-5}\n"
       "  ball: {method: sphere, rows: 4, noise: 2.0e-5}\n");
   keep_aside(data, {40, 0, 0, 0});
-  const Solution solution = identify(rx90(), data);
-  EXPECT_EQ(solution.verdict.answer, Answer::improved) << solution.verdict.why;
-  EXPECT_EQ(solution.residual.check.rows, 10) << "the tracker's";
+  for (const bool repeated : {false, true}) {
+    if (repeated) {  // the planes' touches, three times each
+      std::vector<int> rows;
+      for (int row = 0; row < data.rows.rows(); ++row)
+        rows.insert(rows.end(), data.rows.set[row] == 0 ? 1 : 3, row);
+      data.rows = taken(data.rows, rows);
+      data.rows.repeat = rows;
+    }
+    const Solution solution = identify(rx90(), data);
+    EXPECT_EQ(solution.verdict.answer, Answer::improved) << solution.verdict.why;
+    EXPECT_EQ(solution.residual.check.rows, 10) << "the tracker's";
+  }
 }
 
 TEST(SmallSets, OfTwoPointsDoNotPlaceAFrame) {

@@ -240,6 +240,9 @@ TEST(DoubtRepeatedSteps, TakesStepsNearEachOtherForOneThatSettles) {
   CauseResult cause = stepping("zero_shift", {"j4", "j4"});  // at 100 and 200 s
   cause.settles = 100;
   EXPECT_EQ(Doubted({cause, kRarelyUnknown}).verdict.effect, "zero_shift");
+  CauseResult wandering = stepping("zero_shift", {"j4", "j4", "j4"});
+  wandering.settles = 100;
+  EXPECT_EQ(Doubted({wandering, kRarelyUnknown}).verdict.effect, kUnknown) << "one after another";
   cause.settles = 99;
   EXPECT_EQ(Doubted({cause, kRarelyUnknown}).verdict.effect, kUnknown);
 }

@@ -60,7 +60,7 @@ Solution left_of(double noise, double freedoms) {
   solution.sets[0].name = "table";
   solution.sets[0].used = 100;
   solution.sets[0].noise_sigma = noise;
-  solution.uncertainty.freedoms = freedoms;
+  solution.uncertainty.lack_of_fit.freedoms = freedoms;
   return solution;
 }
 

@@ -238,7 +238,7 @@ function uncertainty_of(data) {
   const work = endpoint.workspace;
   parts.push(tiles([
     [known(work.rms) ? mm(work.rms) + " mm" : null, "end position in the workspace, 1 sigma"],
-    [u ? "± " + mm(u.expanded) + " mm" : null, u ? "95 % (k = " + figure(u.k95) + ", " + figure(u.freedoms) + " freedoms)" : ""],
+    [u ? "± " + mm(u.expanded) + " mm" : null, u ? "95 % (k = " + figure(u.k95) + (known(u.freedoms) ? ", " + figure(u.freedoms) + " freedoms)" : ")") : ""],
     [mm(data.data.target) + " mm", "wanted, 1 sigma"],
     [known(work.angle_rms) ? mm(work.angle_rms) + " mrad" : null, "how it is turned, 1 sigma"],
     [known(endpoint.rms) ? mm(endpoint.rms) + " mm" : null, "over the whole range of the joints, 1 sigma"],

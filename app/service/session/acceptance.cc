@@ -132,7 +132,8 @@ FitDecision decide_on_fit(const Solution& solution, const std::vector<Set>& sets
       rows += each.used;
       ratio += each.used * std::pow(each.noise_sigma / set->noise, 2);
     }
-    const double freedoms = solution.uncertainty.freedoms;
+    const LackOfFit& of_rows = solution.uncertainty.lack_of_fit;
+    const double freedoms = of_rows.freedoms + of_rows.repeat_freedoms;
     if (rows == 0 || freedoms < kFewestFreedoms) {
       decided.why = "nothing says how large the noise is";
       return decided;
