@@ -104,8 +104,8 @@ TEST(StatedNoise, IsToldWhereItIsNotThatOfTheRows) {
               Contains(HasSubstr("times what its rows scatter by: is `noise` in metres")));
   EXPECT_THAT(told_with(2e-6), Contains(HasSubstr("times as much as its data sheet says")));
   EXPECT_THAT(told_with(1.1e-5),
-              Contains(AllOf(HasSubstr("2.1 times as much as its data sheet says"),
-                             HasSubstr("the robot strays by 0.02 mm in each direction"))));
+              Contains(AllOf(HasSubstr("scatter 2 times as much as its data sheet says"),
+                             HasSubstr("the robot strays by 0.019 mm in each direction"))));
   EXPECT_TRUE(found_with(2e-6).sets[0].unexplained);
   EXPECT_FALSE(found_with(2e-5).sets[0].unexplained);
 }
