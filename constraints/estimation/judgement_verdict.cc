@@ -76,6 +76,7 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
   Verdict v;
   if (residual.check.rows == 0) {
     v.why = "no check rows to judge by";
+    for (const std::string& each : grounds.contradictions) v.why += "; " + each;
     return v;
   }
   const CheckComparison compared = compare_check_rows(check_rows(before), residual.check_rows);
