@@ -123,24 +123,25 @@ bool is_to_look_at(const Judged& judged, size_t check_row) {
 /// Rows kept aside that are no more than what they place themselves, repeats of a configuration
 /// counted once, are met exactly by any robot, and judge nothing.
 void leave_out_met_exactly(const DataSet& data, const Equations& align, Judged& judged) {
+  const std::vector<int> configuration = configurations(data.rows);
   const auto met_exactly = [&](int set) {
-    std::set<int> repeats;
-    std::size_t configurations = 0;
-    for (const SetPlan::Item& item : align.plan(set).items) {
-      const int repeat = data.rows.repeat.empty() ? -1 : data.rows.repeat[item.row];
-      configurations += repeat < 0 || repeats.insert(repeat).second;
-    }
-    const auto equations = configurations * data.sets[set].method->equations().size();
+    std::set<int> distinct;
+    for (const SetPlan::Item& item : align.plan(set).items)
+      distinct.insert(configuration[item.row]);
+    const auto equations = distinct.size() * data.sets[set].method->equations().size();
     return equations > 0 &&
            static_cast<int>(equations) <= align.tangent_dimension(set) + align.group_freedoms(set);
   };
+  std::vector<char> left_out(data.sets.size(), 0);
+  for (int set = 0; set < static_cast<int>(data.sets.size()); ++set)
+    left_out[set] = judged.aligned[set] && met_exactly(set);
   const int every = shown_every(data);
   std::vector<RowResidual> check;
   std::vector<RowPlace> places;
   std::size_t shown = 0;
   for (const RowResidual& row : judged.check) {
     const bool shows = row.row % every == 0;
-    if (!judged.aligned[row.set] || !met_exactly(row.set)) {
+    if (!left_out[row.set]) {
       check.push_back(row);
       if (shows) places.push_back(judged.check_places[shown]);
     }
