@@ -232,6 +232,12 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
   for (size_t s = 0; s < data.sets.size(); ++s) {
     SetResult& set = solution.sets[s];
     const Scale& stated = equations.stated(static_cast<int>(s));
+    const bool judges =
+        std::ranges::count(solution.residual.check_by_set, set.name, &SetFigures::name) > 0;
+    if (set.aligned && !judges)
+      solution.warnings.push_back("set " + set.name +
+                                  ": its rows kept aside are no more than what places it: they "
+                                  "judge nothing; measure more of it");
     if (!set.identifies) continue;
     if (fit.noise.at_bound[s])
       solution.warnings.push_back("set " + set.name +
@@ -271,7 +277,7 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
       solution.warnings.push_back(std::move(often));
     if (std::string lone = lone_groups(data, static_cast<int>(s)); !lone.empty())
       solution.warnings.push_back(std::move(lone));
-    if (!placed)
+    if (!placed && judges)
       solution.warnings.push_back(
           "set " + set.name + ": its rows to identify are too few to place it; those kept aside " +
           "judge the robot alone, where they place it best");
