@@ -16,9 +16,9 @@ namespace selfcal {
 
 /// What speaks against the rows or files, in words; empty where nothing does. In turn: an
 /// instrument that was moved between two rows (found by an identification of its own); a given
-/// length that contradicts the maker's, or a gear ratio of the robot's file that is off, which would
-/// be taken for a cause far beyond its usual size (given_wrongly.h); a named cause far
-/// beyond what any machine has, or a spring of the wrong sign; what is left beyond what the maker's
+/// length that contradicts the maker's, or a gear ratio of the robot's file that is off, which
+/// would be taken for a cause far beyond its usual size (given_wrongly.h); a named cause far beyond
+/// what any machine has, or a spring of the wrong sign; what is left beyond what the maker's
 /// tolerances explain; a noise of the files far beyond what calibration leaves; a named cause that
 /// closes nothing; rows kept aside that are left far beyond noise where nothing is found; forces
 /// without which what gives way under them fits better; where nothing is named, or what is named
