@@ -227,7 +227,7 @@ class Iteration {
         noise.outlier == noise_.outlier || (keep && regroupings_ == kRegroupings);
     const bool same_noise = before != NoiseStage::robust && (keep || change(noise) < 1e-3);
     if (arrived && same_rows && same_noise) {
-      if (put_masked_outlier_aside()) return;
+      if (put_masked_outliers_aside()) return;
       return stop(true, *arrived);
     }
     if (keep && same_rows) return;
@@ -240,13 +240,17 @@ class Iteration {
     system_.weigh(weighting());
   }
 
-  /// The noise is found anew without it; it comes back where that finds it among the others.
-  bool put_masked_outlier_aside() {
+  /// The noise is found anew without them; those come back that it finds among the others.
+  bool put_masked_outliers_aside() {
     if (!rule_.unmask) return false;
-    const std::optional<int> row = masked_outlier(equations_, system_.state(), noise_, prior_);
-    if (!row || unmasked_.contains(*row)) return false;
-    unmasked_.insert(*row);
-    noise_.outlier[static_cast<std::size_t>(*row)] = 1;
+    std::vector<int> rows =
+        masked_outliers(equations_, system_.state(), noise_, prior_, rule_.most_outliers);
+    std::erase_if(rows, [&](int row) { return unmasked_.contains(row); });
+    if (rows.empty()) return false;
+    for (const int row : rows) {
+      unmasked_.insert(row);
+      noise_.outlier[static_cast<std::size_t>(row)] = 1;
+    }
     stage_ = NoiseStage::pooled;
     system_.weigh(weighting());
     return true;

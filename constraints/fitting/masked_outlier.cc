@@ -17,6 +17,8 @@ constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the
 constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
 constexpr std::size_t kMostTried = 20;            ///< those whose absence makes most difference
 constexpr double kNothingLeft = 1e-13;            ///< of a column, left where others explain it
+constexpr double kMet = 1e-12;  ///< of an equation's freedom, left where its row fits itself
+constexpr double kSheet = 4;    ///< freedoms that a data sheet's noise is worth
 
 /// What a row's absence does to the least squares.
 struct Deletion {
@@ -24,6 +26,11 @@ struct Deletion {
   std::vector<Eigen::Index> equations;
   Eigen::MatrixXd part;  ///< I - H of its equations
   double drop = 0;       ///< of the sum of squares
+};
+
+/// A row's drop over what the others say that it should be, and that a good row's is as large.
+struct Standing {
+  double ratio = 0, chance = 1;
 };
 
 /// Whether the least squares can be held whole.
@@ -80,7 +87,7 @@ std::vector<OwnPart> own_parts(const Eigen::MatrixXd& W, const std::vector<int>&
   return parts;
 }
 
-/// Least squares of all equations and priors, from which every row can be taken away. With Q_p the
+/// Least squares of all equations and priors, from which rows can be taken away. With Q_p the
 /// orthogonal columns of each own part, and Q those of the robot's columns beyond all parts,
 ///   H = Q Q^T + sum Q_p Q_p^T,
 /// so that a hundred surfaces cost no more than one of as many touches.
@@ -128,10 +135,11 @@ class LeastSquares {
     }
     left_ = (A.col(n) - Q * (Q.transpose() * A.col(n))).head(rows);
     Q_ = Q.topRows(rows).transpose();
-    leverage_ = Q_.colwise().squaredNorm().transpose();
-    for (Eigen::Index i = 0; i < rows; ++i) leverage_[i] += own_product(i, i);
+    freedom_.resize(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) freedom_[i] = product(i, i);
   }
 
+  /// Of the rows that are not taken away.
   std::vector<Deletion> deletions() const {
     std::vector<std::vector<Eigen::Index>> of_row(equations_.data().rows.set.size());
     for (Eigen::Index i = 0; i < left_.size(); ++i)
@@ -142,13 +150,10 @@ class LeastSquares {
       std::vector<Eigen::Index>& own = of_row[static_cast<std::size_t>(row)];
       if (own.empty()) continue;
       const auto count = static_cast<Eigen::Index>(own.size());
-      Eigen::MatrixXd part = Eigen::MatrixXd::Identity(count, count);
-      for (Eigen::Index a = 0; a < count; ++a)
-        for (Eigen::Index b = 0; b < count; ++b)
-          part(a, b) -=
-              Q_.col(own[static_cast<std::size_t>(a)])
-                  .dot(Q_.col(own[static_cast<std::size_t>(b)])) +
-              own_product(own[static_cast<std::size_t>(a)], own[static_cast<std::size_t>(b)]);
+      Eigen::MatrixXd part(count, count);
+      for (Eigen::Index b = 0; b < count; ++b)
+        for (Eigen::Index a = 0; a < count; ++a)
+          part(a, b) = product(own[static_cast<std::size_t>(a)], own[static_cast<std::size_t>(b)]);
       Deletion each{row, equations_.data().rows.set[static_cast<std::size_t>(row)], std::move(own),
                     std::move(part), 0};
       const Eigen::VectorXd left = left_(each.equations);
@@ -158,11 +163,10 @@ class LeastSquares {
     return list;
   }
 
-  /// That a good row's absence lowers the sum of squares as much. The noise is told by what is left
-  /// without the row in its set, or in all of its kind where that is more, and is no less than
-  /// stated.
-  double chance(const Deletion& of) const {
-    const Eigen::VectorXd left = left_without(of);
+  /// The noise is told by what is left without the row in its set, or in all of its kind where that
+  /// is more, and is no less than stated.
+  Standing standing(const Deletion& of) const {
+    const Eigen::VectorXd left = left_ + columns(of) * least_squares(-of.part, left_(of.equations));
     const auto sets = equations_.data().sets.size();
     std::vector<char> of_kind(sets);
     for (std::size_t s = 0; s < sets; ++s) of_kind[s] = is_of_kind(static_cast<int>(s), of.set);
@@ -171,20 +175,37 @@ class LeastSquares {
     for (Eigen::Index i = 0; i < left_.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const int set = set_[at];
-      if (set < 0 || row_[at] == of.row || !of_kind[static_cast<std::size_t>(set)]) continue;
+      if (set < 0 || row_[at] == of.row || row_[at] < 0 || !of_kind[static_cast<std::size_t>(set)])
+        continue;
       const double square =
           std::pow(left[i] * (noise_of(set).of(quantity_[at]) / used.of(quantity_[at])), 2);
-      kind.add(square, 1 - leverage_[i]);
-      if (set == of.set) own.add(square, 1 - leverage_[i]);
+      kind.add(square, freedom_[i]);
+      if (set == of.set) own.add(square, freedom_[i]);
     }
-    if (!(own.freedom > 0)) return 1;
+    if (!(own.freedom > 0)) return {};
     const Scale& stated = equations_.stated(of.set);
-    const double least =
-        std::max({stated.length / used.length, stated.angle / used.angle, kLeastOfNoise});
-    const Sum& told = kind.variance() > own.variance() ? kind : own;
-    const double variance = std::max(told.variance(), least * least);
+    const double sheet = std::max(stated.length / used.length, stated.angle / used.angle);
+    Sum told = kind.variance() > own.variance() ? kind : own;
+    if (sheet > 0) told.add(kSheet * sheet * sheet, kSheet);
+    const double variance = std::max(told.variance(), std::pow(std::max(sheet, kLeastOfNoise), 2));
     const auto count = static_cast<double>(of.equations.size());
-    return f_exceeds(of.drop / count / variance, count, told.freedom);
+    const double ratio = of.drop / count / variance;
+    return {ratio, f_exceeds(ratio, count, told.freedom)};
+  }
+
+  /// Without the row from now on.
+  void take_away(const Deletion& of) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(of.part);
+    const Eigen::VectorXd part = eigen.eigenvalues();
+    const Eigen::VectorXd left = eigen.eigenvectors().transpose() * left_(of.equations);
+    const Eigen::MatrixXd of_part = columns(of) * eigen.eigenvectors();
+    for (Eigen::Index k = 0; k < part.size(); ++k) {
+      if (part[k] < kMet) continue;
+      taken_.emplace_back(of_part.col(k) / std::sqrt(part[k]));
+      left_ -= taken_.back() * (left[k] / std::sqrt(part[k]));
+      freedom_ -= taken_.back().cwiseAbs2();
+    }
+    for (const Eigen::Index i : of.equations) row_[static_cast<std::size_t>(i)] = -1;
   }
 
  private:
@@ -236,19 +257,25 @@ class LeastSquares {
     return part_[i] < 0 || part_[i] != part_[j] ? 0 : Q_own_[i].dot(Q_own_[j]);
   }
 
-  /// The residuals without the row.
-  Eigen::VectorXd left_without(const Deletion& of) const {
-    const Eigen::VectorXd off = least_squares(of.part, left_(of.equations));
-    const Eigen::VectorXd pull = Q_(Eigen::all, of.equations) * off;
-    Eigen::VectorXd left = left_ + Q_.transpose() * pull;
-    for (std::size_t k = 0; k < of.equations.size(); ++k) {
-      const Eigen::Index one = of.equations[k];
-      const int part = part_[static_cast<std::size_t>(one)];
-      if (part < 0) continue;
-      for (const Eigen::Index i : parts_[static_cast<std::size_t>(part)])
-        left[i] += own_product(i, one) * off[static_cast<Eigen::Index>(k)];
+  /// Of I - H, those rows taken away that are.
+  double product(Eigen::Index a, Eigen::Index b) const {
+    double sum = (a == b ? 1 : 0) - Q_.col(a).dot(Q_.col(b)) - own_product(a, b);
+    for (const Eigen::VectorXd& each : taken_) sum -= each[a] * each[b];
+    return sum;
+  }
+
+  /// The same, of the row's equations.
+  Eigen::MatrixXd columns(const Deletion& of) const {
+    Eigen::MatrixXd list = -Q_.transpose() * Q_(Eigen::all, of.equations);
+    for (Eigen::Index k = 0; k < list.cols(); ++k) {
+      const Eigen::Index one = of.equations[static_cast<std::size_t>(k)];
+      list(one, k) += 1;
+      if (const int part = part_[static_cast<std::size_t>(one)]; part >= 0)
+        for (const Eigen::Index i : parts_[static_cast<std::size_t>(part)])
+          list(i, k) -= own_product(i, one);
+      for (const Eigen::VectorXd& each : taken_) list.col(k) -= each * each[one];
     }
-    return left;
+    return list;
   }
 
   bool is_of_kind(int a, int b) const {
@@ -266,28 +293,56 @@ class LeastSquares {
   std::vector<Eigen::VectorXd> Q_own_;            ///< the same of its own part
   std::vector<int> part_;                         ///< by equation; -1 without own unknowns
   std::vector<std::vector<Eigen::Index>> parts_;  ///< equations of each
-  Eigen::VectorXd left_, leverage_;               ///< residuals, diagonal of H
+  Eigen::VectorXd left_, freedom_;                ///< residuals, diagonal of I - H
+  std::vector<Eigen::VectorXd> taken_;            ///< what the rows taken away take from I - H
   std::vector<int> row_, set_;                    ///< of the data set, by equation
   std::vector<Quantity> quantity_;                ///< by equation
 };
 
+/// Those that `noise` finds.
+std::vector<int> standing_out(const Equations& equations, const State& state, const Noise& noise,
+                              const Prior& prior, double share) {
+  LeastSquares all(equations, state, noise, prior);
+  std::vector<Deletion> deletions = all.deletions();
+  const double expected = share * static_cast<double>(deletions.size());
+  const auto most = static_cast<std::size_t>(expected + 2 * std::sqrt(expected));
+  std::vector<int> rows;
+  std::size_t certain = 0;
+  while (rows.size() < most && !deletions.empty()) {
+    std::ranges::sort(deletions, std::greater(), &Deletion::drop);
+    if (deletions.size() > kMostTried) deletions.resize(kMostTried);
+    std::vector<Standing> standing;
+    for (const Deletion& each : deletions) standing.push_back(all.standing(each));
+    const auto first = std::ranges::max_element(standing, {}, &Standing::ratio);
+    const Deletion& row = deletions[static_cast<std::size_t>(first - standing.begin())];
+    rows.push_back(row.row);
+    if (first->chance < kMaskedByChance) certain = rows.size();
+    all.take_away(row);
+    deletions = all.deletions();
+  }
+  rows.resize(certain);
+  return rows;
+}
+
+/// As its data sheets state it, where they do.
+Noise as_stated(const Equations& equations, Noise noise) {
+  for (std::size_t s = 0; s < noise.used.size(); ++s) {
+    const Scale& stated = equations.stated(static_cast<int>(s));
+    if (stated.length > 0) noise.used[s].length = stated.length;
+    if (stated.angle > 0) noise.used[s].angle = stated.angle;
+  }
+  return noise;
+}
+
 }  // namespace
 
-std::optional<int> masked_outlier(const Equations& equations, const State& state,
-                                  const Noise& noise, const Prior& prior) {
-  if (free_columns(equations, prior).empty() || !are_few(equations, state)) return std::nullopt;
-  const LeastSquares all(equations, state, noise, prior);
-  std::vector<Deletion> deletions = all.deletions();
-  std::ranges::sort(deletions, std::greater(), &Deletion::drop);
-  if (deletions.size() > kMostTried) deletions.resize(kMostTried);
-  std::optional<int> row;
-  double least = kMaskedByChance;
-  for (const Deletion& each : deletions)
-    if (const double chance = all.chance(each); chance < least) {
-      least = chance;
-      row = each.row;
-    }
-  return row;
+std::vector<int> masked_outliers(const Equations& equations, const State& state, const Noise& noise,
+                                 const Prior& prior, double share) {
+  if (free_columns(equations, prior).empty() || !are_few(equations, state)) return {};
+  std::vector<int> rows = standing_out(equations, state, noise, prior, share);
+  // Where false rows make the noise, the tolerances bar the way to a robot that meets the others.
+  return rows.empty() ? standing_out(equations, state, as_stated(equations, noise), prior, share)
+                      : rows;
 }
 
 }  // namespace selfcal
