@@ -93,7 +93,13 @@ struct DiagnosisConstants {
     double fewest_times = 8;  ///< below which none is looked for; 4 to 20 [habit]
     int most_waves = 64;      ///< a turn; 10 to 200 [physics]
     int profile = 30;         ///< waves a turn, of a profile; 10 to most_waves [cost]
-    double warms = 0.2;       ///< K; 0.05 to 2 [physics]
+    /// Waves a turn that rows may hint at: twice a generator's turn in gears of up to 175 to 1;
+    /// how likely each is beside the others, and by chance in one joint; so many of a joint; 200 to
+    /// 500, 0.01 to 0.2, 0.001 to 0.1, 1 to 6 [physics]
+    int most_fine_waves = 350;
+    double fine_share = 0.05, fine_by_chance = 0.01;
+    std::size_t most_hinted = 4;
+    double warms = 0.2;  ///< K; 0.05 to 2 [physics]
     /// Doubt of masses that are usual ones, over their torques; 0.25 to 1 [physics]
     double assumed = 0.6;
     /// Probability that what drifts with the rows' order drifts with time, where they carry none

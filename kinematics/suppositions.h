@@ -21,7 +21,10 @@ struct Supposed {
   bool normals = false;  ///< rows carry the touched surface's normal
   int most_waves = 0;    ///< a turn that are asked for one by one
   int profile = 0;       ///< waves a turn of a whole profile
-  double assumed = 0;    ///< doubt of masses that are usual ones, over what they exert
+  /// By joint, more of them that the rows hint at, and how likely each is beside the others.
+  std::vector<std::vector<double>> hinted_waves = {};
+  double hinted_share = 1;
+  double assumed = 0;  ///< doubt of masses that are usual ones, over what they exert
   /// Moments at which a step may have happened, of the rows of a set (-1: of all).
   std::function<std::vector<double>(int set)> moments = {};
   /// A set has rows enough to show a form.

@@ -24,8 +24,8 @@ bool spreads(const Eigen::VectorXd& column, double least) {
 class Maker {
  public:
   Maker(const Robot& robot, const DataSet& data, const MeasurementContext& context,
-        const std::vector<ShapedEffect>& likely)
-      : robot_(robot), data_(data), context_(context), likely_(likely) {}
+        const Hints& hints)
+      : robot_(robot), data_(data), context_(context), hints_(hints) {}
 
   Candidates run() {
     for (size_t j = 0; j < robot_.joints().size(); ++j)
@@ -48,6 +48,8 @@ class Maker {
         .normals = data_.rows.normal.rows() > 0,
         .most_waves = rules.most_waves,
         .profile = rules.profile,
+        .hinted_waves = hints_.fine_waves,
+        .hinted_share = rules.fine_share,
         .assumed = rules.assumed,
         .moments = [this](int set) { return moments(set); },
         .shows = [this](int set) { return rows_of(set) >= kDiagnosis.shapes.fewest_rows; }};
@@ -131,10 +133,11 @@ class Maker {
 
   /// A likely step at the moments between those next to its own, each the less probable.
   void add_finer(Supposition step, const EffectPlace& place) {
-    const auto found = std::ranges::find_if(likely_, [&](const ShapedEffect& each) {
+    const auto found = std::ranges::find_if(hints_.steps, [&](const ShapedEffect& each) {
       return each.effect == step.effect && each.at == step.at && each.shape == step.shape;
     });
-    if (found == likely_.end() || all_.list.empty() || all_.list.back().shape != step.shape) return;
+    if (found == hints_.steps.end() || all_.list.empty() || all_.list.back().shape != step.shape)
+      return;
     const double own = *step.shape.moment;
     const std::vector<double> coarse = moments(place.set), t = times(place.set);
     const auto at = std::ranges::find(coarse, own);
@@ -225,7 +228,7 @@ class Maker {
   const Robot& robot_;
   const DataSet& data_;
   const MeasurementContext& context_;
-  const std::vector<ShapedEffect>& likely_;
+  const Hints& hints_;
   Candidates all_;
   int parameters_ = 0;
 };
@@ -239,8 +242,8 @@ Candidates with_profiles(Candidates all) {
 }
 
 Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context,
-                      const std::vector<ShapedEffect>& likely) {
-  return Maker(robot, data, context, likely).run();
+                      const Hints& hints) {
+  return Maker(robot, data, context, hints).run();
 }
 
 }  // namespace selfcal

@@ -52,9 +52,14 @@ struct Candidates {
 /// The same with the profiles at the end of the list.
 Candidates with_profiles(Candidates all);
 
-/// Every candidate whose measurement context the rows carry. Steps are tried at few moments; those
-/// `likely` are there, at as many more up to the moments next to theirs.
+/// What rows hint at, that is not tried else.
+struct Hints {
+  std::vector<ShapedEffect> steps = {};  ///< at as many more moments up to those next to theirs
+  std::vector<std::vector<double>> fine_waves = {};  ///< a turn, by joint (fine_waves.h)
+};
+
+/// Every candidate whose measurement context the rows carry. Steps are tried at few moments.
 Candidates candidates(const Robot& robot, const DataSet& data, const MeasurementContext& context,
-                      const std::vector<ShapedEffect>& likely = {});
+                      const Hints& hints = {});
 
 }  // namespace selfcal

@@ -6,6 +6,7 @@
 
 #include "constraints/measurement_context.h"
 #include "diagnosis/constants.h"
+#include "diagnosis/evidence/fine_waves.h"
 #include "diagnosis/evidence/rows.h"
 #include "diagnosis/evidence/usual_masses.h"
 #include "diagnosis/options.h"
@@ -76,16 +77,45 @@ void LinearisedModel::linearise() {
 }
 
 bool LinearisedModel::try_moments_near(const std::vector<ShapedEffect>& steps) {
-  const size_t before = likely_steps_.size();
+  std::vector<ShapedEffect>& tried = hints_.steps;
+  const size_t before = tried.size();
   for (const ShapedEffect& step : steps)
-    if (std::ranges::none_of(likely_steps_, [&](const ShapedEffect& each) {
+    if (std::ranges::none_of(tried, [&](const ShapedEffect& each) {
           return each.effect == step.effect && each.at == step.at;
         }))
-      likely_steps_.push_back(step);
-  if (likely_steps_.size() == before) return false;
-  candidates_ = selfcal::candidates(*geometry_, data_, context_, likely_steps_);
-  linearise();
+      tried.push_back(step);
+  if (tried.size() == before) return false;
+  try_hints();
   return true;
+}
+
+bool LinearisedModel::try_fine_waves() {
+  const std::vector<int> equations = equations_of(all_, taking_part());
+  const Eigen::MatrixXd by_joint = reading_errors().by_joint;
+  const Eigen::VectorXd left = left_(equations);
+  bool found = false;
+  hints_.fine_waves.resize(geometry_->joints().size());
+  for (size_t j = 0; j < hints_.fine_waves.size(); ++j) {
+    if (geometry_->joints()[j].quantity != Quantity::angle) continue;
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(left.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      if (const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
+          row >= 0)
+        q[i] = data_.rows.q(row, static_cast<Eigen::Index>(j));
+    for (const double k : fine_waves(q, by_joint.col(static_cast<Eigen::Index>(j)), left)) {
+      std::vector<double>& known = hints_.fine_waves[j];
+      if (std::ranges::find(known, k) != known.end()) continue;
+      known.push_back(k);
+      found = true;
+    }
+  }
+  if (found) try_hints();
+  return found;
+}
+
+void LinearisedModel::try_hints() {
+  candidates_ = selfcal::candidates(*geometry_, data_, context_, hints_);
+  linearise();
 }
 
 Eigen::VectorXd LinearisedModel::scales(const std::vector<int>& equations) const {

@@ -96,6 +96,8 @@ class LinearisedModel {
   /// Tries `steps` that are likely at as many more moments near their own. True where any of them
   /// was not tried so before.
   bool try_moments_near(const std::vector<ShapedEffect>& steps);
+  /// Tries the fine waves that what the best explanation leaves hints at; the same.
+  bool try_fine_waves();
 
   /// How many equations take part (a data set with more is thinned out).
   void weigh(double most);
@@ -103,6 +105,8 @@ class LinearisedModel {
  private:
   /// The equations with every candidate's columns.
   void linearise();
+  /// Candidates and their columns anew.
+  void try_hints();
   /// By row: weighed and that are no outliers.
   std::vector<char> taking_part() const;
   /// What an error of each joint's reading moves each equation of kept() (equations x joints,
@@ -123,7 +127,7 @@ class LinearisedModel {
   double most_outliers_;
   std::shared_ptr<const Robot> given_, geometry_, everything_;
   MeasurementContext context_;
-  std::vector<ShapedEffect> likely_steps_;
+  Hints hints_;
   Candidates candidates_;
   std::vector<EffectParameter> parameters_;
   std::unique_ptr<Equations> equations_, all_equations_;

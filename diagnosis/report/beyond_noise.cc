@@ -15,7 +15,8 @@
 namespace selfcal {
 namespace {
 
-/// Rows kept aside that are not false readings, some all over of many: by check row.
+/// Rows kept aside that are no false readings, of the end's position or of its angles, some all
+/// over of many: by check row.
 struct Asked {
   std::vector<char> rows;
   bool all = false;  ///< more than a few would be false: something else is, and none is left out
@@ -25,7 +26,7 @@ Asked asked_of(const Judged& judged, const std::vector<Outlier>& outliers, Eigen
   for (const Outlier& each : outliers)
     if (each.check) false_row[static_cast<size_t>(each.row - 1)] = 1;
   const auto is_false = [&](const RowResidual& row) {
-    return false_row[static_cast<size_t>(row.row)] != 0;
+    return false_row[static_cast<size_t>(row.row)] != 0 || is_outlier(row, judged);
   };
   const auto count = static_cast<double>(judged.check.size());
   Asked asked{std::vector<char>(judged.check.size(), 0),

@@ -20,6 +20,7 @@ class Weighing {
       : linearised_(linearised), data_(data), options_(options), progress_(progress) {}
 
   Weighed run() {
+    linearised_.try_fine_waves();
     offer_back();
     for (int pass = 0; pass < kDiagnosis.rows.passes; ++pass) {
       if (progress_) progress_("weighing the causes", 0.2 + 0.2 * pass);
@@ -34,7 +35,8 @@ class Weighing {
       const std::vector<ShapedEffect> steps = likely_steps();
       const bool finer = linearised_.try_moments_near(steps);
       if (finer) linearised_.take_back(wronged_by(steps, aside));
-      if (!finer && !refined) break;
+      const bool waves = linearised_.try_fine_waves();
+      if (!finer && !waves && !refined) break;
     }
     return {std::move(evaluator_), std::move(posterior_), {}};
   }

@@ -2,6 +2,7 @@
 //   delta q = sum over waves k of sinK sin(k q) + cosK cos(k q)
 // with k waves a turn (`waves`: 1 is eccentricity, 2 ovality or a flexspline, others meshing).
 // q: the joint's reading (rad; of a prismatic joint 2 pi q / m). sinK, cosK: rad (m).
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -66,6 +67,12 @@ void suppose_transmission_error(const Supposed& rows, const EffectPlace& place, 
   const bool turns = rows.robot.joints()[place.joint].quantity == Quantity::angle;
   for (const double k : turns ? std::span<const double>(kGenerators) : kScrews)
     if (k > rows.most_waves) to.add(place.name, {.waves = {k}});
+  if (place.joint < static_cast<int>(rows.hinted_waves.size()))
+    for (const double k : rows.hinted_waves[static_cast<std::size_t>(place.joint)])
+      if (!turns || std::ranges::find(kGenerators, k) == std::end(kGenerators)) {
+        to.add(place.name, {.waves = {k}});
+        to.last().share = rows.hinted_share;
+      }
   to.add(place.name);
   to.last().together = 2;
   to.add(place.name);

@@ -47,7 +47,7 @@ void expect_likely_moments(int rows, double likely, const std::vector<double>& n
   const Session session(rows);
   const Candidates all =
       candidates(*session.robot, session.data, session.context,
-                 {{.effect = "zero_shift", .at = "j1", .shape = {.moment = likely}}});
+                 {.steps = {{.effect = "zero_shift", .at = "j1", .shape = {.moment = likely}}}});
   std::vector<double> more;
   double sum = 0;
   const std::vector<Candidate> before = session.candidates().list;

@@ -91,6 +91,7 @@ TEST(Doubt, DoesNotCallNoiseWhatRowsKeptAsideAreFarBeyond) {
 }
 
 TEST(Doubt, LeavesOutAFewRowsKeptAsideThatAreFalseAndNoMore) {
+  EXPECT_EQ(doubt_of_rows_kept_aside(3, 1000 * kTrackerNoise), "");
   EXPECT_EQ(doubt_of_rows_kept_aside(3, 1000 * kTrackerNoise, 3), "");
   EXPECT_THAT(doubt_of_rows_kept_aside(20, 1000 * kTrackerNoise, 20),
               HasSubstr("times what noise"));
