@@ -12,6 +12,7 @@
 #include "diagnosis/report/beyond_noise.h"
 #include "diagnosis/report/given_wrongly.h"
 #include "diagnosis/report/named.h"
+#include "diagnosis/report/recalibration.h"
 #include "diagnosis/report/scatter.h"
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/search/naming.h"

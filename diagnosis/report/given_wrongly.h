@@ -1,10 +1,8 @@
 // Figures of the files that are wrong, where a cause far beyond its usual size makes up for them.
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "constraints/estimation/options.h"
 #include "constraints/solution.h"
 #include "diagnosis/evidence/linearised_model.h"
 #include "diagnosis/findings.h"
@@ -19,15 +17,5 @@ std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& cal
 /// than causes do that are far beyond their usual sizes. In words; empty where it does not.
 std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet& data,
                                 const Diagnosis& diagnosis);
-
-/// The model's robot with what was found, at no size yet.
-std::shared_ptr<const Robot> with_effects(const LinearisedModel& linearised,
-                                          const Correction& found);
-
-/// An identification of all that a robot's effects have.
-Options free_effects(const Robot& robot);
-
-/// What calibration with all that was found leaves of the rows (m, rms).
-double left_with(const LinearisedModel& linearised, const DataSet& data, const Correction& found);
 
 }  // namespace selfcal
