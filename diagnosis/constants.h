@@ -222,8 +222,13 @@ struct DiagnosisConstants {
   struct Uneven {
     int fewest = 30;             ///< configurations that may show it; 20 to 60 [habit]
     double least_freedom = 0.2;  ///< of a configuration; 0.1 to 0.5 [habit]
-    double by_chance = 1e-3;   ///< how often noise that is even shows as much; 1e-5 to 0.01 [habit]
-    double times = 1.3;        ///< as much at one end as at the other; 1.1 to 2 [habit]
+    double by_chance = 1e-3;  ///< how often noise that is even shows as much; 1e-5 to 0.01 [habit]
+    double times = 1.3;       ///< as much at one end as at the other; 1.1 to 2 [habit]
+    /// Rows of the file, of which one may be unlike the others, and so many that may show it; what
+    /// one that is put aside counts for, as a square over the noise; 4 to 32, 3 to 10, 9 to 100
+    /// [habit]
+    int most_every = 12, fewest_of_every = 5;
+    double put_aside = 25;
     double probability = 0.8;  ///< of `unknown` then; 0.6 to 0.95 [trials]
   };
   /// Of two sessions, and of a machine with its simulator.

@@ -18,6 +18,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kStep = 1e-3;  ///< s, of a derivative along the velocity
+constexpr const char* kOtherEnd = "as at the other end";
 
 /// What a configuration's rows leave, in units of its set's.
 struct Loudness {
@@ -42,11 +43,12 @@ Eigen::VectorXd ranks(const Eigen::VectorXd& values) {
   return rank / std::max(rank.norm() / std::sqrt(static_cast<double>(rank.size())), 1e-12);
 }
 
-Loudness loudness(const LinearisedModel& linearised, const DataSet& data) {
+/// Those of one number by row are one, such as configurations.
+Loudness loudness(const LinearisedModel& linearised, const DataSet& data,
+                  const std::vector<int>& number) {
   const DenseEquations rows = linearised.kept();
   const Eigen::VectorXd left = linearised.left();
   const Eigen::VectorXd leaves = linearised.geometry_leaves(linearised.whitened_geometry());
-  const std::vector<int> configuration = configurations(data.rows);
   struct Sum {
     int row = -1;
     double squares = 0, freedom = 0;
@@ -57,7 +59,7 @@ Loudness loudness(const LinearisedModel& linearised, const DataSet& data) {
     const int row = rows.row[i];
     if (row < 0) continue;
     const auto at = static_cast<Eigen::Index>(i);
-    Sum& sum = sums[configuration[static_cast<std::size_t>(row)]];
+    Sum& sum = sums[number[static_cast<std::size_t>(row)]];
     if (sum.row < 0) sum.row = row;
     for (Sum* each : {&sum, &of_set[data.rows.set[static_cast<std::size_t>(row)]]}) {
       each->squares += left[at] * left[at];
@@ -114,6 +116,42 @@ double times_as_much(const Eigen::VectorXd& squares, const Thirds& of) {
   return std::sqrt(squares(of.most).sum() / std::max(squares(of.least).sum(), 1e-12));
 }
 
+/// One row in every so many of the file, that scatters more than all others or is put aside as
+/// false more often.
+UnevenNoise one_in_every(const LinearisedModel& linearised, const DataSet& data) {
+  std::vector<int> number(static_cast<std::size_t>(data.rows.rows()));
+  std::iota(number.begin(), number.end(), 0);
+  Loudness all = loudness(linearised, data, number);
+  for (std::size_t row = 0; row < number.size(); ++row)
+    if (linearised.outlier()[row]) all.row.push_back(static_cast<int>(row));
+  const Eigen::Index kept = all.squares.size();
+  all.squares.conservativeResize(static_cast<Eigen::Index>(all.row.size()));
+  all.squares.tail(all.squares.size() - kept).setConstant(kDiagnosis.uneven.put_aside);
+  UnevenNoise most;
+  int asked = 0;
+  for (int every = 2; every <= kDiagnosis.uneven.most_every; ++every)
+    for (int first = 0; first < every; ++first) {
+      Eigen::VectorXd is(all.squares.size());
+      for (Eigen::Index i = 0; i < is.size(); ++i)
+        is[i] = all.row[static_cast<std::size_t>(i)] % every == first ? 1 : 0;
+      if (is.sum() < kDiagnosis.uneven.fewest_of_every) continue;
+      ++asked;
+      const double p = probability_of_even(all.squares, is);
+      if (p >= most.p) continue;
+      most.p = p;
+      most.times = std::sqrt(is.dot(all.squares) / is.sum() /
+                             std::max(all.squares.dot((1 - is.array()).matrix()) /
+                                          (static_cast<double>(is.size()) - is.sum()),
+                                      1e-12));
+      most.where = "in one of every " + std::to_string(every) + " rows (" +
+                   std::to_string(first + 1) + ", " + std::to_string(first + 1 + every) + ", " +
+                   std::to_string(first + 1 + 2 * every) + ", …)";
+    }
+  most.than = "as in all others";
+  most.p = std::min(1.0, most.p * asked);
+  return most;
+}
+
 }  // namespace
 
 double probability_of_even(const Eigen::VectorXd& squares, const Eigen::MatrixXd& along) {
@@ -130,12 +168,13 @@ double probability_of_even(const Eigen::VectorXd& squares, const Eigen::MatrixXd
 }
 
 std::optional<UnevenNoise> uneven_noise(const LinearisedModel& linearised, const DataSet& data) {
-  const Loudness all = loudness(linearised, data);
+  const Loudness all = loudness(linearised, data, configurations(data.rows));
   if (all.squares.size() < kDiagnosis.uneven.fewest) return std::nullopt;
   std::vector<UnevenNoise> asked;
   const Eigen::VectorXd speeds = tool_speeds(linearised, data, all.row);
   if (speeds.allFinite())
-    asked.push_back({"where the tool moves fast", times_as_much(all.squares, thirds(speeds)),
+    asked.push_back({"where the tool moves fast", kOtherEnd,
+                     times_as_much(all.squares, thirds(speeds)),
                      probability_of_even(all.squares, speeds)});
   const Eigen::MatrixXd places = linearised.tips()(all.row, Eigen::all);
   Eigen::MatrixXd X(places.rows(), 4);
@@ -143,7 +182,9 @@ std::optional<UnevenNoise> uneven_noise(const LinearisedModel& linearised, const
   const Thirds that_way = thirds(X * least_squares(X, ranks(all.squares)));
   const Eigen::Vector3d middle = places(that_way.most, Eigen::all).colwise().mean();
   asked.push_back({with_figures("about (%.2g, %.2g, %.2g) m", middle.x(), middle.y(), middle.z()),
-                   times_as_much(all.squares, that_way), probability_of_even(all.squares, places)});
+                   kOtherEnd, times_as_much(all.squares, that_way),
+                   probability_of_even(all.squares, places)});
+  asked.push_back(one_in_every(linearised, data));
   UnevenNoise& most = *std::ranges::min_element(asked, {}, &UnevenNoise::p);
   most.p = std::min(1.0, most.p * static_cast<double>(asked.size()));
   if (most.p > kDiagnosis.uneven.by_chance || most.times < kDiagnosis.uneven.times)
@@ -153,8 +194,8 @@ std::optional<UnevenNoise> uneven_noise(const LinearisedModel& linearised, const
 
 std::string uneven_in_words(const UnevenNoise& uneven) {
   return "the rows scatter " + with_figures("%.2g", uneven.times) + " times as much " +
-         uneven.where +
-         with_figures(" as at the other end (even noise does so in %.2g of cases)",
+         uneven.where + " " + uneven.than +
+         with_figures(" (even noise does so in %.2g of cases)",
                       std::max(uneven.p, kDiagnosis.naming.least_p));
 }
 

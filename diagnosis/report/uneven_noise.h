@@ -1,6 +1,7 @@
 // Rows that scatter the more, the faster the tool moves, or the nearer it is to one end of the
-// cell. No structure shows that, for their errors have nothing in common but their size: time
-// stamps that jitter, a beam that bends, a part that shakes.
+// cell, or that are one in every so many of the file. No structure shows that, for their errors
+// have nothing in common but their size: time stamps that jitter, a beam that bends, a part that
+// shakes, a counter of several that is read wrongly.
 #pragma once
 
 #include <Eigen/Dense>
@@ -14,6 +15,7 @@ namespace selfcal {
 
 struct UnevenNoise {
   std::string where;  ///< "where the tool moves fast" and the like
+  std::string than;   ///< "at the other end", "all others"
   double times = 1;   ///< rms of the third of the configurations there, over that of the other end
   double p = 1;       ///< that noise which is even shows as much, of all that was asked
 };

@@ -63,7 +63,7 @@ class CsvReader {
   CsvReader& operator=(const CsvReader&) = delete;
   ~CsvReader() { csv_free(&parser_); }
 
-  Result<void> read() {
+  Result<bool> read() {
     Result<InputFile> file = InputFile::open(path_);
     if (!file) return tl::unexpected(file.error());
     std::array<char, kBlock> block;
@@ -82,7 +82,7 @@ class CsvReader {
     if (!begun_) begin("", true);
     if (!fault_ && !pieces.whole()) complain({"the file ends inside a character"});
     if (!fault_) finish();
-    if (!fault_) return {};
+    if (!fault_) return terminator_ >= 0;
     return bad_input(path_.string() + ": " + *fault_);
   }
 
@@ -206,7 +206,7 @@ class CsvReader {
 
 }  // namespace
 
-Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
+Result<bool> read_csv(const std::filesystem::path& path, const TakeHeader& header,
                       const TakeRow& row, int header_line) {
   return CsvReader(path, header, row, header_line).read();
 }

@@ -36,11 +36,11 @@ using TakeHeader =
 /// Takes a row, numbered from 1, with as many cells as the header. A fault ends the reading.
 using TakeRow = std::function<std::optional<RowFault>(Cells cells, int row)>;
 
-/// Calls `header` once and `row` for each row. The names of the columns stand in line
-/// `header_line`, from 1; what is above it is passed over. The file is read once, from its
-/// beginning on. Fails with "FILE: row 17: column x: ..." on the first fault, on a row of another
-/// length, on an unfinished quotation and on an empty or repeated name.
-Result<void> read_csv(const std::filesystem::path& path, const TakeHeader& header,
+/// Calls `header` once and `row` for each row; true where the last of them has its line's end. The
+/// names of the columns stand in line `header_line`, from 1; what is above it is passed over. The
+/// file is read once, from its beginning on. Fails with "FILE: row 17: column x: ..." on the first
+/// fault, on a row of another length, on an unfinished quotation and on an empty or repeated name.
+Result<bool> read_csv(const std::filesystem::path& path, const TakeHeader& header,
                       const TakeRow& row, int header_line = 1);
 
 }  // namespace selfcal

@@ -43,6 +43,8 @@ Eigen::MatrixXd to_matrix(std::vector<double> values, std::size_t width) {
 
 constexpr double kOftenBack = 0.1;  // of the rows: sets that follow each other are fewer
 
+constexpr std::size_t kCut = 2;  // characters that a last cell lacks
+
 class RowReader {
  public:
   /// `configurations`: rows need no measurement.
@@ -85,6 +87,7 @@ class RowReader {
     if (!labels) return labels.error();
     if (auto fault = numbers_.read(cells, row)) return fault;
     if (auto fault = check_needs(cells, *labels)) return fault;
+    before_last_ = std::exchange(last_, cells.back().size());
     append(*labels);
     note_copy(cells, *labels);
     return std::nullopt;
@@ -96,6 +99,9 @@ class RowReader {
     return labels_.group_without_rows();
   }
 
+  /// The last row has its line's end.
+  void end(bool ended) { ended_ = ended; }
+
   std::vector<std::string> notices() const {
     std::vector<std::string> notices;
     if (!copies_.empty())
@@ -103,6 +109,10 @@ class RowReader {
                         (copies_.size() > 1 ? " rows say" : " row says") +
                         " what another says in every digit, first row " +
                         std::to_string(copies_.front() + 1) + ": each is counted once");
+    if (!ended_ && last_ + kCut <= before_last_)
+      notices.push_back(
+          "the last row has no line end, and its last cell is shorter than that above it: was the "
+          "file cut off there?");
     std::string ignored;
     for (const std::string& name : layout_.ignored()) {
       ignored += (ignored.empty() ? "" : ", ") + name;
@@ -218,7 +228,9 @@ class RowReader {
   std::vector<double> q_, position_, orientation_, turn_, normal_;
   std::vector<double> wrench_, velocity_, temperature_, time_, noise_factor_;
   std::vector<std::vector<double>> measured_;  // per column that a method brings along
-  std::size_t times_back_ = 0;                 // rows that were taken before the row above them
+  std::size_t last_ = 0, before_last_ = 0;     // characters of the last cells of the last two rows
+  bool ended_ = true;
+  std::size_t times_back_ = 0;  // rows that were taken before the row above them
   std::vector<int> set_, group_, repeat_;
   std::vector<char> check_;
   std::unordered_set<std::size_t> seen_;  // the rows' cells, hashed
@@ -226,13 +238,14 @@ class RowReader {
 };
 
 Result<void> read_rows(const std::filesystem::path& path, RowReader& reader, int header) {
-  Result<void> read = read_csv(
+  const Result<bool> read = read_csv(
       path,
       [&](Cells names, std::optional<char> separator) {
         return reader.take_header(names, separator);
       },
       [&](Cells cells, int row) { return reader.take_row(cells, row); }, header);
-  if (!read) return read;
+  if (!read) return tl::unexpected(read.error());
+  reader.end(*read);
   if (const auto fault = reader.fault()) return bad_input(path.string() + ": " + *fault);
   return {};
 }

@@ -208,7 +208,7 @@ Result<Node> read_dh_table(const std::filesystem::path& path, const std::string&
   const auto header = header_line(path);
   if (!header) return tl::unexpected(header.error());
   Table table;
-  const Result<void> read = read_csv(
+  const Result<bool> read = read_csv(
       path,
       [&](Cells cells, std::optional<char> separator) {
         return table.take_header(cells, separator.value_or(','));

@@ -85,5 +85,34 @@ TEST(UnevenNoise, ThatGrowsWithTheSpeedOfTheToolIsUnknownAndSaysSo) {
       << uneven.why;
 }
 
+/// A tracker sees a robot that is as its model; one reading of seven is off by `off` (rad), and the
+/// noise is a twentieth of a millimetre.
+Diagnosis with_every_seventh(double off) {
+  auto loaded = load_robot(SELFCAL_SOURCE_DIR "/app/examples/rx90.robot.yaml");
+  if (!loaded) std::abort();
+  const std::shared_ptr<const Robot> robot = *std::move(loaded);
+  Random random(12);
+  std::normal_distribution<double> normal;
+  const Node tracker = recovery::entry({{"method", "position"}});
+  DataSet data =
+      recovery::make_session(*robot, nominal_values(*robot), {{"tracker", tracker, 140}}, 0, random)
+          .data;
+  for (int row = 0; row < data.rows.rows(); ++row) {
+    for (int c = 0; c < 3; ++c) data.rows.position(row, c) += 50e-6 * normal(random);
+    if (row % 7 == 4) data.rows.q(row, 1) += off * (normal(random) > 0 ? 1 : -1);
+  }
+  return diagnose(robot, data, quick());
+}
+
+TEST(UnevenNoise, OfOneRowInEverySevenIsUnknownAndSaysSo) {
+  EXPECT_EQ(with_every_seventh(0).verdict.effect, kNone);
+  for (const double off : {1e-3, 5e-3}) {  // of the rows a few, or all, are put aside as false
+    const Diagnosis uneven = with_every_seventh(off);
+    EXPECT_EQ(uneven.verdict.effect, kUnknown) << uneven.why;
+    EXPECT_NE(uneven.why.find("in one of every 7 rows (5, 12, 19, …)"), std::string::npos)
+        << uneven.why;
+  }
+}
+
 }  // namespace
 }  // namespace selfcal

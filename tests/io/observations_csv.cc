@@ -223,6 +223,13 @@ TEST_F(ObservationsCsv, NotesReadingsALittleOutsideTheLimits) {
                           "in row 1"));
 }
 
+TEST_F(ObservationsCsv, NotesALastNumberThatSeemsCutOff) {
+  EXPECT_THAT(notices("set,q1,q2\ntable,0.25,0.3125\ntable,0.5,0.43"),
+              ElementsAre(HasSubstr("was the file cut off there?")));
+  EXPECT_THAT(notices("set,q1,q2\ntable,0.25,0.3125\ntable,0.5,0.43\n"), IsEmpty());
+  EXPECT_THAT(notices("set,q1,q2\ntable,0.25,0.3125\ntable,0.5,0.431"), IsEmpty());
+}
+
 TEST_F(ObservationsCsv, RefusesDegreesOfAJointWithoutLimits) {
   robot =
       "robot: arm\nkind: serial\nframes:\n  - {name: j1, joint: revolute, d: 0.3}\n"
