@@ -268,6 +268,8 @@ struct DiagnosisConstants {
     /// Of the usual largest: beyond it by two sigma is no machine. A tool or a fixture that is
     /// exchanged may be moved as far as one likes; 10 to 100 [physics]
     double impossible = 20;
+    /// The same of what is moved at will: it is no longer the same thing; 50 to 300 [physics]
+    double elsewhere = 100;
     /// Of the usual smallest compliance: stiffer by two sigma is no machine; 5 to 50 [physics]
     double too_stiff = 10;
     double other_sign = 3;  ///< sigmas beyond zero that no spring has; 2 to 5 [habit]

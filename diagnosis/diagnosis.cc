@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "constraints/estimation/identification.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/evidence_evaluator.h"
 #include "diagnosis/evidence/linearised_model.h"
@@ -59,7 +61,9 @@ class Diagnostician {
     if (!left_out_.empty()) result_.warnings.push_back(left_out_);
     trust_plain_steps(linearised_, data_, result_);
     result_.why = verdict_in_words(result_);
-    if (const std::string doubt = doubt_of(linearised_, data_, result_); !doubt.empty())
+    const Solution calibrated = identify(linearised_.geometry(), data_);
+    std::ranges::copy(calibrated.scale.contradictions, std::back_inserter(result_.warnings));
+    if (const std::string doubt = doubt_of(linearised_, data_, calibrated, result_); !doubt.empty())
       withdraw(doubt, options_, result_);
     return std::move(result_);
   }
@@ -80,6 +84,7 @@ class Diagnostician {
     result_.problem = std::move(weighed.problem);
     if (!result_.problem.empty()) return false;
     result_.noise = linearised_.noise() * shared_noise();
+    result_.angles_left = linearised_.angles_left();
     result_.candidates = cause_results(linearised_, *evaluator_, posterior_);
     name();
     return true;

@@ -129,7 +129,8 @@ struct Diagnosis {
   Correction found;                    ///< the effects of `model`, in its order
   std::shared_ptr<const Robot> model;  ///< geometry and everything found, and its values
   Eigen::VectorXd values;
-  double noise = 0;  ///< m, 1 sigma of one length; 0: none is measured
+  double noise = 0;        ///< m, 1 sigma of one length; 0: none is measured
+  double angles_left = 0;  ///< rad, of the best explanation, 1 sigma; 0: no angle is measured
   double floor_freedom = std::numeric_limits<double>::infinity();  ///< that it is known by
 };
 

@@ -91,9 +91,10 @@ constexpr double kTakenIn = 0.2;
 /// and names no cause of a gap that one slip in them explains or that calibration leaves gross.
 void look_at_files_first(const std::string& path, const Inputs& inputs,
                          const DiagnosisOptions& options, Diagnosis& diagnosis) {
-  const LikelyWrong wrong = likely_wrong(path, inputs.measured, inputs.robot,
-                                         {diagnosis.gap.rms_nominal, true, *diagnosis.model,
-                                          diagnosis.values, diagnosis.gap.rms_before});
+  const LikelyWrong wrong =
+      likely_wrong(path, inputs.measured, inputs.robot,
+                   {diagnosis.gap.rms_nominal, true, *diagnosis.model, diagnosis.values,
+                    diagnosis.gap.rms_before, diagnosis.angles_left});
   if (wrong.words.empty()) return;
   const bool taken_in =
       wrong.tool || diagnosis.gap.rms_before < kTakenIn * diagnosis.gap.rms_nominal;

@@ -129,6 +129,9 @@ int identify_command(const IdentifyArguments& arguments) {
   if (const std::string name = unknown_name(robot, options); !name.empty())
     return wrong_usage("no parameter of " + robot.name() + " is called '" + name +
                        "'; its names are like " + name_example(robot) + ", * stands for any text");
+  if (const auto both = std::ranges::find_first_of(options.fix, arguments.options.free);
+      both != options.fix.end())
+    return wrong_usage("'" + *both + "' is both fixed and freed");
   if (!arguments.out.empty())
     if (const auto made = make_folder(arguments.out); !made) return tell(made.error());
   Solution solution;

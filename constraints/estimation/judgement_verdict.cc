@@ -59,6 +59,20 @@ bool hardly_better(const std::vector<RowFigure>& rows) {
   return better < kFewestBetter * judging;
 }
 
+/// Of what the check rows were met by before: what is left where that is more than any robot
+/// strays.
+constexpr double kMostOfGross = 0.5;
+
+/// What no robot does is in the rows, and hardly less of it than before: which of them show how the
+/// robot is cannot be said.
+std::string gross_rows(const Figures& check, const Grounds& grounds) {
+  if (check.angle_alone || grounds.strays <= grounds.target || check.rms_after <= grounds.target ||
+      check.rms_after <= kMostOfGross * check.rms_before)
+    return {};
+  return "; most of what is left of the rows is not the robot's: find the set or the rows that are "
+         "wrong first";
+}
+
 /// What became of the check rows.
 std::string change(const Figures& check, double p_value) {
   std::string text = with_figures(
@@ -88,6 +102,9 @@ Verdict verdict(const Judged& before, const Residuals& residual, const Grounds& 
     for (const std::string& each : grounds.contradictions) v.why += "; " + each;
   } else if (known_to(grounds.workspace, grounds.target) && compared.too_few()) {
     v.why += "; no test of so few configurations kept aside can say that they are met better";
+  } else if (const std::string gross = gross_rows(residual.check, grounds);
+             known_to(grounds.workspace, grounds.target) && !gross.empty()) {
+    v.why += gross;
   } else if (known_to(grounds.workspace, grounds.target)) {
     const bool hardly = compared.better() && hardly_better(residual.rows);
     v.answer = compared.better() && !hardly ? Answer::improved : Answer::not_improved;

@@ -85,7 +85,7 @@ std::vector<double> variances(const Eigen::MatrixXd& shift, const Eigen::MatrixX
   std::vector<Eigen::Index> open;
   for (Eigen::Index i = 0; i < C.cols(); ++i)
     if (!C.col(i).isZero(0)) open.push_back(i);
-  if (open.empty()) return variance;
+  if (open.empty() || variance.empty()) return variance;
   const Symmetric eigen = symmetric_eigen(C(open, open));
   Eigen::MatrixXd L = Eigen::MatrixXd::Zero(C.rows(), eigen.values.size());
   L(open, Eigen::all) = eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();

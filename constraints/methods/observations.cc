@@ -98,6 +98,63 @@ Observations joined(const Observations& a, const Observations& b) {
   return all;
 }
 
+namespace {
+
+constexpr int kLongGap = 10;  ///< rows that lack their temperature one after the other
+
+/// "temperature is empty in 3 of 60 rows, first row 17".
+std::string emptiness(const char* column, const Eigen::VectorXd& values) {
+  Eigen::Index first = 0;
+  while (std::isfinite(values[first])) ++first;
+  return std::string(column) + " is empty in " +
+         std::to_string(values.size() - values.array().isFinite().count()) + " of " +
+         std::to_string(values.size()) + " rows, first row " + std::to_string(first + 1);
+}
+
+/// Values between the neighbours' of the rows that have one; false where these are far apart.
+bool interpolate(Eigen::VectorXd& values, const std::vector<int>& order) {
+  if (!values.array().isFinite().any()) return false;
+  std::ptrdiff_t known = -1;  // the place of the last that is
+  const auto count = std::ssize(order);
+  for (std::ptrdiff_t i = 0; i <= count; ++i) {
+    if (i < count && !std::isfinite(values[order[static_cast<size_t>(i)]])) continue;
+    if (i - known - 1 > kLongGap) return false;
+    for (std::ptrdiff_t k = known + 1; k < i; ++k) {
+      const double from = known < 0 ? values[order[static_cast<size_t>(i)]]
+                                    : values[order[static_cast<size_t>(known)]];
+      const double to = i == count ? from : values[order[static_cast<size_t>(i)]];
+      values[order[static_cast<size_t>(k)]] =
+          from + (to - from) * static_cast<double>(k - known) / static_cast<double>(i - known);
+    }
+    known = i;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> fill_gaps(Observations& rows) {
+  std::vector<std::string> done;
+  const auto fill = [&](const char* column, Eigen::VectorXd& values, const std::vector<int>& order,
+                        const char* otherwise) {
+    if (values.size() == 0 || values.allFinite()) return;
+    std::string words = emptiness(column, values);
+    if (interpolate(values, order)) {
+      words += ": it is taken from the rows before and after";
+    } else {
+      words += ", more than ten of them one after the other: ";
+      words += otherwise;
+      values = {};
+    }
+    done.push_back(std::move(words));
+  };
+  std::vector<int> order(static_cast<size_t>(rows.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  fill("time", rows.time, order, "the order of the rows is taken for it");
+  fill("temperature", rows.temperature, in_time(rows), "no temperature is used");
+  return done;
+}
+
 std::vector<int> in_time(const Observations& rows) {
   std::vector<int> order(static_cast<size_t>(rows.rows()));
   std::iota(order.begin(), order.end(), 0);

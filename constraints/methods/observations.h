@@ -60,6 +60,10 @@ Observations taken(const Observations& data, const std::vector<int>& rows);
 /// cells are NaN, -1 of a repeat, 1 of a noise factor; what both lack is lacking.
 Observations joined(const Observations& a, const Observations& b);
 
+/// Times, and temperatures, that few rows next to each other lack are those between their
+/// neighbours'; where more lack theirs the column is of no row. What was done, in words.
+std::vector<std::string> fill_gaps(Observations& rows);
+
 /// The rows, the first taken first: by their times where all have one, by their order otherwise.
 std::vector<int> in_time(const Observations& rows);
 

@@ -33,8 +33,14 @@ bool moves(std::string_view effect) {
 std::string impossible_size(const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named)
     if (const NamedValue* v = of_impossible_size(each))
-      return "no machine has " + v->name + " of " + in_readable_unit(v->value, v->unit) +
-             ", which is what the rows would need";
+      return each.effect == "fixture_shift"
+                 ? "no fixture moves by " + v->name + " of " + in_readable_unit(v->value, v->unit) +
+                       ": some touches of " + listed(each.where) +
+                       " are of another surface, or what its set says of it (parallel_to, "
+                       "distance, "
+                       "normal) is wrong"
+                 : "no machine has " + v->name + " of " + in_readable_unit(v->value, v->unit) +
+                       ", which is what the rows would need";
   return {};
 }
 
@@ -192,8 +198,7 @@ std::string closes_nothing(const Diagnosis& diagnosis) {
 }
 
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
-                     const Diagnosis& diagnosis) {
-  const Solution calibrated = identify(linearised.geometry(), data);
+                     const Solution& calibrated, const Diagnosis& diagnosis) {
   if (std::string why = moved_between_rows(linearised, data, diagnosis, calibrated); !why.empty())
     return why;
   if (std::string why = length_given_wrongly(diagnosis, calibrated); !why.empty()) return why;

@@ -23,8 +23,9 @@ namespace selfcal {
 /// closes nothing; rows kept aside that are left far beyond noise where nothing is found; forces
 /// without which what gives way under them fits better; where nothing is named, or what is named
 /// closes little, noise far beyond the data sheet's that no repeat confirms.
+/// `calibrated`: of the same rows.
 std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
-                     const Diagnosis& diagnosis);
+                     const Solution& calibrated, const Diagnosis& diagnosis);
 
 /// That what is named is worth nothing on rows that no choice has seen: it surely closes less than
 /// a share of what calibration leaves or, where these rows are too few to tell an interval, leaves

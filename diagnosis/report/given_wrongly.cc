@@ -35,13 +35,12 @@ const ParameterResult* farthest_off(const Solution& calibrated) {
 
 std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated) {
   const RobotScale& scale = calibrated.scale;
-  const auto moved_far = [](const CauseResult& each) {
-    return lasting_of(each.effect) == EffectLasting::moved_at_will &&
-           beyond_usual(each, kDiagnosis.report.impossible) != nullptr;
+  const auto too_large = [](const CauseResult& each) {
+    const bool at_will = lasting_of(each.effect) == EffectLasting::moved_at_will;
+    return beyond_usual(each, at_will ? kDiagnosis.report.impossible
+                                      : kDiagnosis.report.far_beyond) != nullptr;
   };
-  if (!scale.against_maker || scale.contradictions.empty() ||
-      std::ranges::none_of(diagnosis.named, moved_far))
-    return {};
+  if (scale.contradictions.empty() || std::ranges::none_of(diagnosis.named, too_large)) return {};
   return scale.contradictions.front();
 }
 

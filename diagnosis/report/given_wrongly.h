@@ -9,8 +9,9 @@
 
 namespace selfcal {
 
-/// Something moved farther than any machine errs may be so; a length given wrongly looks the same.
-/// `calibrated` is of the same rows. In words; empty where nothing speaks for it.
+/// Something moved farther than any machine errs may be so, and a cause far beyond its usual size;
+/// a length given wrongly looks the same. `calibrated` is of the same rows. In words; empty where
+/// nothing speaks for it.
 std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated);
 
 /// One joint's gear ratio far from what the robot's file says, by which calibration leaves no more

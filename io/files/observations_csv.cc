@@ -129,7 +129,8 @@ class RowReader {
     return notices;
   }
 
-  void hand_over() {
+  /// Says what was filled in.
+  std::vector<std::string> hand_over() {
     Observations& rows = data_.rows;
     rows.q = to_matrix(std::move(q_), layout_.q.size());
     rows.position = to_matrix(std::move(position_), 3);
@@ -140,7 +141,8 @@ class RowReader {
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
     rows.temperature = to_matrix(std::move(temperature_), 1);
     rows.time = to_matrix(std::move(time_), 1);
-    if (!layout_.time) {
+    std::vector<std::string> filled = fill_gaps(rows);
+    if (rows.time.size() == 0) {
       data_.order_is_time = true;
       const Eigen::Index count = rows.q.rows();
       rows.time = Eigen::VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
@@ -153,6 +155,7 @@ class RowReader {
     for (std::size_t i = 0; i < measured_.size(); ++i)
       rows.measured[layout_.columns[layout_.measured[i]].name] =
           to_matrix(std::move(measured_[i]), 1);
+    return filled;
   }
 
  private:
@@ -173,14 +176,15 @@ class RowReader {
     return std::nullopt;
   }
 
-  /// What another row says in every digit says nothing more: readings that encoders round alike
-  /// are rounded by the same, too. What is called a repeat may well be the same. A column that
-  /// nobody reads, a number of the row, tells none apart.
+  /// What another row of its method says in every digit says nothing more: readings that encoders
+  /// round alike are rounded by the same, too. What is called a repeat may well be the same. A
+  /// column that nobody reads, a number of the row, tells none apart.
   void note_copy(Cells cells, const Labels& labels) {
     if (data_.sets[labels.set].method->paired() || labels.repeat >= 0) return;
-    std::size_t hash = 0;
+    // Two sets of one method may be the same rows twice; of two methods they are read twice.
+    std::size_t hash = std::hash<std::string_view>()(data_.sets[labels.set].method->name());
     for (std::size_t i = 0; i < cells.size(); ++i)
-      if (i != layout_.part && layout_.columns[i].kind != CellKind::ignored)
+      if (i != layout_.part && i != layout_.set && layout_.columns[i].kind != CellKind::ignored)
         hash = (hash ^ std::hash<std::string_view>()(cells[i])) * 0x9E3779B97F4A7C15u;
     if (!seen_.insert(hash).second) {
       copies_.push_back(set_.size() - 1);
@@ -260,7 +264,8 @@ Result<void> read_observations(const std::filesystem::path& path, const Robot& r
   for (const std::string& notice : reader.notices()) {
     notices.push_back(path.string() + ": " + notice);
   }
-  reader.hand_over();
+  for (const std::string& filled : reader.hand_over())
+    notices.push_back(path.string() + ": " + filled);
   if (const auto repeats = label_repeats(robot, data))
     notices.push_back(path.string() + ": " + *repeats);
   return {};

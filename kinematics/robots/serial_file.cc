@@ -8,6 +8,7 @@ namespace selfcal::serial {
 namespace {
 
 constexpr double kMostGravity = 100;  // m/s^2
+constexpr std::size_t kMostFrames = 100;
 
 void read_coupling(Fields& fields, int joints, Model& model) {
   const Node* node = fields.node("coupling");
@@ -61,6 +62,10 @@ Model read(const Node& node, Problems& problems) {
   const Node* frames = fields.node("frames");
   if (!frames || frames->kind != Node::Kind::list || frames->items.empty()) {
     fields.fail("frames", "a list of frames from the world to the tool");
+    return model;
+  }
+  if (frames->items.size() > kMostFrames) {
+    fields.fail("frames", "at most " + std::to_string(kMostFrames) + " of them");
     return model;
   }
   for (const Node& item : frames->items)

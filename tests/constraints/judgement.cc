@@ -90,6 +90,16 @@ TEST(Verdict, SaysWhereTheRobotStraysMoreThanIsWanted) {
                                  "more than the 1 mm wanted"));
 }
 
+TEST(Verdict, IsNotDeterminedByRowsOfWhichMostIsNotTheRobots) {
+  Rows rows;
+  rows.nominal.check_scale[0].length = rows.calibrated.check_scale[0].length = 10e-3;
+  rows.add(0, 60, 15e-3, 14e-3);
+  EXPECT_EQ(rows.answer(), Answer::improved) << rows.judged().why;
+  rows.strays = 25e-3;
+  EXPECT_EQ(rows.answer(), Answer::not_determined);
+  EXPECT_THAT(rows.judged().why, testing::HasSubstr("find the set or the rows that are wrong"));
+}
+
 TEST(Verdict, IsImprovedWhereTheRowsAreMetBetter) {
   Rows rows;
   rows.add(0, 60, 100 * kMicrometre, 30 * kMicrometre);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "constraints/estimation/identification.h"
 #include "constraints/sampling/workspace_poses.h"
 #include "io/files/yaml.h"
 #include "tests/sim/simulated_robot.h"
@@ -41,6 +42,17 @@ TEST(Workspace, HasNoPosesWhereTheRobotDoesNotReach) {
   const Workspace far = read("{box: [[5, 5, 5], [6, 6, 6]]}");
   EXPECT_EQ(workspace_poses(rx90(), values(rx90()), far, {}, 20, 1).rows(), 0);
   EXPECT_EQ(workspace_poses(rx90(), values(rx90()), {}, Eigen::MatrixXd(0, 6), 20, 1).rows(), 0);
+}
+
+TEST(Workspace, ThatNoPoseIsInIsTold) {
+  Simulated simulated = made(
+      "robot: rx90.robot.yaml\nsets: {tracker: {method: position, rows: 60, noise: 2.0e-5}}\n");
+  simulated.data.workspace = read("{box: [[5, 5, 5], [6, 6, 6]]}");
+  const Solution solution = identify(rx90(), simulated.data);
+  EXPECT_NE(solution.verdict.answer, Answer::improved);
+  EXPECT_NE(solution.verdict.why.find("no configuration within the joint limits reaches"),
+            std::string::npos)
+      << solution.verdict.why;
 }
 
 TEST(Workspace, IsTheRegionThatTheRowsSpanByDefault) {

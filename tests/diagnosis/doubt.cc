@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "constraints/estimation/identification.h"
 #include "diagnosis/constants.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/linearised_model.h"
@@ -80,7 +81,7 @@ std::string doubt_of_rows_kept_aside(int moved, double by, int told = 0) {
   diagnosis.verdict.effect = kNone;
   diagnosis.noise = kTrackerNoise;
   diagnosis.outliers = outliers;
-  return doubt_of(linearised, rows.data, diagnosis);
+  return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
 }
 
 TEST(Doubt, DoesNotCallNoiseWhatRowsKeptAsideAreFarBeyond) {
@@ -107,9 +108,12 @@ TEST(Doubt, NamesNothingThatHardlyClosesWhatSoMuchNoiseLeaves) {
   diagnosis.named = {{.effect = "joint_compliance", .where = {"j2"}}};
   diagnosis.gap.rms_before = 1e-3;
   diagnosis.gap.rms_after = 0.9e-3;
-  EXPECT_THAT(doubt_of(linearised, rows.data, diagnosis), HasSubstr("state a noise of 0.02 mm"));
+  EXPECT_THAT(
+      doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis),
+      HasSubstr("state a noise of 0.02 mm"));
   diagnosis.gap.rms_after = 0.5e-3;
-  EXPECT_EQ(doubt_of(linearised, rows.data, diagnosis), "");
+  EXPECT_EQ(doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis),
+            "");
 }
 
 TEST(Doubt, BelievesTheRepeatsWhereTheySayThatTheNoiseIsSo) {
@@ -143,6 +147,29 @@ TEST(Doubt, TellsADriftThatSettlesBetweenTwoPassesFromAMove) {
   EXPECT_EQ(diagnosis.verdict.effect, "base_drift") << diagnosis.why;
 }
 
+/// What is doubted of rows where a fixture is said to have moved by `shift` (m).
+std::string doubt_of_fixture(double shift) {
+  const Rows rows;
+  const LinearisedModel linearised(rows.robot, rows.data, quick(), {});
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = "fixture_shift";
+  diagnosis.named = {{.effect = "fixture_shift",
+                      .where = {"side"},
+                      .parameters = {{.name = "side.shift",
+                                      .unit = "m",
+                                      .value = shift,
+                                      .sigma = 1e-4,
+                                      .usual_least = 1e-5,
+                                      .usual_most = 2e-4}}}};
+  diagnosis.gap.rms_before = 1e-3;
+  return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
+}
+
+TEST(Doubt, KnowsAnotherSurfaceFromOneThatMoved) {
+  EXPECT_EQ(doubt_of_fixture(5e-3), "");
+  EXPECT_THAT(doubt_of_fixture(-0.2), HasSubstr("some touches of side are of another surface"));
+}
+
 /// What is doubted of rows where joint j2 is said to give way by `compliance`, to `sigma`.
 std::string doubt_of_spring(double compliance, double sigma) {
   const Rows rows;
@@ -161,7 +188,7 @@ std::string doubt_of_spring(double compliance, double sigma) {
                                       .positive = true}}}};
   diagnosis.gap.rms_before = 1e-4;
   diagnosis.gap.rms_after = 0.5e-4;
-  return doubt_of(linearised, rows.data, diagnosis);
+  return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
 }
 
 TEST(Doubt, NamesNoSpringThatPushesBack) {

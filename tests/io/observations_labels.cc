@@ -50,8 +50,38 @@ TEST_F(ObservationsCsv, TakesTheOrderOfTheRowsForTheTimeWhereTheFileHasNone) {
   const auto with = load("set,q1,q2,time\ntable,2,0,5\ntable,0,1,\ntable,1,1,7\n");
   ASSERT_TRUE(with.has_value()) << with.error().what;
   EXPECT_FALSE(with->data.order_is_time);
-  EXPECT_EQ(with->data.rows.time[2], 7);
-  EXPECT_TRUE(std::isnan(with->data.rows.time[1]));
+  EXPECT_EQ(with->data.rows.time, Eigen::Vector3d(5, 6, 7)) << "between its neighbours";
+}
+
+/// Twenty rows, of which those from `first` on, `count` of them, lack their time and temperature.
+std::string with_gap(int first, int count) {
+  std::string csv = "set,q1,q2,time,temperature\n";
+  for (int row = 0; row < 20; ++row) {
+    const bool lacks = row >= first && row < first + count;
+    csv += "table,0,0." + std::to_string(10 + row) + "," +
+           (lacks ? "," : std::to_string(30 * row) + "," + std::to_string(20 + row)) + "\n";
+  }
+  return csv;
+}
+
+TEST_F(ObservationsCsv, FillsFewEmptyTimesAndTemperaturesAndUsesNoneWhereManyAreEmpty) {
+  const auto few = load(with_gap(3, 2));
+  ASSERT_TRUE(few.has_value()) << few.error().what;
+  EXPECT_NEAR(few->data.rows.time[4], 120, 1e-9);
+  EXPECT_NEAR(few->data.rows.temperature[4], 24, 1e-9);
+  EXPECT_THAT(notices(with_gap(3, 2)),
+              ElementsAre(HasSubstr("time is empty in 2 of 20 rows, first row 4: it is taken from"),
+                          HasSubstr("temperature is empty in 2 of 20 rows, first row 4: it is")));
+  const auto last = load(with_gap(18, 2));
+  ASSERT_TRUE(last.has_value()) << last.error().what;
+  EXPECT_EQ(last->data.rows.temperature[19], 37) << "as the last that has one";
+  const auto many = load(with_gap(5, 11));
+  ASSERT_TRUE(many.has_value()) << many.error().what;
+  EXPECT_TRUE(many->data.order_is_time);
+  EXPECT_EQ(many->data.rows.time[19], 19);
+  EXPECT_EQ(many->data.rows.temperature.size(), 0);
+  EXPECT_THAT(notices(with_gap(5, 11)), ElementsAre(HasSubstr("the order of the rows is taken"),
+                                                    HasSubstr("no temperature is used")));
 }
 
 TEST_F(ObservationsCsv, NotesTimesThatGoBackAgainAndAgain) {
