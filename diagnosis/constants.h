@@ -299,6 +299,7 @@ struct DiagnosisConstants {
     /// Of what scatters them, over the noise, any size between as probable; 0.1 to 0.5, 4 to 64
     /// [physics]
     double least_scattered = 0.25, most_scattered = 16;
+    double gravity_off = 0.1;   ///< m/s^2, from the usual; 0.05 to 0.5 [physics]
     double worth_a_word = 1.3;  ///< of the stated noise; 1.1 to 2 [habit]
     /// Of what noise and the geometry's own doubt explain: rows kept aside that are left so much
     /// farther, and hardly by chance, are no noise, if they give as many equations as told; 1.4 to

@@ -12,9 +12,12 @@
 #include "diagnosis/search/causes.h"
 #include "kinematics/corrected_robot.h"
 #include "kinematics/readable.h"
+#include "kinematics/statics.h"
 
 namespace selfcal {
 namespace {
+
+constexpr double kOnEarth = 9.81;  // m/s^2
 
 std::string of_fits(const HoldoutValidation& validation) {
   if (validation.converged) return {};
@@ -177,6 +180,15 @@ std::string warning_of_gap(const Diagnosis& diagnosis) {
   return {};
 }
 
+std::string warning_of_gravity(const Robot& robot) {
+  if (!robot.statics()) return {};
+  const double g = gravity_of(robot).norm();
+  if (std::abs(g - kOnEarth) < kDiagnosis.report.gravity_off) return {};
+  return with_figures("gravity is %.3g m/s^2 in the robot's file, 9.81 on earth: ", g) +
+         (g > 0 ? "what gives way under weights is told with it"
+                : "nothing has a weight, and nothing can give way under one");
+}
+
 std::vector<std::string> warnings_of(const LinearisedModel& linearised, const DataSet& data,
                                      const HoldoutValidation& validation,
                                      const Diagnosis& diagnosis) {
@@ -185,8 +197,8 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
        {of_fits(validation), of_undecided(validation), of_gears(validation),
         warning_of_few_waves(linearised.geometry(), data.rows.q, diagnosis.named),
         of_noise(linearised, data, diagnosis.gap), warning_of_scatter(linearised, data, diagnosis),
-        warning_of_uneven_noise(linearised, data, diagnosis), of_order(data),
-        of_masses(linearised)})
+        warning_of_uneven_noise(linearised, data, diagnosis), of_order(data), of_masses(linearised),
+        warning_of_gravity(linearised.geometry())})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -33,6 +33,9 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
 std::string warning_of_few_waves(const Robot& robot, const Eigen::MatrixXd& q,
                                  const std::vector<CauseResult>& named);
 
+/// Gravity in the robot's file that is not that of the earth's surface; empty where it is.
+std::string warning_of_gravity(const Robot& robot);
+
 /// What the validation rows say of the named cause, and of the corrected model with everything
 /// found, where that is not plain; empty where it is.
 std::string warning_of_gap(const Diagnosis& diagnosis);

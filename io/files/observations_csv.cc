@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <unordered_set>
@@ -123,6 +124,7 @@ class RowReader {
                         " times from one row to the next: right where the rows were sorted by "
                         "something else, wrong where the times were");
     if (auto outside = numbers_.outside_limits_notice()) notices.push_back(std::move(*outside));
+    std::ranges::copy(labels_.groups_alike(), std::back_inserter(notices));
     for (const std::string& set : labels_.sets_without_rows()) {
       notices.push_back("set '" + set + "' has no rows");
     }

@@ -2,6 +2,9 @@
 // name.
 #include "io/files/row_labels.h"
 
+#include <cctype>
+#include <map>
+
 #include "kinematics/readable.h"
 
 namespace selfcal {
@@ -104,6 +107,24 @@ std::vector<std::string> LabelReader::sets_without_rows() const {
     if (states_[i].rows == 0) names.push_back(sets_[i].name);
   }
   return names;
+}
+
+std::vector<std::string> LabelReader::groups_alike() const {
+  std::vector<std::string> sentences;
+  for (const Set& set : sets_) {
+    std::map<std::string, std::string> known;  // by what is left of it
+    for (const std::string& name : set.groups) {
+      std::string bare;
+      for (const char each : name)
+        if (each != ' ' && each != '-' && each != '_')
+          bare += static_cast<char>(std::tolower(static_cast<unsigned char>(each)));
+      const auto [other, first] = known.try_emplace(std::move(bare), name);
+      if (!first)
+        sentences.push_back("set '" + set.name + "': the groups '" + other->second + "' and '" +
+                            name + "' differ in capitals, blanks or dashes alone: are they one?");
+    }
+  }
+  return sentences;
 }
 
 }  // namespace selfcal

@@ -36,6 +36,8 @@ class LabelReader {
   /// A group that a set's options name and no row does, as a sentence.
   std::optional<std::string> group_without_rows() const;
   std::vector<std::string> sets_without_rows() const;
+  /// Groups of one set whose names differ in capitals, blanks or dashes alone, as sentences.
+  std::vector<std::string> groups_alike() const;
 
  private:
   struct TextHash {

@@ -81,6 +81,17 @@ TEST(Warnings, SayWhereHardlyAWaveOfAGearIsSeen) {
   EXPECT_EQ(warning_of_few_waves(*robot, q, named("turn", 3)), "");
 }
 
+TEST(Warnings, SayThatGravityIsNotThatOfTheEarth) {
+  const auto with = [](const std::string& gravity) {
+    return warning_of_gravity(*robot_of("{robot: r, kind: serial, " + gravity +
+                                        "frames: [{name: j, joint: revolute, d: 0.3}]}"));
+  };
+  EXPECT_EQ(with(""), "");
+  EXPECT_EQ(with("gravity: [9.7, 0, 1.4], "), "") << "hung on a wall";
+  EXPECT_THAT(with("gravity: [0, 0, -0.981], "), HasSubstr("0.981 m/s^2 in the robot's file"));
+  EXPECT_THAT(with("gravity: [0, 0, 0], "), HasSubstr("nothing has a weight"));
+}
+
 TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0.3)), IsEmpty());
   EXPECT_THAT(warning_of_gap(named(2e-4, 1e-4, 0)),

@@ -100,6 +100,12 @@ TEST_F(ObservationsCsv, RefusesNamesThatATerminalWouldObey) {
             "observations.csv: row 1: column group: a name with a control character");
 }
 
+TEST_F(ObservationsCsv, AsksWhetherGroupsOfNearlyOneNameAreOne) {
+  EXPECT_THAT(notices("set,group,q1,q2\ntable,Left 1,0,0\ntable,left-1,0,0.1\ntable,b,0,0.2\n"),
+              ElementsAre("observations.csv: set 'table': the groups 'Left 1' and 'left-1' differ "
+                          "in capitals, blanks or dashes alone: are they one?"));
+}
+
 TEST_F(ObservationsCsv, NamesUnknownColumnsInOneNotice) {
   EXPECT_THAT(notices("set,operator,q1,q2,X,m1,q01,time\ntable,Bo,0,0,a,b,c,17\n"),
               ElementsAre("observations.csv: unknown columns are ignored: operator, X, m1, q01"));

@@ -54,7 +54,8 @@ std::vector<Slip> slips_of_robot(const Node& file) {
   for (const double factor : {0.5, 2.0})
     if (auto scaled = changed_robot(file, [&](Node& node) { scale_lengths(node, factor); }))
       slips.push_back({std::string("the lengths in the robot's file are ") +
-                           (factor < 1 ? "twice" : "half") + " what they are",
+                           (factor < 1 ? "twice what they are, or those of the data set half"
+                                       : "half what they are, or those of the data set twice"),
                        std::move(scaled),
                        {}});
   const Node* frames = file.find("frames");
