@@ -21,7 +21,10 @@ constexpr std::size_t kMostTried = 20, kMostTriedNext = 5;
 /// equations, in many.
 constexpr Eigen::Index kMostHidden = 8, kFewestHidden = 2;
 constexpr double kOfNoise = 1.5;  ///< of the stated noise, from which false rows may make it
-constexpr double kSheet = 4;      ///< freedoms that a data sheet's noise is worth
+/// Where several rows are false all others are met by noise, of the stated or of what it was with
+/// them.
+constexpr double kOfSheet = 3, kOfWhole = 0.5;
+constexpr double kSheet = 4;  ///< freedoms that a data sheet's noise is worth
 
 /// A row's drop over what the others say that it should be, and that a good row's is as large.
 struct Standing {
@@ -89,18 +92,35 @@ Standing standing(const Equations& equations, const Noise& noise, const RowDelet
   return {ratio, f_exceeds(ratio, count, told.freedom)};
 }
 
-/// Those that `noise` finds.
-std::vector<int> standing_out(const Equations& equations, const State& state, const Noise& noise,
-                              const Prior& prior, double share) {
+/// Rows that stand out, and the variance of what is left of the others and of all, over that of
+/// their noise.
+struct Found {
+  std::vector<int> rows = {};
+  double rest = HUGE_VAL, whole = 0;
+};
+
+double variance_of(const RowDeletion& all) {
+  SquaresLeft rest;
+  for (Eigen::Index i = 0; i < all.left().size(); ++i)
+    if (all.row()[static_cast<std::size_t>(i)] >= 0)
+      rest.add(std::pow(all.left()[i], 2), all.freedom()[i]);
+  return rest.freedom > 0 ? rest.variance() : HUGE_VAL;
+}
+
+/// By that noise, one row or of `share` of the rows and two sigma of that.
+Found standing_out(const Equations& equations, const State& state, const Noise& noise,
+                   const Prior& prior, std::optional<double> share) {
   RowDeletion all(equations, state, noise, prior);
   std::vector<Deletion> deletions = all.deletions();
-  const double expected = share * static_cast<double>(deletions.size());
-  const auto most = static_cast<std::size_t>(expected + 2 * std::sqrt(expected));
   const auto hidden = static_cast<std::size_t>(
-      std::clamp(kMostEquations / all.freedom().size(), kFewestHidden, kMostHidden));
+      std::clamp(kMostEquations / std::max<Eigen::Index>(all.freedom().size(), 1), kFewestHidden,
+                 kMostHidden));
+  const double expected = share.value_or(0) * static_cast<double>(deletions.size());
+  const auto most =
+      share ? static_cast<std::size_t>(expected + 2 * std::sqrt(expected)) : std::size_t{1};
+  Found found{.whole = variance_of(all)};
   std::vector<int> rows;
-  std::size_t certain = 0;
-  while (rows.size() < std::min(most, certain + hidden) && !deletions.empty()) {
+  while (rows.size() < std::min(most, found.rows.size() + hidden) && !deletions.empty()) {
     std::ranges::sort(deletions, std::greater(), &Deletion::drop);
     deletions.resize(std::min(deletions.size(), rows.empty() ? kMostTried : kMostTriedNext));
     std::vector<Standing> standings;
@@ -109,12 +129,14 @@ std::vector<int> standing_out(const Equations& equations, const State& state, co
     const auto first = std::ranges::max_element(standings, {}, &Standing::ratio);
     const Deletion& row = deletions[static_cast<std::size_t>(first - standings.begin())];
     rows.push_back(row.row);
-    if (first->chance < kMaskedByChance) certain = rows.size();
     all.take_away(row);
+    if (first->chance < kMaskedByChance) {
+      found.rows = rows;
+      found.rest = variance_of(all);
+    }
     deletions = all.deletions();
   }
-  rows.resize(certain);
-  return rows;
+  return found;
 }
 
 /// As its data sheets state it, where they do and it is more.
@@ -138,11 +160,14 @@ std::optional<Noise> as_stated(const Equations& equations, Noise noise) {
 std::vector<int> masked_outliers(const Equations& equations, const State& state, const Noise& noise,
                                  const Prior& prior, double share) {
   if (free_columns(equations, prior).empty() || !are_few(equations, state)) return {};
-  std::vector<int> rows = standing_out(equations, state, noise, prior, share);
-  if (!rows.empty()) return rows;
+  Found found = standing_out(equations, state, noise, prior, share);
+  if (found.rows.size() == 1 || found.rest < kOfWhole * kOfWhole * found.whole) return found.rows;
   // Where false rows make the noise, the tolerances bar the way to a robot that meets the others.
-  const std::optional<Noise> stated = as_stated(equations, noise);
-  return stated ? standing_out(equations, state, *stated, prior, share) : rows;
+  if (const std::optional<Noise> stated = as_stated(equations, noise)) {
+    found = standing_out(equations, state, *stated, prior, share);
+    if (found.rest < kOfSheet * kOfSheet) return found.rows;
+  }
+  return standing_out(equations, state, noise, prior, {}).rows;
 }
 
 }  // namespace selfcal

@@ -39,6 +39,7 @@ class RowDeletion {
   const std::vector<int>& row() const { return row_; }
   const std::vector<int>& set() const { return set_; }  ///< -1 of none
   const std::vector<Quantity>& quantity() const { return quantity_; }
+  const Eigen::VectorXd& left() const { return left_; }
   /// What noise of one leaves there: the diagonal of I - H.
   const Eigen::VectorXd& freedom() const { return freedom_; }
 
