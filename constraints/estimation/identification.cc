@@ -25,6 +25,7 @@
 #include "constraints/statistics.h"
 #include "kinematics/expects.h"
 #include "kinematics/readable.h"
+#include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
@@ -46,7 +47,8 @@ std::string untold_noise(const Equations& equations, const Adjusted& adjusted) {
   return {};
 }
 
-constexpr int kPoses = 500;  ///< at which the end position is judged
+constexpr int kPoses = 500;           ///< at which the end position is judged
+constexpr double kMostStrays = 0.01;  ///< of the robot's size, from its best geometry: no robot's
 
 std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
 
@@ -257,7 +259,8 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
                   nominal_explains(adjusted, rank, solution.residual.fit),
                   lie_beyond(data.rows, question.poses),
                   turned,
-                  solution.strays = strays(equations, solution.sets)};
+                  solution.strays = strays(equations, solution.sets),
+                  kMostStrays * size_of(robot)};
   // Given lengths that only differ among themselves are a warning while the end position bears it.
   if (scale.scale.against_maker || !known_to(solution.workspace, data.target))
     std::ranges::copy(scale.scale.contradictions, std::back_inserter(grounds.contradictions));

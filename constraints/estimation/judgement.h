@@ -63,6 +63,7 @@ struct Grounds {
   std::vector<std::string> contradictions = {};
   /// m, in each direction, that the robot is elsewhere than any geometry says.
   double strays = 0;
+  double most_strays = 0;  ///< m, the same, that no robot does
 };
 
 /// Improved where the rows that judge are met better (check_comparison.h) and the end position is

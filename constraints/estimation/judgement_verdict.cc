@@ -2,6 +2,7 @@
 // Where the end position is not known to the target, but the check rows are no better and the
 // fitted rows do not contradict the maker's figures either, there is nothing to improve: that is an
 // answer too.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -59,14 +60,13 @@ bool hardly_better(const std::vector<RowFigure>& rows) {
   return better < kFewestBetter * judging;
 }
 
-/// Of what the check rows were met by before: what is left where that is more than any robot
-/// strays.
+/// Of what the check rows were met by before: what is left where much of it is not the robot's.
 constexpr double kMostOfGross = 0.5;
 
 /// What no robot does is in the rows, and hardly less of it than before: which of them show how the
 /// robot is cannot be said.
 std::string gross_rows(const Figures& check, const Grounds& grounds) {
-  if (check.angle_alone || grounds.strays <= grounds.target || check.rms_after <= grounds.target ||
+  if (check.angle_alone || grounds.strays <= std::max(grounds.most_strays, grounds.target) ||
       check.rms_after <= kMostOfGross * check.rms_before)
     return {};
   return "; most of what is left of the rows is not the robot's: find the set or the rows that are "

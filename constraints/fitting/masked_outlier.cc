@@ -12,6 +12,7 @@ namespace selfcal {
 namespace {
 
 constexpr double kMaskedByChance = 1e-6;
+constexpr double kLeastFreedom = 1e-6;            ///< of a set without a row
 constexpr double kLeastOfNoise = 1e-9;            ///< that rows which fit exactly have: rounding
 constexpr Eigen::Index kMostEquations = 3000;     ///< with more, none bends the fit alone
 constexpr Eigen::Index kMostEntries = 1'000'000;  ///< of the equations held at once
@@ -62,7 +63,7 @@ bool is_of_kind(const DataSet& data, int a, int b) {
 /// is more, and is no less than stated.
 Standing standing(const Equations& equations, const Noise& noise, const RowDeletion& all,
                   const Deletion& of) {
-  const Eigen::VectorXd left = all.left_without(of);
+  const auto [left, freedom] = all.left_without(of);
   const auto sets = equations.data().sets.size();
   std::vector<char> of_kind(sets);
   for (std::size_t s = 0; s < sets; ++s)
@@ -78,14 +79,14 @@ Standing standing(const Equations& equations, const Noise& noise, const RowDelet
     const Quantity quantity = all.quantity()[at];
     const double square = std::pow(
         left[i] * (noise.used[static_cast<std::size_t>(set)].of(quantity) / used.of(quantity)), 2);
-    kind.add(square, all.freedom()[i]);
-    if (set == of.set) own.add(square, all.freedom()[i]);
+    kind.add(square, freedom[i]);
+    if (set == of.set) own.add(square, freedom[i]);
   }
-  if (!(own.freedom > 0)) return {};
+  if (!(own.freedom > kLeastFreedom)) return {};
   const Scale& stated = equations.stated(of.set);
   const double sheet = std::max(stated.length / used.length, stated.angle / used.angle);
   SquaresLeft told = kind.variance() > own.variance() ? kind : own;
-  if (sheet > 0) told.add(kSheet * sheet * sheet, kSheet);
+  if (told.variance() < std::pow(kOfNoise * sheet, 2)) told.add(kSheet * sheet * sheet, kSheet);
   const double variance = std::max(told.variance(), std::pow(std::max(sheet, kLeastOfNoise), 2));
   const auto count = static_cast<double>(of.equations.size());
   const double ratio = of.drop / count / variance;

@@ -116,8 +116,10 @@ std::vector<Deletion> RowDeletion::deletions() const {
   return list;
 }
 
-Eigen::VectorXd RowDeletion::left_without(const Deletion& of) const {
-  return left_ - columns(of) * least_squares(of.part, left_(of.equations));
+RowDeletion::Left RowDeletion::left_without(const Deletion& of) const {
+  const Eigen::MatrixXd own = columns(of), share = least_squares_of_all(of.part, own.transpose());
+  return {left_ - share.transpose() * left_(of.equations),
+          freedom_ - (own.array() * share.transpose().array()).rowwise().sum().matrix()};
 }
 
 void RowDeletion::take_away(const Deletion& of) {

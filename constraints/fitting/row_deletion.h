@@ -30,8 +30,11 @@ class RowDeletion {
 
   /// Of the rows that are not taken away.
   std::vector<Deletion> deletions() const;
-  /// What is left of each equation without the row.
-  Eigen::VectorXd left_without(const Deletion& of) const;
+  /// What is left of each equation without the row, and what noise of one leaves there then.
+  struct Left {
+    Eigen::VectorXd left, freedom;
+  };
+  Left left_without(const Deletion& of) const;
   /// Without the row from now on.
   void take_away(const Deletion& of);
 

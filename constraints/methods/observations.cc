@@ -111,24 +111,26 @@ std::string emptiness(const char* column, const Eigen::VectorXd& values) {
          std::to_string(values.size()) + " rows, first row " + std::to_string(first + 1);
 }
 
-/// Values between the neighbours' of the rows that have one; false where these are far apart.
+/// Values between the neighbours' of the rows that have one, of few next to each other; whether all
+/// have theirs then.
 bool interpolate(Eigen::VectorXd& values, const std::vector<int>& order) {
-  if (!values.array().isFinite().any()) return false;
   std::ptrdiff_t known = -1;  // the place of the last that is
   const auto count = std::ssize(order);
+  const auto at = [&](std::ptrdiff_t i) -> double& {
+    return values[order[static_cast<size_t>(i)]];
+  };
+  bool all = true;
   for (std::ptrdiff_t i = 0; i <= count; ++i) {
-    if (i < count && !std::isfinite(values[order[static_cast<size_t>(i)]])) continue;
-    if (i - known - 1 > kLongGap) return false;
-    for (std::ptrdiff_t k = known + 1; k < i; ++k) {
-      const double from = known < 0 ? values[order[static_cast<size_t>(i)]]
-                                    : values[order[static_cast<size_t>(known)]];
-      const double to = i == count ? from : values[order[static_cast<size_t>(i)]];
-      values[order[static_cast<size_t>(k)]] =
-          from + (to - from) * static_cast<double>(k - known) / static_cast<double>(i - known);
+    if (i < count && !std::isfinite(at(i))) continue;
+    const bool near = i - known - 1 <= kLongGap && (known >= 0 || i < count);
+    all = all && near;
+    for (std::ptrdiff_t k = known + 1; near && k < i; ++k) {
+      const double from = known < 0 ? at(i) : at(known), to = i == count ? from : at(i);
+      at(k) = from + (to - from) * static_cast<double>(k - known) / static_cast<double>(i - known);
     }
     known = i;
   }
-  return true;
+  return all;
 }
 
 }  // namespace
@@ -137,21 +139,20 @@ std::vector<std::string> fill_gaps(Observations& rows) {
   std::vector<std::string> done;
   const auto fill = [&](const char* column, Eigen::VectorXd& values, const std::vector<int>& order,
                         const char* otherwise) {
-    if (values.size() == 0 || values.allFinite()) return;
-    std::string words = emptiness(column, values);
-    if (interpolate(values, order)) {
-      words += ": it is taken from the rows before and after";
-    } else {
-      words += ", more than ten of them one after the other: ";
-      words += otherwise;
-      values = {};
-    }
-    done.push_back(std::move(words));
+    if (values.size() == 0 || values.allFinite()) return true;
+    const std::string words = emptiness(column, values);
+    const bool all = interpolate(values, order);
+    done.push_back(words + (all ? ": it is taken from the rows before and after" : otherwise));
+    return all;
   };
   std::vector<int> order(static_cast<size_t>(rows.rows()));
   std::iota(order.begin(), order.end(), 0);
-  fill("time", rows.time, order, "the order of the rows is taken for it");
-  fill("temperature", rows.temperature, in_time(rows), "no temperature is used");
+  if (!fill("time", rows.time, order,
+            ", many of them one after the other: the order of the rows is taken for it"))
+    rows.time = {};
+  fill("temperature", rows.temperature, in_time(rows),
+       ", many of them one after the other: these are taken to be as warm as the reference");
+  if (!rows.temperature.array().isFinite().any()) rows.temperature = {};
   return done;
 }
 

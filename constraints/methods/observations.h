@@ -61,7 +61,8 @@ Observations taken(const Observations& data, const std::vector<int>& rows);
 Observations joined(const Observations& a, const Observations& b);
 
 /// Times, and temperatures, that few rows next to each other lack are those between their
-/// neighbours'; where more lack theirs the column is of no row. What was done, in words.
+/// neighbours'. Where more lack their times none of the rows has one, and where more lack their
+/// temperatures they stay without (NaN). What was done, in words.
 std::vector<std::string> fill_gaps(Observations& rows);
 
 /// The rows, the first taken first: by their times where all have one, by their order otherwise.

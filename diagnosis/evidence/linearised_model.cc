@@ -97,12 +97,17 @@ bool LinearisedModel::try_fine_waves() {
   hints_.fine_waves.resize(geometry_->joints().size());
   for (size_t j = 0; j < hints_.fine_waves.size(); ++j) {
     if (geometry_->joints()[j].quantity != Quantity::angle) continue;
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(left.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i)
-      if (const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
-          row >= 0)
-        q[i] = data_.rows.q(row, static_cast<Eigen::Index>(j));
-    for (const double k : fine_waves(q, by_joint.col(static_cast<Eigen::Index>(j)), left)) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(left.size()), by = q;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
+      // Equations of two rows have two readings, and take no part.
+      if (row < 0 || data_.sets[static_cast<size_t>(data_.rows.set[static_cast<size_t>(row)])]
+                         .method->paired())
+        continue;
+      q[i] = data_.rows.q(row, static_cast<Eigen::Index>(j));
+      by[i] = by_joint(i, static_cast<Eigen::Index>(j));
+    }
+    for (const double k : fine_waves(q, by, left)) {
       std::vector<double>& known = hints_.fine_waves[j];
       if (std::ranges::find(known, k) != known.end()) continue;
       known.push_back(k);

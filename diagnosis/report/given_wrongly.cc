@@ -36,6 +36,7 @@ const ParameterResult* farthest_off(const Solution& calibrated) {
 std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated) {
   const RobotScale& scale = calibrated.scale;
   const auto too_large = [](const CauseResult& each) {
+    if (each.effect == "scale_error" || each.effect == "thermal_expansion") return false;
     const bool at_will = lasting_of(each.effect) == EffectLasting::moved_at_will;
     return beyond_usual(each, at_will ? kDiagnosis.report.impossible
                                       : kDiagnosis.report.far_beyond) != nullptr;

@@ -10,7 +10,8 @@
 namespace selfcal {
 
 /// Something moved farther than any machine errs may be so, and a cause far beyond its usual size;
-/// a length given wrongly looks the same. `calibrated` is of the same rows. In words; empty where
+/// a length given wrongly looks the same; not what makes lengths contradict each other itself (a
+/// scale, a growth). `calibrated` is of the same rows. In words; empty where
 /// nothing speaks for it.
 std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& calibrated);
 

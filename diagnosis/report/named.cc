@@ -66,8 +66,9 @@ const NamedValue* beyond_usual(const CauseResult& cause, double times) {
 }
 
 const NamedValue* of_impossible_size(const CauseResult& cause) {
-  const bool at_will = lasting_of(cause.effect) == EffectLasting::moved_at_will;
-  return beyond_usual(cause, at_will ? kDiagnosis.report.elsewhere : kDiagnosis.report.impossible);
+  if (cause.effect == "fixture_shift") return beyond_usual(cause, kDiagnosis.report.elsewhere);
+  if (lasting_of(cause.effect) == EffectLasting::moved_at_will) return nullptr;
+  return beyond_usual(cause, kDiagnosis.report.impossible);
 }
 
 std::vector<CauseResult> take_idle(std::vector<CauseResult>& named) {

@@ -56,6 +56,7 @@ struct Rows {
     grounds.converged = true;
     grounds.contradictions = std::move(contradictions);
     grounds.strays = strays;
+    grounds.most_strays = 10e-3;
     return verdict(nominal, figures(), grounds);
   }
   Answer answer() const { return judged().answer; }

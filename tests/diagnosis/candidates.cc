@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/constants.h"
 #include "tests/kinematics/parsed_robot.h"
 
 namespace selfcal {
@@ -40,6 +41,40 @@ TEST(Candidates, HaveAMomentBetweenAnyTwoOfFewRowsAndSpreadOverMany) {
   ASSERT_EQ(many.size(), 24);
   EXPECT_NEAR(many.front(), 16, 1);
   EXPECT_NEAR(many.back(), 384, 1);
+}
+
+// 400 rows a second apart, and pauses of a minute or more behind five of them: the four longest.
+TEST(Candidates, HaveAMomentInTheLongestPauses) {
+  Session session(400);
+  double pause = 60, later = 0;
+  for (int row = 0; row < 400; ++row) {
+    if (row == 58 || row == 101 || row == 207 || row == 290 || row == 333) later += pause += 20;
+    session.data.rows.time[row] += later;
+  }
+  const Eigen::VectorXd& t = session.data.rows.time;
+  std::vector<double> moments;
+  for (const Candidate& each : session.candidates().list)
+    if (each.effect == "zero_shift") moments.push_back(each.shape.moment.value());
+  for (const int row : {101, 207, 290, 333})
+    EXPECT_EQ(std::ranges::count(moments, (t[row - 1] + t[row]) / 2), 1) << row;
+  EXPECT_EQ(std::ranges::count(moments, (t[57] + t[58]) / 2), 0) << "the shortest";
+}
+
+TEST(Candidates, HaveTheFineWavesThatRowsHintAtEachAsOneOfMany) {
+  const Session session(50);
+  const Candidates all =
+      candidates(*session.robot, session.data, session.context, {.fine_waves = {{109, 160}}});
+  const auto of = [&](double waves) {
+    return std::ranges::find_if(all.list, [&](const Candidate& each) {
+      return each.effect == "transmission_error" && each.shape.waves == std::vector{waves};
+    });
+  };
+  ASSERT_NE(of(109), all.list.end());
+  EXPECT_NEAR(of(109)->log_prior - of(1)->log_prior, std::log(kDiagnosis.shapes.fine_share), 1e-12);
+  EXPECT_EQ(of(160)->log_prior, of(1)->log_prior) << "a generator's, that is tried anyway";
+  EXPECT_EQ(std::ranges::count(session.candidates().list, std::vector{109.0},
+                               [](const Candidate& each) { return each.shape.waves; }),
+            0);
 }
 
 /// Moments of the zero shifts, and between which rows they lie; all candidates sum to one.
