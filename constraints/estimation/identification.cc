@@ -24,82 +24,13 @@
 #include "constraints/sampling/workspace_poses.h"
 #include "constraints/statistics.h"
 #include "kinematics/expects.h"
-#include "kinematics/readable.h"
 #include "kinematics/size.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kFewestFreedoms = 3;  // that tell a noise which no data sheet states
-
-/// Why nobody knows how sure the result is; empty where the noise is stated, or rows enough tell
-/// it.
-std::string untold_noise(const Equations& equations, const Adjusted& adjusted) {
-  if (freedoms_left(equations, adjusted) >= kFewestFreedoms) return {};
-  for (size_t s = 0; s < equations.data().sets.size(); ++s) {
-    const Set& set = equations.data().sets[s];
-    if (set.noise <= 0 && set.noise_angle <= 0 &&
-        !equations.plan(static_cast<int>(s)).items.empty())
-      return "no `noise:` is stated for set " + set.name +
-             ", and so few rows leave nothing that tells it: how sure any of this is nobody knows; "
-             "state it, or add rows";
-  }
-  return {};
-}
-
 constexpr int kPoses = 500;           ///< at which the end position is judged
 constexpr double kMostStrays = 0.01;  ///< of the robot's size, from its best geometry: no robot's
-
-std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
-
-/// Moves beyond four tolerances; of an angle of the tool, where no row sees how it is turned,
-/// beyond one: it then imitates an offset.
-void warn_of_move(const ParameterResult& each, bool orientation_is_seen,
-                  std::vector<std::string>& warnings) {
-  const Parameter& p = each.parameter;
-  if (each.status == Status::fixed || p.part == Part::effect) return;
-  const double moved = std::abs(each.value - p.nominal) / p.tolerance;
-  const std::string in_frame = p.frame + "." + p.field;
-  const std::string name = p.name == in_frame ? p.name : p.name + " (" + in_frame + ")";
-  if (moved > 4) warnings.push_back(name + " moved by " + rounded(moved) + " tolerances");
-  if (moved > 1 && !orientation_is_seen && p.part == Part::tool && p.quantity == Quantity::angle)
-    warnings.push_back(name + " turns the tool by " + rounded(1e3 * (each.value - p.nominal)) +
-                       " mrad (" + rounded(moved) +
-                       " tolerances) where no row sees how it is turned, to imitate an offset: its "
-                       "orientation is false; give the tool as a whole pose (xyz, rpy)");
-}
-
-void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution& solution) {
-  if (adjusted.widening != 1)
-    solution.warnings.push_back(
-        "the robot differs from the maker's figures more than their tolerances allow (chi2 " +
-        format_number(std::round(adjusted.chi2.value)) + " for " +
-        format_number(std::round(adjusted.chi2.freedom)) +
-        " degrees of freedom): priors widened by " +
-        format_number(std::round(adjusted.widening * 100) / 100));
-  const bool seen = orientation_is_seen(equations);
-  for (const ParameterResult& each : solution.parameters)
-    warn_of_move(each, seen, solution.warnings);
-  if (!adjusted.before.converged)
-    solution.warnings.push_back(
-        "the figures before are of a nominal robot not placed to the end: " +
-        adjusted.before.stop_reason);
-  add_set_warnings(equations, adjusted.fitted, solution);
-}
-
-/// The box is reached by fewer configurations than are looked for, so that it, its frame or its
-/// cone may be wrong; empty where it is not.
-std::string hardly_reached(const Workspace& workspace, Eigen::Index poses) {
-  if (!workspace.box || poses >= kPoses) return {};
-  const auto corner = [](const Eigen::Vector3d& p) {
-    return with_figures("[%.3g, %.3g, %.3g]", p.x(), p.y(), p.z());
-  };
-  return "workspace: " + (poses > 0 ? "only " + std::to_string(poses) : "none") +
-         " of the configurations tried reach its box " + corner(workspace.box->min()) + " to " +
-         corner(workspace.box->max()) + " m within the joint limits" +
-         (workspace.cone ? " and its cone" : "") +
-         ": see that it is where the robot works, in the world of the robot file";
-}
 
 /// The rows say something of the robot, but nothing against its maker's figures: the moves stay
 /// within the tolerances, and the fitted rows are no better than the extra parameters explain (F
@@ -236,7 +167,7 @@ Solution assemble(const Equations& equations, const Adjusted& adjusted, const Op
   std::ranges::copy(turned, std::back_inserter(solution.warnings));
   std::ranges::transform(solution.slips, std::back_inserter(solution.warnings), slip_words);
   std::ranges::transform(solution.frame_steps, std::back_inserter(solution.warnings), step_words);
-  if (std::string what = hardly_reached(data.workspace, where_it_counts.poses.rows());
+  if (std::string what = hardly_reached(data.workspace, where_it_counts.poses.rows(), kPoses);
       !what.empty())
     solution.warnings.push_back(std::move(what));
   if (progress) progress("done", 1);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "constraints/estimation/adjustment.h"
 #include "constraints/estimation/judgement.h"
 #include "constraints/fitting/fit.h"
 #include "constraints/identifiability/identifiability.h"
@@ -30,8 +31,17 @@ Observability identified_observability(const Equations& equations, const Eigen::
 std::vector<SetResult> set_results(const Equations& equations, const Fit& fit,
                                    const Eigen::MatrixXd& C, const Judged& after);
 
-/// Noise far above the data sheet's or the repeats', rows put aside up to the bound.
-void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solution);
+/// Priors widened, parameters moved far, an orientation that imitates an offset, noise far above
+/// the data sheet's or the repeats', rows put aside up to the bound.
+void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution& solution);
+
+/// The box is reached by fewer `poses` than are `wanted`, so that it, its frame or its cone may be
+/// wrong; empty where it is not.
+std::string hardly_reached(const Workspace& workspace, Eigen::Index poses, int wanted);
+
+/// Why nobody knows how sure the result is; empty where the noise is stated, or rows enough tell
+/// it.
+std::string untold_noise(const Equations& equations, const Adjusted& adjusted);
 
 /// By how much the robot is elsewhere than any geometry says, in each direction measured (m): what
 /// the rows of a set that identify scatter beside their repeats or their data sheet's noise, of the

@@ -1,9 +1,12 @@
-// What is wrong with sets, in words: noise beyond what was expected, rows that judge nothing.
+// What is wrong, in words: moves beyond tolerances, noise beyond what was expected, rows that judge
+// nothing.
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "constraints/estimation/covariance_sources.h"
 #include "constraints/estimation/results.h"
+#include "constraints/identifiability/gauge.h"
 #include "constraints/methods/lone_groups.h"
 #include "constraints/statistics.h"
 #include "kinematics/readable.h"
@@ -112,8 +115,28 @@ std::string unexplained(const Scatter& scatter, double expected, const char* tha
          " in each direction measured" + unless;
 }
 
-}  // namespace
+constexpr double kFewestFreedoms = 3;  // that tell a noise which no data sheet states
 
+std::string rounded(double value) { return format_number(std::round(value * 10) / 10); }
+
+/// Moves beyond four tolerances; of an angle of the tool, where no row sees how it is turned,
+/// beyond one: it then imitates an offset.
+void warn_of_move(const ParameterResult& each, bool orientation_is_seen,
+                  std::vector<std::string>& warnings) {
+  const Parameter& p = each.parameter;
+  if (each.status == Status::fixed || p.part == Part::effect) return;
+  const double moved = std::abs(each.value - p.nominal) / p.tolerance;
+  const std::string in_frame = p.frame + "." + p.field;
+  const std::string name = p.name == in_frame ? p.name : p.name + " (" + in_frame + ")";
+  if (moved > 4) warnings.push_back(name + " moved by " + rounded(moved) + " tolerances");
+  if (moved > 1 && !orientation_is_seen && p.part == Part::tool && p.quantity == Quantity::angle)
+    warnings.push_back(name + " turns the tool by " + rounded(1e3 * (each.value - p.nominal)) +
+                       " mrad (" + rounded(moved) +
+                       " tolerances) where no row sees how it is turned, to imitate an offset: its "
+                       "orientation is false; give the tool as a whole pose (xyz, rpy)");
+}
+
+/// Noise far above the data sheet's or the repeats', rows put aside up to the bound.
 void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solution) {
   const DataSet& data = equations.data();
   const bool redundant = fit.at.equations > kRedundant * unknowns(fit, solution);
@@ -167,6 +190,51 @@ void add_set_warnings(const Equations& equations, const Fit& fit, Solution& solu
                 "alone, where they place it best");
   }
   words.copy_to(solution.warnings);
+}
+
+}  // namespace
+
+void add_warnings(const Equations& equations, const Adjusted& adjusted, Solution& solution) {
+  if (adjusted.widening != 1)
+    solution.warnings.push_back(
+        "the robot differs from the maker's figures more than their tolerances allow (chi2 " +
+        format_number(std::round(adjusted.chi2.value)) + " for " +
+        format_number(std::round(adjusted.chi2.freedom)) +
+        " degrees of freedom): priors widened by " +
+        format_number(std::round(adjusted.widening * 100) / 100));
+  const bool seen = orientation_is_seen(equations);
+  for (const ParameterResult& each : solution.parameters)
+    warn_of_move(each, seen, solution.warnings);
+  if (!adjusted.before.converged)
+    solution.warnings.push_back(
+        "the figures before are of a nominal robot not placed to the end: " +
+        adjusted.before.stop_reason);
+  add_set_warnings(equations, adjusted.fitted, solution);
+}
+
+std::string hardly_reached(const Workspace& workspace, Eigen::Index poses, int wanted) {
+  if (!workspace.box || poses >= wanted) return {};
+  const auto corner = [](const Eigen::Vector3d& p) {
+    return with_figures("[%.3g, %.3g, %.3g]", p.x(), p.y(), p.z());
+  };
+  return "workspace: " + (poses > 0 ? "only " + std::to_string(poses) : "none") +
+         " of the configurations tried reach its box " + corner(workspace.box->min()) + " to " +
+         corner(workspace.box->max()) + " m within the joint limits" +
+         (workspace.cone ? " and its cone" : "") +
+         ": see that it is where the robot works, in the world of the robot file";
+}
+
+std::string untold_noise(const Equations& equations, const Adjusted& adjusted) {
+  if (freedoms_left(equations, adjusted) >= kFewestFreedoms) return {};
+  for (size_t s = 0; s < equations.data().sets.size(); ++s) {
+    const Set& set = equations.data().sets[s];
+    if (set.noise <= 0 && set.noise_angle <= 0 &&
+        !equations.plan(static_cast<int>(s)).items.empty())
+      return "no `noise:` is stated for set " + set.name +
+             ", and so few rows leave nothing that tells it: how sure any of this is nobody knows; "
+             "state it, or add rows";
+  }
+  return {};
 }
 
 double strays(const Equations& equations, const std::vector<SetResult>& sets) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "constraints/fitting/fit_system.h"
+#include "constraints/fitting/fitted_freedoms.h"
 #include "constraints/fitting/masked_outlier.h"
 #include "kinematics/description.h"
 
@@ -20,8 +21,7 @@ constexpr int kRegroupings = 20;
 constexpr int kAttempts = 14;        ///< dampings tried before an iteration gives up
 constexpr int kBarred = 3;           ///< of them barred by a loop that does not close
 constexpr double kRounding = 1e-13;  ///< a step this short (of the robot's size, or rad) is nothing
-constexpr double kManyEquations = 4;  ///< of a set, over the unknowns: its share of these is small
-constexpr double kNear = 1e-3;        ///< sigmas a parameter: where only rounding may be left
+constexpr double kNear = 1e-3;       ///< sigmas a parameter: where only rounding may be left
 
 /// What the noise is estimated from; it only goes forward.
 enum class NoiseStage {
@@ -86,7 +86,8 @@ class Iteration {
   NoiseRule noise_rule(NoiseStage stage, const Eigen::MatrixXd& covariance) {
     NoiseRule rule = noise_rule(stage);
     rule.global_freedom = freedom(covariance);
-    rule.fitted = fitted_by_small_sets(covariance, rule.global_freedom);
+    const FittedFreedoms fitted{equations_, system_.state(), system_.columns(), noise_, covariance};
+    rule.fitted = of_small_sets(fitted, rule.global_freedom);
     most_fitted_.resize(rule.fitted.size(), 0);
     for (std::size_t s = 0; s < most_fitted_.size(); ++s)
       most_fitted_[s] = std::max(most_fitted_[s], rule.fitted[s]);
@@ -94,58 +95,9 @@ class Iteration {
     if (stage != NoiseStage::nuisance) return rule;
     if (of_lengths_.empty())
       for (int s = 0; s < static_cast<int>(equations_.data().sets.size()); ++s)
-        of_lengths_.push_back(part_of_lengths(s, covariance));
+        of_lengths_.push_back(part_of_lengths(fitted, s));
     rule.of_lengths = of_lengths_;
     return rule;
-  }
-
-  /// By set, the freedoms that the rows of a small one among others fit: one that is taken for
-  /// quieter than it is is met the better for it, and would be taken for quieter still. Negative of
-  /// those with far more equations than unknowns, and of one set alone.
-  std::vector<double> fitted_by_small_sets(const Eigen::MatrixXd& covariance,
-                                           double freedom) const {
-    const auto& sets = equations_.data().sets;
-    std::vector<double> list(sets.size(), -1);
-    for (int s = 0; sets.size() > 1 && s < static_cast<int>(sets.size()); ++s) {
-      const auto at = static_cast<std::size_t>(s);
-      const double equations = static_cast<double>(equations_.plan(s).items.size() *
-                                                   sets[at].method->equations().size());
-      if (equations > 0 && equations < kManyEquations * freedom)
-        list[at] = fitted(s, noise_.used[at], covariance) + equations_.group_freedoms(s);
-    }
-    return list;
-  }
-
-  /// Of the freedoms that the rows of a set fit, those of its lengths, by what lengths and angles
-  /// add to what is said of the parameters; where groups are fitted, too, by their scalars.
-  double part_of_lengths(int set, const Eigen::MatrixXd& covariance) const {
-    const std::vector<Quantity> equations = equations_.data().sets[set].method->equations();
-    const auto angles = static_cast<double>(std::ranges::count(equations, Quantity::angle));
-    const double by_scalars = 1 - angles / static_cast<double>(equations.size());
-    if (angles == 0 || by_scalars == 0 || equations_.plan(set).items.empty() ||
-        equations_.group_freedoms(set) > 0)
-      return by_scalars;
-    constexpr double kNothing = HUGE_VAL;  // the sigma of what says nothing
-    const Scale& scale = noise_.used[set];
-    const double both = fitted(set, scale, covariance);
-    const double lengths = both - fitted(set, {kNothing, scale.angle}, covariance);
-    const double angular = both - fitted(set, {scale.length, kNothing}, covariance);
-    return lengths + angular > 0 ? lengths / (lengths + angular) : by_scalars;
-  }
-
-  /// Freedoms that the rows of a set fit, weighed with `scale`: the trace of what they say of the
-  /// parameters times the covariance of these; and what the equations between own unknowns add.
-  double fitted(int set, const Scale& scale, const Eigen::MatrixXd& covariance) const {
-    Weighting only = weighting();
-    only.passed_over = true;
-    only.scale[set] = scale;
-    only.outlier.assign(only.outlier.size(), 1);
-    for (const SetPlan::Item& item : equations_.plan(set).items)
-      only.outlier[item.row] = noise_.outlier[item.row];
-    const std::vector<int>& columns = system_.columns();
-    const NormalEquations said = equations_.normal_equations(system_.state(), only, columns);
-    const auto n = static_cast<Eigen::Index>(columns.size());
-    return covariance(columns, columns).cwiseProduct(said.H.topLeftCorner(n, n)).sum();
   }
 
   Weighting weighting() const { return {noise_.used, noise_.outlier}; }
@@ -301,7 +253,7 @@ class Iteration {
   bool done_ = false;
   /// By set, its part_of_lengths() where the geometry had settled; the end takes it anew.
   std::vector<double> of_lengths_;
-  std::vector<double> most_fitted_;  ///< by set, of fitted_by_small_sets() so far
+  std::vector<double> most_fitted_;  ///< by set, of of_small_sets() so far
   std::set<int> unmasked_;           ///< rows that were put aside as masked outliers
   int regroupings_ = 0;              ///< changes of the rows put aside since the noise is kept
 };
