@@ -145,6 +145,8 @@ struct DiagnosisConstants {
     /// Of the squares beyond noise, that what is found may leave: the larger part leads; 0.2 to 0.8
     /// [habit]
     double most_left = 0.5;
+    double plainly_left = 2;  ///< of the noise, that rows which no choice saw are left by; 1.5 to 3
+                              ///< [trials]
     double of_moment =
         0.95;  ///< probability of the rows that a step is told between; 0.9 to 0.99 [habit]
     std::size_t most_explaining = 20;  ///< candidates; 5 to 60 [cost]

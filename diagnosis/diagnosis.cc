@@ -53,6 +53,7 @@ class Diagnostician {
     const std::optional<double>& closed = result_.gap.closed.fraction;
     allow_for_the_unknown(result_.candidates, result_.verdict, result_.named,
                           closed ? 1 - *closed : kDiagnosis.naming.most_left);
+    bound_by_what_is_left(result_.gap, result_.candidates, result_.verdict, result_.named);
     doubt_repeated_steps(result_.candidates, result_.verdict, result_.named);
     let_the_larger_share_lead(result_.verdict, result_.named);
     NextSteps next = next_steps(linearised_, data_, result_, options_);

@@ -64,29 +64,6 @@ Shares shares(const EvidenceEvaluator& evaluator, const Posterior& posterior) {
   return {before - after, after - noise};
 }
 
-/// What may be a drift or go along with the rows' order is half unknown for that alone.
-bool may_be_order(const CauseResult& each) {
-  return std::ranges::count(each.confounded_with, kUnknown) > 0;
-}
-
-/// How probably the list of causes lacks one.
-double lacking(const std::vector<CauseResult>& causes) {
-  double by_order = 0, unknown = 0;
-  for (const CauseResult& each : causes) {
-    if (may_be_order(each)) by_order = std::max(by_order, each.together - each.probability);
-    if (each.effect == kUnknown) unknown = each.probability;
-  }
-  return std::max(unknown - by_order, 0.0);
-}
-
-/// How probably it is another cause, which no list has and which looks the same: the less of it is
-/// seen, the less do the rows tell the one law from the other, by the squares that these differ by.
-double imitated(const CauseResult& each) {
-  constexpr auto& naming = kDiagnosis.naming;
-  const double seen = std::clamp(each.visible * each.visible, 1e-6, 1.0);
-  return std::min(naming.imitated / seen, naming.mostly_imitated);
-}
-
 /// At some place.
 bool steps_again(const CauseResult& cause) {
   return std::ranges::any_of(cause.correction, [&](const FoundEffect& found) {
@@ -194,35 +171,6 @@ std::vector<CauseResult> sure_causes(const std::vector<CauseResult>& causes,
         }))
       named.push_back(std::move(each));
   return named;
-}
-
-void allow_for_the_unknown(std::vector<CauseResult>& causes, CauseResult& verdict,
-                           std::vector<CauseResult>& named, double left) {
-  if (std::ranges::find(causes, kUnknown, &CauseResult::effect) == causes.end()) return;
-  const double beside = 1 - kDiagnosis.naming.beside_unknown *
-                                std::clamp(left / kDiagnosis.naming.hardly_left, 0.0, 1.0) *
-                                lacking(causes);
-  const auto lower = [&](CauseResult& each) {
-    if (!names_effect(each.effect)) return;
-    const double kept = (1 - imitated(each)) * (may_be_order(each) ? 1 : beside);
-    each.probability *= kept;
-    each.together *= kept;
-  };
-  std::ranges::for_each(causes, lower);
-  std::ranges::for_each(named, lower);
-  lower(verdict);
-  let_the_larger_lead(causes, left, verdict);
-  std::ranges::stable_sort(causes, std::ranges::greater{}, &CauseResult::probability);
-}
-
-void let_the_larger_lead(const std::vector<CauseResult>& causes, double left,
-                         CauseResult& verdict) {
-  const auto unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect);
-  if (unknown == causes.end() || !names_effect(verdict.effect)) return;
-  const bool hardly = verdict.of_its_kind() < kDiagnosis.naming.probable;
-  if ((left > kDiagnosis.naming.most_left || hardly) &&
-      verdict.of_its_kind() < std::min(kDiagnosis.naming.sure, lacking(causes)))
-    verdict = {.effect = kUnknown, .probability = unknown->probability};
 }
 
 std::ptrdiff_t steps_at(const CauseResult& cause, const std::string& at) {

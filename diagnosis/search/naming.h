@@ -73,6 +73,11 @@ void let_the_larger_lead(const std::vector<CauseResult>& causes, double left, Ca
 void doubt_repeated_steps(std::vector<CauseResult>& causes, CauseResult& verdict,
                           std::vector<CauseResult>& named);
 
+/// Where the rows that no choice has seen are left plainly beyond their noise with what is named,
+/// none of it is surer than the most that it may close of the gap, and what it leaves is unknown.
+void bound_by_what_is_left(const Gap& gap, std::vector<CauseResult>& causes, CauseResult& verdict,
+                           std::vector<CauseResult>& named);
+
 /// Of named causes as probable as the verdict's the one leads that closes the largest part of the
 /// gap, where it is plainly larger: on average, alone and beside the others.
 void let_the_larger_share_lead(CauseResult& verdict, std::vector<CauseResult>& named);

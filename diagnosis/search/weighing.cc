@@ -60,7 +60,7 @@ class Weighing {
   void offer_back() {
     const std::vector<char> aside = linearised_.outlier();
     const auto count = std::ranges::count(aside, char{1});
-    if (count < kDiagnosis.rows.fewest_offered) return;
+    if (count < kDiagnosis.rows.fewest_offered && !follow_each_other(aside)) return;
     linearised_.start_with(std::vector<char>(aside.size(), 0));
     prepare();
     if (lacking(*evaluator_).empty()) {
@@ -74,6 +74,20 @@ class Weighing {
       }
     }
     linearised_.start_with(aside);
+  }
+
+  /// Some rows `aside` are next to each other in time among those of their set that identify, as
+  /// behind a step near the end.
+  bool follow_each_other(const std::vector<char>& aside) const {
+    std::vector<char> before(data_.sets.size(), 0);
+    for (const int row : in_time(data_.rows)) {
+      const auto at = static_cast<std::size_t>(row);
+      if (data_.rows.check[at] != 0) continue;
+      char& last = before[static_cast<std::size_t>(data_.rows.set[at])];
+      if (last && aside[at]) return true;
+      last = aside[at];
+    }
+    return false;
   }
 
   /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks

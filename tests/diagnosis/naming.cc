@@ -151,6 +151,34 @@ TEST(AllowForTheUnknown, MakesAllCausesButADriftByOrderLessSure) {
   EXPECT_EQ(causes[3].probability, 0.01);
 }
 
+/// What is left of "backlash", 0.93 sure, where it may close `most` of the gap (`closed` of it) and
+/// leaves `left` of the noise.
+CauseResult bounded(double closed, double most, double left, double* unknown = nullptr) {
+  std::vector<CauseResult> causes = {{.effect = "backlash", .probability = 0.93},
+                                     {.effect = kUnknown, .probability = 0.03}};
+  CauseResult verdict = causes.front();
+  std::vector<CauseResult> named = {causes.front()};
+  Gap gap;
+  gap.rows = 40;
+  gap.noise_floor = 1e-5;
+  gap.rms_after = left * 1e-5;
+  gap.closed = {closed, closed - 0.2, most};
+  bound_by_what_is_left(gap, causes, verdict, named);
+  EXPECT_NEAR(named.front().probability, std::min(0.93, left > 2 ? most : 1), 1e-12);
+  if (unknown) *unknown = std::ranges::find(causes, kUnknown, &CauseResult::effect)->probability;
+  return verdict;
+}
+
+TEST(BoundByWhatIsLeft, IsNoSurerThanWhatIsNamedMayCloseOfRowsThatNoChoiceSaw) {
+  double unknown = 0;
+  EXPECT_EQ(bounded(-0.3, 0.39, 2.6, &unknown).effect, kUnknown);
+  EXPECT_NEAR(unknown, 0.61, 1e-12);
+  EXPECT_EQ(bounded(0.5, 0.73, 2.3, &unknown).effect, "backlash");
+  EXPECT_NEAR(unknown, 0.27, 1e-12);
+  EXPECT_EQ(bounded(0.3, 0.4, 1.4, &unknown).probability, 0.93) << "hardly beyond noise";
+  EXPECT_EQ(unknown, 0.03);
+}
+
 TEST(AllowForTheUnknown, SaysUnknownWhereTheCauseIsNoLongerMoreProbableThanNot) {
   for (const double probability : {0.8, 0.95}) {
     std::vector<CauseResult> causes = {
