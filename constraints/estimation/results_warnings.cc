@@ -37,8 +37,10 @@ class WordsOfSets {
  public:
   void add(const SetResult& set, const std::string& words) {
     const auto said = std::ranges::find(list_, words, &Words::what);
-    (said == list_.end() ? list_.emplace_back(words, std::vector<std::string>{}) : *said)
-        .sets.push_back(set.name);
+    if (said == list_.end())
+      list_.push_back({words, {set.name}});
+    else
+      said->sets.push_back(set.name);
   }
 
   void copy_to(std::vector<std::string>& warnings) const {
