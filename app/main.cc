@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "app/commands/subcommand.h"
 #include "app/commands/support/suggestion.h"
@@ -12,6 +13,20 @@ namespace selfcal {
 namespace {
 
 constexpr int kKept = 16 << 20;  // bytes
+
+/// An option that is given without a name of a file or folder would do nothing.
+void refuse_empty_names(CLI::App& command) {
+  const CLI::Validator named(
+      [](std::string& text) {
+        return text.empty() ? std::string("the name of a file or folder is wanted") : std::string();
+      },
+      "");
+  for (CLI::App* each : command.get_subcommands({})) {
+    for (CLI::Option* option : each->get_options())
+      if (option->check_lname("out") || option->check_lname("next")) option->check(named);
+    refuse_empty_names(*each);
+  }
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"Self-calibration of robots from their own joint readings", "selfcal"};
@@ -37,6 +52,7 @@ int run(int argc, char** argv) {
   add_command(app, status);
   add_history(app, status);
   add_report(app, status);
+  refuse_empty_names(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

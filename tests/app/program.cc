@@ -249,6 +249,16 @@ TEST_F(Program, RefusesOptionsThatWouldChangeNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+TEST_F(Program, AsksForANameWhereAFileHasNoneAndForOneOfFixedAndFreed) {
+  const std::string data = simulated();
+  for (const std::string& arguments :
+       {"identify " + data + " --out ''", "diagnose " + data + " --next ''",
+        "identify " + data + " --fix theta2 --free theta2"}) {
+    const Ran ran = run_selfcal(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
+  }
+}
+
 TEST_F(Program, RefusesWhatItCannotCompareWithBeforeItDiagnoses) {
   const std::string data = simulated();
   const std::filesystem::path other = folder_ / "other";
