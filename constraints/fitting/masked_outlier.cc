@@ -96,7 +96,7 @@ Standing standing(const Equations& equations, const Noise& noise, const RowDelet
 /// Rows that stand out, and the variance of what is left of the others and of all, over that of
 /// their noise.
 struct Found {
-  std::vector<int> rows = {};
+  std::vector<int> rows = {}, first = {};  ///< `first`: that of them which stands out among all
   double rest = HUGE_VAL, whole = 0;
 };
 
@@ -108,17 +108,17 @@ double variance_of(const RowDeletion& all) {
   return rest.freedom > 0 ? rest.variance() : HUGE_VAL;
 }
 
-/// By that noise, one row or of `share` of the rows and two sigma of that.
+/// By that noise, of `share` of the rows and two sigma of that.
 Found standing_out(const Equations& equations, const State& state, const Noise& noise,
-                   const Prior& prior, std::optional<double> share) {
+                   const Prior& prior, double share) {
   RowDeletion all(equations, state, noise, prior);
   std::vector<Deletion> deletions = all.deletions();
   const auto hidden = static_cast<std::size_t>(
       std::clamp(kMostEquations / std::max<Eigen::Index>(all.freedom().size(), 1), kFewestHidden,
                  kMostHidden));
-  const double expected = share.value_or(0) * static_cast<double>(deletions.size());
+  const double expected = share * static_cast<double>(deletions.size());
   const auto most =
-      share ? static_cast<std::size_t>(expected + 2 * std::sqrt(expected)) : std::size_t{1};
+      std::max<std::size_t>(1, static_cast<std::size_t>(expected + 2 * std::sqrt(expected)));
   Found found{.whole = variance_of(all)};
   std::vector<int> rows;
   while (rows.size() < std::min(most, found.rows.size() + hidden) && !deletions.empty()) {
@@ -133,6 +133,7 @@ Found standing_out(const Equations& equations, const State& state, const Noise& 
     all.take_away(row);
     if (first->chance < kMaskedByChance) {
       found.rows = rows;
+      if (rows.size() == 1) found.first = rows;
       found.rest = variance_of(all);
     }
     deletions = all.deletions();
@@ -165,10 +166,10 @@ std::vector<int> masked_outliers(const Equations& equations, const State& state,
   if (found.rows.size() == 1 || found.rest < kOfWhole * kOfWhole * found.whole) return found.rows;
   // Where false rows make the noise, the tolerances bar the way to a robot that meets the others.
   if (const std::optional<Noise> stated = as_stated(equations, noise)) {
-    found = standing_out(equations, state, *stated, prior, share);
-    if (found.rest < kOfSheet * kOfSheet) return found.rows;
+    Found some = standing_out(equations, state, *stated, prior, share);
+    if (some.rest < kOfSheet * kOfSheet) return std::move(some.rows);
   }
-  return standing_out(equations, state, noise, prior, {}).rows;
+  return std::move(found.first);
 }
 
 }  // namespace selfcal

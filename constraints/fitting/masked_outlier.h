@@ -14,9 +14,9 @@ namespace selfcal {
 /// F distribution, of all rows in `noise` that are not put aside. The row that stands out most is
 /// taken away, then that of those left, and so on, as far as the last that is so improbable (the
 /// generalised extreme studentised deviate, Rosner 1983); at most `share` of the rows and two sigma
-/// of that. Several are false only if all others are then met far better, or nearly as the data
-/// sheets say: else they are structure, and one is looked for alone. None where nothing is free
-/// that a row could bend, or of so many equations that no row can bend the fit alone.
+/// of that, or one. Several are false only if all others are then met far better, or nearly as the
+/// data sheets say: else they are structure, and one is looked for alone. None where nothing is
+/// free that a row could bend, or of so many equations that no row can bend the fit alone.
 std::vector<int> masked_outliers(const Equations& equations, const State& state, const Noise& noise,
                                  const Prior& prior, double share);
 

@@ -147,22 +147,28 @@ TEST(Doubt, TellsADriftThatSettlesBetweenTwoPassesFromAMove) {
   EXPECT_EQ(diagnosis.verdict.effect, "base_drift") << diagnosis.why;
 }
 
-/// What is doubted of rows where a fixture is said to have moved by `shift` (m).
-std::string doubt_of_fixture(double shift) {
+/// What is doubted of rows of which `cause` is named.
+std::string doubt_of_named(const CauseResult& cause) {
   const Rows rows;
   const LinearisedModel linearised(rows.robot, rows.data, quick(), {});
   Diagnosis diagnosis;
-  diagnosis.verdict.effect = "fixture_shift";
-  diagnosis.named = {{.effect = "fixture_shift",
-                      .where = {"side"},
-                      .parameters = {{.name = "side.shift",
-                                      .unit = "m",
-                                      .value = shift,
-                                      .sigma = 1e-4,
-                                      .usual_least = 1e-5,
-                                      .usual_most = 2e-4}}}};
-  diagnosis.gap.rms_before = 1e-3;
+  diagnosis.verdict.effect = cause.effect;
+  diagnosis.named = {cause};
+  diagnosis.gap.rms_before = 1e-4;
+  diagnosis.gap.rms_after = 0.5e-4;
   return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
+}
+
+/// Where a fixture is said to have moved by `shift` (m).
+std::string doubt_of_fixture(double shift) {
+  return doubt_of_named({.effect = "fixture_shift",
+                         .where = {"side"},
+                         .parameters = {{.name = "side.shift",
+                                         .unit = "m",
+                                         .value = shift,
+                                         .sigma = 1e-4,
+                                         .usual_least = 1e-5,
+                                         .usual_most = 2e-4}}});
 }
 
 TEST(Doubt, KnowsAnotherSurfaceFromOneThatMoved) {
@@ -170,25 +176,17 @@ TEST(Doubt, KnowsAnotherSurfaceFromOneThatMoved) {
   EXPECT_THAT(doubt_of_fixture(-0.2), HasSubstr("some touches of side are of another surface"));
 }
 
-/// What is doubted of rows where joint j2 is said to give way by `compliance`, to `sigma`.
+/// Where joint j2 is said to give way by `compliance`, to `sigma`.
 std::string doubt_of_spring(double compliance, double sigma) {
-  const Rows rows;
-  const DiagnosisOptions options = quick();
-  const LinearisedModel linearised(rows.robot, rows.data, options, {});
-  Diagnosis diagnosis;
-  diagnosis.verdict.effect = "joint_compliance";
-  diagnosis.named = {{.effect = "joint_compliance",
-                      .where = {"j2"},
-                      .parameters = {{.name = "j2.c",
-                                      .unit = "rad/(N m)",
-                                      .value = compliance,
-                                      .sigma = sigma,
-                                      .usual_least = 2e-7,
-                                      .usual_most = 1e-4,
-                                      .positive = true}}}};
-  diagnosis.gap.rms_before = 1e-4;
-  diagnosis.gap.rms_after = 0.5e-4;
-  return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
+  return doubt_of_named({.effect = "joint_compliance",
+                         .where = {"j2"},
+                         .parameters = {{.name = "j2.c",
+                                         .unit = "rad/(N m)",
+                                         .value = compliance,
+                                         .sigma = sigma,
+                                         .usual_least = 2e-7,
+                                         .usual_most = 1e-4,
+                                         .positive = true}}});
 }
 
 TEST(Doubt, NamesNoSpringThatPushesBack) {
