@@ -48,10 +48,12 @@ struct DiagnosisConstants {
     std::array<double, 5> smooth = {0.35, 0.7, 1.4, 2.8, 5.6};  ///< 0.1 to 10 [trials]
     /// Of errors of one joint; 0.1 to 10 [trials]
     std::array<double, 4> of_joint = {0.7, 1.4, 2.8, 5.6};
-    double joints = 1.0;  ///< rad, over which configurations are alike; 0.3 to 2 [trials]
-    double turned = 2.0;  ///< rad, over which one joint's errors are smooth; 0.5 to 3 [physics]
-    double place = 0.2;   ///< of the robot's size; 0.1 to 1 [physics]
-    double time = 0.06;   ///< of the whole; 0.02 to 0.5 [trials]
+    double joints = 1.0;    ///< rad, over which configurations are alike; 0.3 to 2 [trials]
+    double turned = 2.0;    ///< rad, over which one joint's errors are smooth; 0.5 to 3 [physics]
+    double kinked = 1.0;    ///< the same of those that have steps and kinks; 0.3 to 3 [physics]
+    double periodic = 0.5;  ///< of those that are the same a turn later; 0.3 to 1 [physics]
+    double place = 0.2;     ///< of the robot's size; 0.1 to 1 [physics]
+    double time = 0.06;     ///< of the whole; 0.02 to 0.5 [trials]
     std::array<double, 3> of_visits = {1, 0.5, 0};  ///< shares of a visit's noise [trials]
   };
   struct Evidence {
@@ -82,7 +84,9 @@ struct DiagnosisConstants {
   };
   /// Of candidates.
   struct Shapes {
-    int moments = 24;    ///< at which a step may have happened; 8 to 100 [cost]
+    int moments = 24;  ///< at which a step may have happened; 8 to 100 [cost]
+    /// Rows, of a cause that steps away and back; 2 to 6 [physics]
+    std::size_t fewest_between = 3;
     int few_times = 40;  ///< up to which it may have between any two; 10 to 100 [cost]
     /// Over the usual time from one row to the next, the longest of which a step may lie in; 3 to
     /// 20, 0 to 10 [cost]

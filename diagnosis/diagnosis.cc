@@ -122,7 +122,7 @@ class Diagnostician {
     }
     const bool asked_unknown = named.effect == kUnknown;
     if (posterior.unknown > kDiagnosis.naming.probable || asked_unknown)
-      result_.unknown = domain_of_unknown(*evaluator_, posterior);
+      result_.unknown = structure_of_unknown(*evaluator_, posterior, linearised_.geometry());
     result_.verdict = decided(std::move(named), posterior, p, options_);
     result_.p_value = asked_unknown || result_.verdict.effect == kUnknown ? p.unknown : p.known;
     tell("practising on simulated sessions", 0.8);

@@ -109,7 +109,7 @@ struct Diagnosis {
   /// What is named, the verdict's first: all that were sure before what speaks against them was
   /// counted. None where the verdict is "none".
   std::vector<CauseResult> named;
-  std::optional<KernelDomain> unknown = {};  ///< how the rows err that `unknown` explains
+  std::optional<UnknownStructure> unknown = {};  ///< how the rows err that `unknown` explains
   std::string scatter;  ///< in words, of rows that scatter more than stated, where `unknown` makes
                         ///< them or repeats say that it is noise
   std::string uneven;   ///< in words, of noise that is not the same everywhere

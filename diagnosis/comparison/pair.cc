@@ -106,8 +106,8 @@ EvidenceEvaluator Pair::evaluator(const DenseEquations& rows, SearchRule rule) c
   return EvidenceEvaluator(
       whitened(rows),
       structures(both_.rows, rows, ends(*geometry_, both_.rows), size_of(*geometry_),
-                 {by_joint, credible_steps(both_.rows.q, by_joint)},
-                 comparable_readings(*geometry_, both_.rows.q)),
+                 {.readings = {by_joint, credible_steps(both_.rows.q, by_joint)},
+                  .alike = comparable_readings(*geometry_, both_.rows.q)}),
       changes_.candidates, changes_.parameters, rule);
 }
 

@@ -4,10 +4,7 @@
 // another's. What comes and goes in time jumps or wanders: it is as alike as exp(-|t1 - t2| / span)
 // says, as the tool sees it, or as a motion of the base would have it,
 //   d1 . d2 + (c1 x d1) . (c2 x d2),   c from the middle of all places, over the robot's size.
-// Where a joint is off by a function of the readings, it is
-//   J(1) J(2) mean_ab (1 + bell_a) (1 + bell_b) / 4
-// with J what the joint moves the equation (of mean square 1 over all equations) and bell_a that of
-// the difference of reading a: functions of one reading and of two, all of them smooth.
+// Errors of one joint: joint_kernels.h.
 #include "diagnosis/evidence/discrepancy.h"
 
 #include <cmath>
@@ -26,14 +23,13 @@ namespace {
 class Kernel {
  public:
   Kernel(const Observations& data, const DenseEquations& rows,
-         const std::vector<Eigen::Isometry3d>& ends, double size, const ReadingErrors& readings,
-         const Eigen::MatrixXd& alike)
+         const std::vector<Eigen::Isometry3d>& ends, double size, const JointErrors& joints)
       : data_(data),
         rows_(rows),
         ends_(ends),
         near_(kDiagnosis.structure.place * size),
-        readings_(readings),
-        alike_(alike),
+        readings_(joints.readings),
+        alike_(joints.alike),
         visit_(visits(data)) {
     std::vector<double> times;  // a row need not have one
     std::ranges::copy_if(data.time, std::back_inserter(times),
@@ -64,26 +60,6 @@ class Kernel {
       return alone + shared / 3 + alike * same +
              (visit_[a] == visit_[b] ? of_visits * of_visits * alike : 0);
     });
-  }
-
-  /// Of errors of one joint, times `size`, by the root of likeness().
-  Eigen::MatrixXd root_of_joint(Eigen::Index joint, const Eigen::MatrixXd& alike,
-                                double size) const {
-    Eigen::VectorXd J = readings_.by_joint.col(joint);
-    if (J.norm() > 0) J *= std::sqrt(size * static_cast<double>(J.size())) / J.norm();
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(J.size(), alike.cols());
-    for (Eigen::Index i = 0; i < J.size(); ++i)
-      if (place_[i] >= 0) F.row(i) = J[i] * alike.row(place_[i]);
-    return F;
-  }
-
-  /// Covariance of one function of one or two readings between the rows that have equations.
-  Eigen::MatrixXd likeness() const {
-    const auto n = static_cast<Eigen::Index>(used_.size());
-    Eigen::MatrixXd K(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j) K(i, j) = K(j, i) = alike(used_[i], used_[j]);
-    return K;
   }
 
   Eigen::MatrixXd of(KernelDomain domain) const {
@@ -169,20 +145,6 @@ class Kernel {
 
   static double bell(double squared) { return std::exp(-squared / 2); }
 
-  /// Covariance of one function of one or two readings, the mean over all pairs of joints.
-  double alike(int a, int b) const {
-    double sum = 0, squares = 0;
-    const Eigen::Index joints = alike_.cols();
-    for (Eigen::Index j = 0; j < joints; ++j) {
-      const double each =
-          (1 + bell(std::pow((alike_(a, j) - alike_(b, j)) / kDiagnosis.structure.turned, 2))) / 2;
-      sum += each;
-      squares += each * each;
-    }
-    const auto pairs = static_cast<double>(joints * (joints - 1));
-    return pairs > 0 ? (sum * sum - squares) / pairs : sum;
-  }
-
   double close(KernelDomain domain, int a, int b) const {
     // Repeats that lie minutes apart are as far from each other as that: no kernel knows of
     // another one, or the covariance would be none.
@@ -193,9 +155,12 @@ class Kernel {
       case KernelDomain::place:
         return bell((ends_[a].translation() - ends_[b].translation()).squaredNorm() /
                     (near_ * near_));
-      case KernelDomain::same:
-      case KernelDomain::turned:
-        return 0;  // these are noise(), and root_of_joint()
+      case KernelDomain::same:    // noise()
+      case KernelDomain::turned:  // and joint_kernels()
+      case KernelDomain::kinked:
+      case KernelDomain::load:
+      case KernelDomain::warmth:
+        return 0;
       case KernelDomain::time:
       case KernelDomain::base:
         if (!std::isfinite(data_.time[a] + data_.time[b])) return 0;
@@ -220,18 +185,10 @@ class Kernel {
 
 }  // namespace
 
-Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
-  for (Eigen::Index j = 0; j < q.cols(); ++j) {
-    if (robot.joints()[static_cast<size_t>(j)].quantity == Quantity::angle) continue;
-    const double moved = q.col(j).maxCoeff() - q.col(j).minCoeff();
-    if (moved > 0) q.col(j) *= std::numbers::pi / moved;
-  }
-  return q;
-}
-
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,
                                                const ReadingErrors& readings, double of_visits) {
-  const Kernel kernel(data, rows, {}, 1, readings, data.q);
+  const JointErrors joints{readings, data.q};
+  const Kernel kernel(data, rows, {}, 1, joints);
   return {{.kappa = of_visits, .blocks = kernel.noise(of_visits, 0)}};
 }
 
@@ -253,17 +210,18 @@ void add_noise(const Kernel& kernel, double of_visits, std::vector<DiscrepancyCo
   }
 }
 
-void add_kernel(KernelDomain domain, std::span<const double> sizes,
-                const std::shared_ptr<const NoiseBlocks>& noise, KernelBasis basis,
+/// As `like`, with this kernel, of several sizes.
+void add_kernel(DiscrepancyCovariance like, KernelBasis basis, std::span<const double> sizes,
                 std::vector<DiscrepancyCovariance>& list) {
-  const auto kernel = std::make_shared<const KernelBasis>(std::move(basis));
-  for (const double kappa : sizes)
-    list.push_back(
-        {.kind = static_cast<int>(domain), .kappa = kappa, .blocks = noise, .kernel = kernel});
+  like.kernel = std::make_shared<const KernelBasis>(std::move(basis));
+  for (const double kappa : sizes) {
+    like.kappa = kappa;
+    list.push_back(like);
+  }
 }
 
 /// What no known effect explains, beside the noise.
-void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
+void add_unknowns(const Kernel& kernel, double of_visits, const std::vector<JointKernel>& of_joints,
                   std::vector<DiscrepancyCovariance>& list) {
   const double once = 1 + of_visits * of_visits;
   for (const double kappa : kDiagnosis.structure.more)
@@ -275,25 +233,25 @@ void add_unknowns(const Kernel& kernel, double of_visits, Eigen::Index joints,
   for (const KernelDomain domain :
        {KernelDomain::joints, KernelDomain::place, KernelDomain::time, KernelDomain::base})
     if (kernel.possible(domain))
-      add_kernel(domain, kDiagnosis.structure.smooth, usual,
-                 basis_of_kernel(*usual, once * kernel.of(domain)), list);
-  const Eigen::MatrixXd likeness = kernel.likeness();
-  const Eigen::MatrixXd alike = *low_rank_root(likeness, likeness.rows());
-  for (Eigen::Index joint = 0; joint < joints; ++joint)
-    add_kernel(KernelDomain::turned, kDiagnosis.structure.of_joint, usual,
-               basis_of_root(*usual, kernel.root_of_joint(joint, alike, once)), list);
+      add_kernel({.kind = static_cast<int>(domain), .blocks = usual},
+                 basis_of_kernel(*usual, once * kernel.of(domain)), kDiagnosis.structure.smooth,
+                 list);
+  for (const JointKernel& each : of_joints)
+    add_kernel({.kind = static_cast<int>(each.domain), .joint = each.joint, .blocks = usual},
+               basis_of_root(*usual, std::sqrt(once) * each.root), kDiagnosis.structure.of_joint,
+               list);
 }
 
 }  // namespace
 
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              double size, const ReadingErrors& readings,
-                                              const Eigen::MatrixXd& alike, double of_visits) {
-  const Kernel kernel(data, rows, ends, size, readings, alike);
+                                              double size, const JointErrors& joints,
+                                              double of_visits) {
+  const Kernel kernel(data, rows, ends, size, joints);
   std::vector<DiscrepancyCovariance> list;
   add_noise(kernel, of_visits, list);
-  add_unknowns(kernel, of_visits, readings.by_joint.cols(), list);
+  add_unknowns(kernel, of_visits, joint_kernels(data, rows, joints), list);
   double unknown = 0;
   for (const DiscrepancyCovariance& each : list) unknown += each.kind > 0;
   for (DiscrepancyCovariance& each : list)

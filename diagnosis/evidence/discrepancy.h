@@ -7,8 +7,8 @@
 #include "constraints/equations/equations.h"
 #include "constraints/equations/resolution.h"
 #include "diagnosis/evidence/evidence_rows.h"
+#include "diagnosis/evidence/joint_kernels.h"
 #include "diagnosis/evidence/kernel_domain.h"
-#include "kinematics/robot.h"
 
 namespace selfcal {
 
@@ -17,15 +17,10 @@ namespace selfcal {
 /// repeats, see noise_of_visits. `rows` are the equations that are weighed, `ends` the
 /// endpoint's pose by row of the data set, `size` the robot's (m, see size_of). The rounding
 /// of a reading is shared by rows of one reading, however often they are repeated.
-/// `alike` (rows x joints) are the readings as they are compared, see comparable_readings.
 std::vector<DiscrepancyCovariance> structures(const Observations& data, const DenseEquations& rows,
                                               const std::vector<Eigen::Isometry3d>& ends,
-                                              double size, const ReadingErrors& readings,
-                                              const Eigen::MatrixXd& alike, double of_visits = 0);
-
-/// Readings `q` (rows x joints) as angles: of a joint that slides, half a turn for all that it
-/// moves in these rows.
-Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q);
+                                              double size, const JointErrors& joints,
+                                              double of_visits = 0);
 
 /// Only noise, its visits' own included.
 std::vector<DiscrepancyCovariance> noise_alone(const Observations& data, const DenseEquations& rows,

@@ -20,7 +20,8 @@ using Groups = std::vector<std::vector<int>>;
 
 /// Covariance of noise, and of one structure of what no known effect explains.
 struct DiscrepancyCovariance {
-  int kind = 0;                                    ///< 0: noise alone
+  int kind = 0;                                    ///< 0: noise alone; else a KernelDomain
+  int joint = -1;                                  ///< whose errors it is of; -1: of none
   double kappa = 0;                                ///< size of the structure over the noise
   std::shared_ptr<const NoiseBlocks> blocks = {};  ///< L
   std::shared_ptr<const KernelBasis> kernel = {};  ///< W and its variances; null where it is in L

@@ -202,6 +202,22 @@ ReadingErrors LinearisedModel::reading_errors() const {
   return {by_joint().array().colwise() / over, steps_};
 }
 
+JointErrors LinearisedModel::joint_errors() const {
+  return {.readings = reading_errors(),
+          .alike = comparable_readings(*geometry_, data_.rows.q),
+          .by_load = by_load()};
+}
+
+Eigen::MatrixXd LinearisedModel::by_load() const {
+  const std::vector<int> equations = equations_of(all_, taking_part());
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equations.size()),
+                                             static_cast<Eigen::Index>(geometry_->joints().size()));
+  for (const Candidate& each : candidates_.list)
+    if (each.effect == "joint_compliance" && each.joint >= 0 && !each.shape.lumps)
+      by.col(each.joint) = of(equations, each.main).C.col(0);
+  return by;
+}
+
 Eigen::MatrixXd LinearisedModel::by_joint() const {
   return all_.W(equations_of(all_, taking_part()), reading_columns(*geometry_));
 }

@@ -8,6 +8,7 @@
 #include "constraints/equations/resolution.h"
 #include "constraints/estimation/adjustment.h"
 #include "diagnosis/evidence/candidates.h"
+#include "diagnosis/evidence/joint_kernels.h"
 #include "diagnosis/evidence/whitened.h"
 
 namespace selfcal {
@@ -55,6 +56,8 @@ class LinearisedModel {
   Eigen::MatrixXd tips() const;
   /// Of the equations of kept(); whitened.
   ReadingErrors reading_errors() const;
+  /// Of the equations of kept(), whitened, and of the readings of all rows.
+  JointErrors joint_errors() const;
   /// What the geometry alone leaves of `rows` (as whitened()).
   Eigen::VectorXd geometry_residuals(const Whitened& rows) const;
   /// Variance that noise of one has beyond the geometry, by equation of `rows`: 1 less its
@@ -89,6 +92,8 @@ class LinearisedModel {
   void start_with(std::vector<char> outlier);
   /// The rows marked take part again, if they are among those that are weighed.
   void take_back(const std::vector<char>& rows);
+  /// These of the held rows take no part. True where any of them did.
+  bool put_aside(const std::vector<char>& rows);
   /// The rows that are held, put aside or not; of a large data set one of every so many
   /// configurations. Whitened at a scale of one.
   const DenseEquations& all() const { return all_; }
@@ -112,6 +117,9 @@ class LinearisedModel {
   /// What an error of each joint's reading moves each equation of kept() (equations x joints,
   /// sigmas a rad or m), at a scale of one.
   Eigen::MatrixXd by_joint() const;
+  /// What each joint's giving way to its load, by one, moves the same equations, whitened; zeros
+  /// where its load is not known or says nothing.
+  Eigen::MatrixXd by_load() const;
   /// Those equations of all(), with these columns of the effects.
   Whitened of(const std::vector<int>& equations, const std::vector<int>& effects) const;
   /// Takes no noise for less than its data sheet says, unless repeats tell.

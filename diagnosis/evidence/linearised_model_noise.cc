@@ -82,6 +82,16 @@ void LinearisedModel::take_back(const std::vector<char>& rows) {
     if (held_[row] && rows[row]) outlier_[row] = 0;
 }
 
+bool LinearisedModel::put_aside(const std::vector<char>& rows) {
+  bool any = false;
+  for (size_t row = 0; row < held_.size(); ++row) {
+    if (!held_[row] || !rows[row] || outlier_[row]) continue;
+    outlier_[row] = 1;
+    any = true;
+  }
+  return any;
+}
+
 std::vector<Scale> LinearisedModel::least_of_sets() const {
   std::vector<Scale> least = declared_noise(data_);
   for (size_t s = 0; s < least.size(); ++s) {

@@ -153,16 +153,17 @@ std::string likelier_than_none(const Diagnosis& diagnosis) {
 }
 
 /// ": rows near each other in the cell err alike", where that is known.
-std::string how_it_errs(std::optional<KernelDomain> domain) {
-  return domain ? ": " + std::string(in_words(*domain)) : std::string();
+std::string how_it_errs(const std::optional<UnknownStructure>& structure) {
+  return structure ? ": " + in_words(*structure) : std::string();
 }
 
-std::string advice_on_unknown(std::optional<KernelDomain> domain) {
-  return domain == KernelDomain::same ? ". Look at the machine and at what measures it, or go to "
-                                        "some of these configurations again from elsewhere: "
-                                        "what a robot does not repeat looks like this"
-                                      : ". Look at the machine and at what measures it, or repeat "
-                                        "some configurations to be sure of the noise";
+std::string advice_on_unknown(const std::optional<UnknownStructure>& structure) {
+  return structure && structure->domain == KernelDomain::same
+             ? ". Look at the machine and at what measures it, or go to "
+               "some of these configurations again from elsewhere: "
+               "what a robot does not repeat looks like this"
+             : ". Look at the machine and at what measures it, or repeat "
+               "some configurations to be sure of the noise";
 }
 
 /// ". Named besides: backlash at j1 (93 % sure). Probable besides: …", of a verdict that is

@@ -241,17 +241,27 @@ std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
   return Teller(linearised, evaluator, posterior).causes();
 }
 
-std::optional<KernelDomain> domain_of_unknown(const EvidenceEvaluator& evaluator,
-                                              const Posterior& posterior) {
-  std::map<int, double> by_domain;
+std::optional<UnknownStructure> structure_of_unknown(const EvidenceEvaluator& evaluator,
+                                                     const Posterior& posterior,
+                                                     const Robot& robot) {
+  std::map<int, std::map<int, double>> weights;  // by domain and joint
   double all = 0;
   for (const Hypothesis& h : posterior.hypotheses)
-    if (const int kind = evaluator.structure(h.structure).kind; kind > 0) {
-      by_domain[kind] += std::exp(h.log_weight);
-      all += std::exp(h.log_weight);
+    if (const auto& structure = evaluator.structure(h.structure); structure.kind > 0) {
+      const double weight = std::exp(h.log_weight);
+      weights[structure.kind][structure.joint] += weight;
+      all += weight;
     }
-  for (const auto& [kind, weight] : by_domain)
-    if (weight > all / 2) return static_cast<KernelDomain>(kind);
+  for (const auto& [kind, by_joint] : weights) {
+    double of_kind = 0;
+    for (const auto& [joint, weight] : by_joint) of_kind += weight;
+    if (!(of_kind > all / 2)) continue;
+    UnknownStructure found{static_cast<KernelDomain>(kind)};
+    for (const auto& [joint, weight] : by_joint)
+      if (joint >= 0 && weight > of_kind / 2)
+        found.joint = robot.joints()[static_cast<std::size_t>(joint)].name;
+    return found;
+  }
   return std::nullopt;
 }
 

@@ -15,9 +15,11 @@ std::vector<CauseResult> cause_results(const LinearisedModel& linearised,
                                        const EvidenceEvaluator& evaluator,
                                        const Posterior& posterior);
 
-/// How the rows err that the unknown explains, where one way is more probable than all others.
-std::optional<KernelDomain> domain_of_unknown(const EvidenceEvaluator& evaluator,
-                                              const Posterior& posterior);
+/// How the rows err that the unknown explains, where one way is more probable than all others; at
+/// which joint of `robot`, where one is.
+std::optional<UnknownStructure> structure_of_unknown(const EvidenceEvaluator& evaluator,
+                                                     const Posterior& posterior,
+                                                     const Robot& robot);
 
 /// "joint_compliance@j2", or the effect alone.
 std::string label(const std::string& effect, const std::string& at);

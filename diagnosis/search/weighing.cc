@@ -36,7 +36,8 @@ class Weighing {
       const bool finer = linearised_.try_moments_near(steps);
       if (finer) linearised_.take_back(wronged_by(steps, aside));
       const bool waves = linearised_.try_fine_waves();
-      if (!finer && !waves && !refined) break;
+      const bool fewer = linearised_.put_aside(there_and_back(posterior_.hypotheses.front()));
+      if (!finer && !waves && !refined && !fewer) break;
     }
     return {std::move(evaluator_), std::move(posterior_), {}};
   }
@@ -88,6 +89,28 @@ class Weighing {
       last = aside[at];
     }
     return false;
+  }
+
+  /// The rows for which one cause steps away and back, where they are so few that these are false.
+  std::vector<char> there_and_back(const Hypothesis& best) const {
+    std::vector<char> rows(linearised_.outlier().size(), 0);
+    const std::vector<Candidate>& list = evaluator_->candidates().list;
+    for (const int a : best.candidates)
+      for (const int b : best.candidates) {
+        const Candidate &away = list[static_cast<std::size_t>(a)],
+                        &back = list[static_cast<std::size_t>(b)];
+        if (away.effect != back.effect || away.at != back.at || !away.shape.moment ||
+            !back.shape.moment || *away.shape.moment >= *back.shape.moment)
+          continue;
+        std::vector<std::size_t> between;
+        for (std::size_t row = 0; row < rows.size(); ++row)
+          if (const double t = data_.rows.time[static_cast<Eigen::Index>(row)];
+              t > *away.shape.moment && t < *back.shape.moment)
+            between.push_back(row);
+        if (between.size() >= kDiagnosis.shapes.fewest_between) continue;
+        for (const std::size_t row : between) rows[row] = 1;
+      }
+    return rows;
   }
 
   /// Of the most probable hypothesis with any: rows on the wrong side of a step may be what speaks
@@ -159,9 +182,7 @@ std::unique_ptr<EvidenceEvaluator> evidence_of(const LinearisedModel& linearised
   return std::make_unique<EvidenceEvaluator>(
       linearised.whitened(),
       structures(data.rows, rows, linearised.ends(), size_of(linearised.geometry()),
-                 linearised.reading_errors(),
-                 comparable_readings(linearised.geometry(), data.rows.q),
-                 noise_of_visits(data.rows, rows, linearised.left())),
+                 linearised.joint_errors(), noise_of_visits(data.rows, rows, linearised.left())),
       linearised.candidates(), linearised.parameters(), rule);
 }
 

@@ -49,8 +49,7 @@ struct Seen {
         rows(linearised.kept()),
         evaluator(linearised.whitened(),
                   structures(data.rows, rows, linearised.ends(), size_of(linearised.geometry()),
-                             linearised.reading_errors(),
-                             comparable_readings(linearised.geometry(), data.rows.q)),
+                             linearised.joint_errors()),
                   linearised.candidates(), linearised.parameters(), options.search) {}
 
   static DiagnosisOptions with(double most_outliers) {
@@ -117,8 +116,7 @@ TEST(EvidenceEvaluator, SearchesCoarselyForTheSameFamilies) {
   const EvidenceEvaluator evaluator(
       linearised.whitened(),
       structures(data.rows, linearised.kept(), linearised.ends(), size_of(linearised.geometry()),
-                 linearised.reading_errors(),
-                 comparable_readings(linearised.geometry(), data.rows.q)),
+                 linearised.joint_errors()),
       linearised.candidates(), linearised.parameters(), options.search);
   const Posterior whole = evaluator.search(), coarse = evaluator.search_coarsely(4);
   EXPECT_NEAR(coarse.none, whole.none, 1e-6);

@@ -71,7 +71,7 @@ TEST(Structures, RepeatsShareTheRoundingOfTheirReading) {
 
 TEST(Structures, BeginWithNoiseAndShareWhatIsCloseInEachSense) {
   const Touches t;
-  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
+  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, {kNoErrors, t.data.q});
   EXPECT_EQ(list.front().kind, 0);
   double noise = 0, unknown = 0;
   for (const DiscrepancyCovariance& each : list) {
@@ -92,7 +92,7 @@ TEST(Structures, LetTimeBeSharedAsTheToolSeesIt) {
   t.data.time << 0, 0, 1000;
   t.ends[1].linear() = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitY()).matrix();
   const auto of_time = [&] {
-    const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
+    const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, {kNoErrors, t.data.q});
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::time), &DiscrepancyCovariance::kind);
     return found->matrix();
@@ -115,7 +115,7 @@ TEST(Structures, LetTimeBeSharedAsTheBaseMoves) {
   t.ends[1].translation() = Eigen::Vector3d(-1, 0, 0);
   t.ends[2].translation() = Eigen::Vector3d::Zero();
   const auto of_base = [&](double size) {
-    const auto list = structures(t.data, t.rows, t.ends, size, kNoErrors, t.data.q);
+    const auto list = structures(t.data, t.rows, t.ends, size, {kNoErrors, t.data.q});
     const auto found =
         std::ranges::find(list, static_cast<int>(KernelDomain::base), &DiscrepancyCovariance::kind);
     return Eigen::MatrixXd(found->matrix() - Eigen::MatrixXd::Identity(3, 3));
@@ -133,7 +133,7 @@ TEST(Structures, KnowDistancesThatNoShiftChanges) {
   t.rows.shift.setZero();
   t.data.time.resize(3);
   t.data.time << 0, 0, 1000;
-  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q);
+  const auto list = structures(t.data, t.rows, t.ends, 4 / 3.0, {kNoErrors, t.data.q});
   const auto of = [&](KernelDomain domain) {
     return std::ranges::find(list, static_cast<int>(domain), &DiscrepancyCovariance::kind);
   };
@@ -149,7 +149,7 @@ TEST(Structures, TakeNoAngleOfAPoseForAnother) {
   t.rows.row = {0, 0, 0};
   t.data.time.resize(3);
   t.data.time << 0, 500, 1000;
-  for (const auto& each : structures(t.data, t.rows, t.ends, 4 / 3.0, kNoErrors, t.data.q))
+  for (const auto& each : structures(t.data, t.rows, t.ends, 4 / 3.0, {kNoErrors, t.data.q}))
     EXPECT_TRUE(each.matrix().isDiagonal()) << "kind " << each.kind;
 }
 
@@ -164,7 +164,7 @@ TEST(Structures, HoldJointErrorsThatAreFunctionsOfTwoReadings) {
   Eigen::MatrixXd by_joint(2, 2);
   by_joint << 3, 0, 4, 5;
   const auto list = structures(data, rows, std::vector(2, Eigen::Isometry3d::Identity()), 1,
-                               {by_joint, Eigen::VectorXd::Zero(2)}, data.q);
+                               {{by_joint, Eigen::VectorXd::Zero(2)}, data.q});
   const auto found =
       std::ranges::find(list, static_cast<int>(KernelDomain::turned), &DiscrepancyCovariance::kind);
   ASSERT_NE(found, list.end());

@@ -74,14 +74,14 @@ TEST(VerdictInWords, TellsBesideTheUnknownWhatIsProbableAllTheSame) {
 TEST(VerdictInWords, TellsHowTheUnknownErrsAndWhatWouldShow) {
   Diagnosis diagnosis = with({.effect = kUnknown, .probability = 0.99});
   diagnosis.candidates.resize(1);
-  diagnosis.unknown = KernelDomain::place;
+  diagnosis.unknown = {KernelDomain::place};
   EXPECT_EQ(
       verdict_in_words(diagnosis),
       "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): rows "
       "near each other in the cell err alike. Look at the machine and at what measures it, or "
       "repeat some "
       "configurations to be sure of the noise");
-  diagnosis.unknown = KernelDomain::same;
+  diagnosis.unknown = {KernelDomain::same};
   EXPECT_EQ(verdict_in_words(diagnosis),
             "no known effect explains the gap (99 % sure; noise alone does in 0.005 of cases): the "
             "repeats of a configuration err alike, and no other rows with them. Look at the "

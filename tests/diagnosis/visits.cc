@@ -112,10 +112,11 @@ TEST(Visits, MakeCovariancesOfAllThatRowsMayShare) {
   for (const double of_visits : {0.0, 3.0})
     for (const DiscrepancyCovariance& each :
          structures(session.data.rows, rows, ends, 4 / 3.0,
-                    {Eigen::MatrixXd::Ones(n, 6), reading_steps(session.data.rows.q)},
-                    session.data.rows.q, of_visits)) {
+                    {.readings = {Eigen::MatrixXd::Ones(n, 6), reading_steps(session.data.rows.q)},
+                    .alike = session.data.rows.q},
+                    of_visits)) {
       const Eigen::MatrixXd S = each.matrix();
-      EXPECT_TRUE(S.allFinite()) << in_words(static_cast<KernelDomain>(each.kind));
+      EXPECT_TRUE(S.allFinite()) << in_words({static_cast<KernelDomain>(each.kind)});
       EXPECT_GT(S.llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0.99);
       of_time += each.kind == static_cast<int>(KernelDomain::time);
     }

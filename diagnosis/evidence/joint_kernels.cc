@@ -1,0 +1,173 @@
+#include "diagnosis/evidence/joint_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <numeric>
+
+#include "diagnosis/constants.h"
+#include "diagnosis/evidence/kernel_basis.h"
+
+namespace selfcal {
+namespace {
+
+constexpr Eigen::Index kKnots = 24;    ///< of a function of one reading
+constexpr double kLeastOfWave = 1e-3;  ///< that a wave is worth
+
+/// One function of one or two readings, in two rows.
+double likeness(const Eigen::MatrixXd& readings, Eigen::Index a, Eigen::Index b) {
+  double sum = 0, squares = 0;
+  const Eigen::Index joints = readings.cols();
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    const double apart = (readings(a, j) - readings(b, j)) / kDiagnosis.structure.turned;
+    const double each = (1 + std::exp(-apart * apart / 2)) / 2;
+    sum += each;
+    squares += each * each;
+  }
+  const auto pairs = static_cast<double>(joints * (joints - 1));
+  return pairs > 0 ? (sum * sum - squares) / pairs : sum;
+}
+
+/// How far each row is from the mean temperature, over the spread; zero where that is not told or
+/// where the temperature stays.
+Eigen::VectorXd warmth(const Observations& data, const std::vector<int>& rows) {
+  Eigen::VectorXd from_mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
+  if (data.temperature.size() == 0) return from_mean;
+  std::vector<double> told;
+  for (const int row : rows)
+    if (std::isfinite(data.temperature[row])) told.push_back(data.temperature[row]);
+  if (told.empty()) return from_mean;
+  const auto n = static_cast<double>(told.size());
+  const double mean = std::accumulate(told.begin(), told.end(), 0.0) / n;
+  double squares = 0;
+  for (const double t : told) squares += (t - mean) * (t - mean) / n;
+  const double spread = std::sqrt(squares);
+  if (!(std::ranges::max(told) - std::ranges::min(told) > kDiagnosis.shapes.warms))
+    return from_mean;
+  for (Eigen::Index i = 0; i < from_mean.size(); ++i)
+    if (const double t = data.temperature[rows[static_cast<std::size_t>(i)]]; std::isfinite(t))
+      from_mean[i] = (t - mean) / spread;
+  return from_mean;
+}
+
+/// The equations' places among the rows that have any.
+class Places {
+ public:
+  explicit Places(const std::vector<int>& row_of_equation) {
+    std::ranges::copy_if(row_of_equation, std::back_inserter(rows_),
+                         [](int row) { return row >= 0; });
+    std::ranges::sort(rows_);
+    rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+    for (const int row : row_of_equation)
+      of_.push_back(row < 0 ? -1
+                            : static_cast<Eigen::Index>(std::ranges::lower_bound(rows_, row) -
+                                                        rows_.begin()));
+  }
+
+  /// Of the data set, in order, each once.
+  const std::vector<int>& rows() const { return rows_; }
+
+  /// `of_rows` (by place) at the equations' places, times `moved` brought to a mean square of 1.
+  Eigen::MatrixXd root(Eigen::VectorXd moved, const Eigen::MatrixXd& of_rows) const {
+    const auto equations = static_cast<double>(moved.size());
+    if (moved.norm() > 0) moved *= std::sqrt(equations) / moved.norm();
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(moved.size(), of_rows.cols());
+    for (Eigen::Index i = 0; i < moved.size(); ++i)
+      if (of_[i] >= 0) F.row(i) = moved[i] * of_rows.row(of_[i]);
+    return F;
+  }
+
+  /// `moved` of each equation, times what `of_rows` has for its row.
+  Eigen::VectorXd times(Eigen::VectorXd moved, const Eigen::VectorXd& of_rows) const {
+    for (Eigen::Index i = 0; i < moved.size(); ++i) moved[i] *= of_[i] < 0 ? 0 : of_rows[of_[i]];
+    return moved;
+  }
+
+ private:
+  std::vector<int> rows_;
+  std::vector<Eigen::Index> of_;  ///< by equation; -1: of no row
+};
+
+}  // namespace
+
+Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
+  for (Eigen::Index j = 0; j < q.cols(); ++j) {
+    if (robot.joints()[static_cast<size_t>(j)].quantity == Quantity::angle) continue;
+    const double moved = q.col(j).maxCoeff() - q.col(j).minCoeff();
+    if (moved > 0) q.col(j) *= std::numbers::pi / moved;
+  }
+  return q;
+}
+
+std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEquations& rows,
+                                       const JointErrors& joints) {
+  const Places places(rows.row);
+  const Eigen::MatrixXd readings = joints.alike(places.rows(), Eigen::all);
+  const Eigen::VectorXd warm = warmth(data, places.rows());
+  const Eigen::MatrixXd smooth = smooth_in_two_readings(readings);
+  std::vector<JointKernel> list;
+  for (int j = 0; j < static_cast<int>(readings.cols()); ++j) {
+    const Eigen::VectorXd by_reading = joints.readings.by_joint.col(j);
+    const Eigen::MatrixXd periodic = periodic_in_reading(readings.col(j));
+    list.push_back({KernelDomain::turned, j, places.root(by_reading, smooth)});
+    list.push_back(
+        {KernelDomain::kinked, j, places.root(by_reading, kinked_in_reading(readings.col(j)))});
+    if (joints.by_load.cols() > j && !joints.by_load.col(j).isZero())
+      list.push_back({KernelDomain::load, j, places.root(joints.by_load.col(j), periodic)});
+    if (!warm.isZero())
+      list.push_back(
+          {KernelDomain::warmth, j, places.root(places.times(by_reading, warm), periodic)});
+  }
+  return list;
+}
+
+Eigen::MatrixXd smooth_in_two_readings(const Eigen::MatrixXd& readings) {
+  const Eigen::Index n = readings.rows();
+  Eigen::MatrixXd K(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) K(i, j) = K(j, i) = likeness(readings, i, j);
+  return *low_rank_root(K, n);
+}
+
+Eigen::MatrixXd kinked_in_reading(const Eigen::VectorXd& reading) {
+  const Eigen::Index n = reading.size();
+  if (n == 0) return Eigen::MatrixXd(0, 0);
+  const double from = reading.minCoeff(), range = reading.maxCoeff() - from;
+  const double step = range / static_cast<double>(kKnots - 1);
+  const double kept = std::exp(-step / kDiagnosis.structure.kinked),
+               fresh = std::sqrt(1 - kept * kept);
+  // Each knot has what the one before keeps, and something of its own.
+  Eigen::MatrixXd at_knots = Eigen::MatrixXd::Zero(kKnots, kKnots);
+  at_knots(0, 0) = 1;
+  for (Eigen::Index k = 1; k < kKnots; ++k) {
+    at_knots.row(k) = kept * at_knots.row(k - 1);
+    at_knots(k, k) = fresh;
+  }
+  Eigen::MatrixXd F(n, kKnots);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double at = step > 0 ? (reading[i] - from) / step : 0;
+    const auto k = std::min(static_cast<Eigen::Index>(at), kKnots - 2);
+    const double beyond = at - static_cast<double>(k);
+    F.row(i) = (1 - beyond) * at_knots.row(k) + beyond * at_knots.row(k + 1);
+  }
+  return F;
+}
+
+Eigen::MatrixXd periodic_in_reading(const Eigen::VectorXd& reading) {
+  const double z = 1 / (kDiagnosis.structure.periodic * kDiagnosis.structure.periodic);
+  const auto variance = [z](int waves) {
+    return (waves > 0 ? 2 : 1) * std::cyl_bessel_i(waves, z) * std::exp(-z);
+  };
+  int most = 0;
+  while (variance(most + 1) > kLeastOfWave) ++most;
+  Eigen::MatrixXd F(reading.size(), 2 * most + 1);
+  F.col(0).setConstant(std::sqrt(variance(0)));
+  for (int waves = 1; waves <= most; ++waves) {
+    F.col(2 * waves - 1) = std::sqrt(variance(waves)) * (waves * reading.array()).cos();
+    F.col(2 * waves) = std::sqrt(variance(waves)) * (waves * reading.array()).sin();
+  }
+  return F;
+}
+
+}  // namespace selfcal
