@@ -168,7 +168,7 @@ struct ScaleLength {
   double moves = 0;             ///< end position for one of it (rms over the poses)
   /// What the maker's lengths and the rows make of it where none of these lengths is given.
   double expected = 0, expected_sigma = 0;
-  double unseen = 0;  ///< an error smaller than this would rather not be noticed
+  double unseen = 0;  ///< an error of it alone smaller than this would rather not be noticed
   /// The same where the others are given; the sigma is negative where there are none.
   double by_others = 0, by_others_sigma = -1;
   bool odd = false;  ///< contradicts what the others make of it, more than any other one

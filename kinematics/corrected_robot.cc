@@ -104,7 +104,17 @@ class CorrectedRobot final : public Robot, public RobotText {
   }
   std::string identity() const override { return geometry_->text().identity(); }
   const RobotText& text() const override { return *this; }
-  std::vector<std::string> remarks() const override { return geometry_->text().remarks(); }
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> lines = geometry_->text().remarks();
+    for (const auto& effect : effects_)
+      for (const EffectParameter& p : effect->parameters())
+        if (p.positive && p.value < 0)
+          lines.push_back(std::string(effect->name()) +
+                          (effect->at().empty() ? "" : " at " + effect->at()) + ": " + p.name +
+                          " is " + format_number(p.value) + " " + p.unit +
+                          ", below zero, which no machine has (its sign?)");
+    return lines;
+  }
 
   Closure locate(const ConfigurationBlock& block, const Eigen::VectorXd& xi, Body body,
                  Locations& X, PsiBlock* psi) const override {

@@ -156,10 +156,12 @@ std::string scale_line(const ScaleLength& each, bool alone) {
       printed("%s of set %s, %.6g mm", each.what.c_str(), each.set.c_str(), 1e3 * each.value);
   text += alone ? ", alone" : printed(" (%.0f %% of it)", 100 * each.share);
   text += printed(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
-  return text + printed(
-                    "; the maker's lengths expect %.6g +- %.2g mm and notice an error from %.2g mm "
-                    "on",
-                    1e3 * each.expected, 1e3 * each.expected_sigma, 1e3 * each.unseen);
+  text += printed("; the maker's lengths expect %.6g +- %.2g mm", 1e3 * each.expected,
+                  1e3 * each.expected_sigma);
+  return text + printed(alone ? " and notice an error from %.2g mm on"
+                              : ", and with the other lengths given notice an error of it alone "
+                                "from %.2g mm on",
+                        1e3 * each.unseen);
 }
 
 }  // namespace

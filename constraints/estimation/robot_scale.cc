@@ -262,6 +262,7 @@ class ScaleTest {
       const double error = b.dot(at.c) / b.squaredNorm();
       lengths()[k].by_others = lengths()[k].value - error;
       lengths()[k].by_others_sigma = 1 / b.norm();
+      lengths()[k].unseen = most * lengths()[k].by_others_sigma;
       if (std::abs(error) * b.norm() <= worst_sigmas) continue;
       worst = k;
       worst_sigmas = std::abs(error) * b.norm();

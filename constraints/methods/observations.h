@@ -62,7 +62,8 @@ Observations joined(const Observations& a, const Observations& b);
 
 /// Times, and temperatures, that few rows next to each other lack are those between their
 /// neighbours'. Where more lack their times none of the rows has one, and where more lack their
-/// temperatures they stay without (NaN). What was done, in words.
+/// temperatures they stay without (NaN). A temperature that jumps away and back by 15 K is none.
+/// What was done, in words.
 std::vector<std::string> fill_gaps(Observations& rows);
 
 /// The rows, the first taken first: by their times where all have one, by their order otherwise.

@@ -131,7 +131,7 @@ class RowReader {
     return notices;
   }
 
-  /// Says what was filled in.
+  /// Says what was filled in, and what is doubtful of it.
   std::vector<std::string> hand_over() {
     Observations& rows = data_.rows;
     rows.q = to_matrix(std::move(q_), layout_.q.size());
@@ -143,7 +143,8 @@ class RowReader {
     rows.velocity = to_matrix(std::move(velocity_), layout_.q.size());
     rows.temperature = to_matrix(std::move(temperature_), 1);
     rows.time = to_matrix(std::move(time_), 1);
-    std::vector<std::string> filled = fill_gaps(rows);
+    std::vector<std::string> said = fill_gaps(rows);
+    if (auto doubt = celsius_doubt(rows.temperature)) said.push_back(std::move(*doubt));
     if (rows.time.size() == 0) {
       data_.order_is_time = true;
       const Eigen::Index count = rows.q.rows();
@@ -157,7 +158,7 @@ class RowReader {
     for (std::size_t i = 0; i < measured_.size(); ++i)
       rows.measured[layout_.columns[layout_.measured[i]].name] =
           to_matrix(std::move(measured_[i]), 1);
-    return filled;
+    return said;
   }
 
  private:

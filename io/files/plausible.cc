@@ -4,13 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <vector>
+
+#include "constraints/statistics.h"
 
 namespace selfcal {
 namespace {
 
-constexpr double kRounding = 1e-3;   // of the limits' range
-constexpr double kFarOutside = 0.1;  // of the limits' range
+constexpr double kRounding = 1e-3;                // of the limits' range
+constexpr double kFarOutside = 0.1;               // of the limits' range
+constexpr double kColdRoom = 59, kHotRoom = 104;  // degrees Fahrenheit: 15 and 40 Celsius
 
 /// How far beyond the joint's limits, 0 inside or without limits.
 double excess(const Joint& joint, double reading) {
@@ -48,6 +53,19 @@ std::optional<std::string> celsius_fault(double value) {
   if (value >= kColdest && value <= kHottest) return std::nullopt;
   return format_number(value) + " is no temperature of a robot at work, degrees Celsius expected" +
          (value > kHottest ? " (kelvin?)" : "");
+}
+
+std::optional<std::string> celsius_doubt(const Eigen::VectorXd& temperatures) {
+  std::vector<double> told;
+  std::ranges::copy_if(temperatures, std::back_inserter(told),
+                       [](double t) { return std::isfinite(t); });
+  if (told.empty()) return std::nullopt;
+  const double middle = median(std::move(told));
+  if (middle < kColdRoom || middle > kHotRoom) return std::nullopt;
+  return "temperatures of about " + format_number(std::round(middle)) +
+         " are read as degrees Celsius: were they Fahrenheit, all growth with them would be told "
+         "1.8 "
+         "times too small";
 }
 
 std::optional<std::string> joint_fault(const Joint& joint, double reading, Readings readings) {

@@ -15,6 +15,10 @@ std::optional<std::string> metres_fault(double value);
 /// Why `value` (degrees Celsius) is no temperature of a robot at work; nothing when it may be.
 std::optional<std::string> celsius_fault(double value);
 
+/// A question where `temperatures` (degrees Celsius; NaN: none) are warm for a robot and usual for
+/// a room in Fahrenheit; nothing else.
+std::optional<std::string> celsius_doubt(const Eigen::VectorXd& temperatures);
+
 /// What readings may be: such as the joints' limits allow; or any, where what is wrong with them is
 /// to be found out.
 enum class Readings { within_limits, any };

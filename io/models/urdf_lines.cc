@@ -3,16 +3,22 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
+#include <locale>
+#include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "io/files/utf8.h"
+#include "kinematics/description.h"
 
 namespace selfcal {
 namespace {
 
 /// Levels of elements: TinyXML, and all that reads its tree, calls itself for each.
 constexpr int kDeepest = 200;
+constexpr double kMostTurned = 6.3;  ///< rad, of an origin
 
 std::string at_line(const std::string& file, int line) {
   return line > 0 ? file + ":" + std::to_string(line) : file;
@@ -47,6 +53,20 @@ const TiXmlElement* first_named_by_other_bytes(const TiXmlElement& root) {
   for (auto* child = root.FirstChildElement(); child; child = child->NextSiblingElement())
     if (!is_named(*child)) return child;
   return nullptr;
+}
+
+/// The first angle of a joint's origin that is more than a turn, and the joint; null where none is.
+std::pair<const TiXmlElement*, double> first_in_degrees(const TiXmlElement& root) {
+  for (auto* joint = root.FirstChildElement("joint"); joint;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement* origin = joint->FirstChildElement("origin");
+    const char* rpy = origin ? origin->Attribute("rpy") : nullptr;
+    std::istringstream angles(rpy ? rpy : "");
+    angles.imbue(std::locale::classic());
+    for (double angle = 0; angles >> angle;)
+      if (std::abs(angle) > kMostTurned) return {origin, angle};
+  }
+  return {nullptr, 0};
 }
 
 /// Place behind the next `end` from `from` on; the text's end without one.
@@ -113,6 +133,9 @@ Result<UrdfLines> UrdfLines::of(const std::string& text, const std::string& file
                      ": is xacro, which becomes a URDF by `xacro FILE > robot.urdf`");
   if (const TiXmlElement* element = first_named_by_other_bytes(*root))
     return bad_input(at_line(file, element->Row()) + ": expected a name in UTF-8, got other bytes");
+  if (const auto [origin, angle] = first_in_degrees(*root); origin)
+    return bad_input(at_line(file, origin->Row()) + ": rpy " + format_number(angle) +
+                     " is more than a turn, radians expected (degrees?)");
   return UrdfLines(file, std::move(document));
 }
 

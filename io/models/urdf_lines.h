@@ -11,8 +11,8 @@ namespace selfcal {
 
 class UrdfLines {
  public:
-  /// Refuses text that is no XML, whose root is no `robot`, that is xacro nobody has run, or that
-  /// has names that are not UTF-8, which no file written of it could hold.
+  /// Refuses text that is no XML, whose root is no `robot`, that is xacro nobody has run, that
+  /// has names that are not UTF-8, which no file written of it could hold, or angles in degrees.
   static Result<UrdfLines> of(const std::string& text, const std::string& file);
 
   /// "FILE:LINE" of the `element` (link, joint) called `name`; "FILE" where there is none.

@@ -84,6 +84,37 @@ TEST_F(ObservationsCsv, FillsFewEmptyTimesAndTemperaturesAndUsesNoneWhereManyAre
                                                     HasSubstr("these are taken to be as warm")));
 }
 
+/// Twelve rows as warm as `temperature` says.
+std::string as_warm(const std::function<double(int)>& temperature) {
+  std::string csv = "set,q1,q2,time,temperature\n";
+  for (int row = 0; row < 12; ++row)
+    csv += "table,0,0." + std::to_string(10 + row) + "," + std::to_string(30 * row) + "," +
+           std::to_string(temperature(row)) + "\n";
+  return csv;
+}
+
+TEST_F(ObservationsCsv, TakesNoTemperatureOfAThermometerThatIsNotRead) {
+  const std::string csv = as_warm([](int row) {
+    return row == 3 ? 85.0 : row == 8 ? -40.0 : 20.0 + row;
+  });
+  const auto loaded = load(csv);
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  EXPECT_NEAR(loaded->data.rows.temperature[3], 23, 1e-6);
+  EXPECT_NEAR(loaded->data.rows.temperature[8], 28, 1e-6);
+  EXPECT_THAT(notices(csv), Contains(HasSubstr("from that of the rows around in 2 of 12 rows, "
+                                               "first row 4")));
+  // A door that opens, a robot that is moved to a hot room.
+  for (const auto& real : {as_warm([](int row) { return row == 3 ? 31.0 : 20.0; }),
+                           as_warm([](int row) { return row > 5 ? 45.0 : 20.0; })})
+    EXPECT_THAT(notices(real), IsEmpty());
+}
+
+TEST_F(ObservationsCsv, AsksWhetherTemperaturesAreFahrenheit) {
+  EXPECT_THAT(notices(as_warm([](int row) { return 70.0 + 0.1 * row; })),
+              ElementsAre(HasSubstr("about 71 are read as degrees Celsius: were they Fahrenheit")));
+  EXPECT_THAT(notices(as_warm([](int row) { return 35.0 + row; })), IsEmpty());
+}
+
 TEST_F(ObservationsCsv, NotesTimesThatGoBackAgainAndAgain) {
   EXPECT_THAT(notices("set,q1,q2,time\ntable,2,0,5\ntable,0,1,3\ntable,1,1,7\ntable,1,0,4\n"),
               ElementsAre(StartsWith("observations.csv: the times go back 2 times")));

@@ -218,6 +218,14 @@ TEST(KnownLength, IsComparedWithASecondOneAndTheOddOneNamed) {
     EXPECT_LT(std::abs(each.by_others - each.value), 4 * each.by_others_sigma);
   }
   EXPECT_EQ(right.verdict.answer, Answer::improved) << right.verdict.why;
+  // It is noticed from as much on as it is said to be.
+  const ScaleLength& gauge = right.scale.stands_on[0];
+  for (const double part : {0.8, 1.25}) {
+    const std::string given = format_number(gauge.by_others + part * gauge.unseen);
+    give(session, "gauge", step("gauge", given.c_str(), 60));
+    const Solution off = identify(*robot, session.data);
+    EXPECT_EQ(std::ranges::any_of(off.scale.stands_on, &ScaleLength::odd), part > 1) << given;
+  }
   give(session, "gauge", step("gauge", "0.202", 60));
   const Solution wrong = identify(*robot, session.data);
   EXPECT_TRUE(wrong.scale.stands_on[0].odd) << wrong.verdict.why;
