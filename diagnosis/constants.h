@@ -69,11 +69,11 @@ struct DiagnosisConstants {
     double huge = 0.02;
     /// Times the usual largest: up to it a size is as good as any; 1 to 10 [physics]
     double as_usual = 3;
-    double tenfold = 2;     ///< log evidence that ten times that costs; 1 to 5 [trials]
-    int agreements = 3;     ///< rounds of noise and structure; 1 to 10 [cost]
-    double worthwhile = 5;  ///< log evidence that a cause must bring; 2 to 10 [habit]
-    int most_together = 8;  ///< candidates of a set; 3 to 12 [cost]
-    int exchanged = 3;      ///< causes tried in the place of either of the best pair; 0 to 6 [cost]
+    double tenfold = 2;      ///< log evidence that ten times that costs; 1 to 5 [trials]
+    int agreements = 3;      ///< rounds of noise and structure; 1 to 10 [cost]
+    double worthwhile = 5;   ///< log evidence that a cause must bring; 2 to 10 [habit]
+    int most_together = 12;  ///< candidates of a set; 3 to 12 [cost]
+    int exchanged = 3;  ///< causes tried in the place of either of the best pair; 0 to 6 [cost]
     /// Log weight below the best, that a set has to count at all; and what one costs that needs of
     /// a machine what none has (Report::impossible, other_sign); 6 to 20, 10 to 50 [physics]
     double counts = 12, impossible = 20;

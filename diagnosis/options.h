@@ -21,8 +21,9 @@ struct SearchRule {
   double same_family = 0.5;
   double again = 0.3;  ///< the same at one place: another wave, another moment; 0.1 to 0.5 [habit]
   int extended_singles = 14, extended_pairs = 14;  ///< 6 to 30 [cost]
-  /// Triples and larger sets, by what their families have elsewhere; 0: none, and sets that no
-  /// machine can have count as any other; 2 to 8 [cost].
+  /// Beside noise alone: singles and pairs by any other, triples and larger sets by what their
+  /// families have elsewhere; 0: none, and sets that no machine can have count as any other; 2 to
+  /// 8 [cost].
   int extended_further = 4;
   int most_structures = 4;  ///< kept for pairs and triples; 2 to 8 [cost]
   /// True: the rows are whitened by what their best explanation leaves. False: each structure takes

@@ -22,11 +22,13 @@ class Search {
   Posterior run(int singles, int pairs) {
     visit_singles();
     extend(best_of(1, singles));
+    if (goes_on_) extend(best_beside_noise(1));
     keep_best();
     std::vector<Visit> best_pairs = best_of(2, pairs);
     visit_elsewhere(best_pairs);
     add_exchanged(best_pairs);
     extend(best_pairs);
+    if (goes_on_) extend(best_beside_noise(2));
     keep_best();
     visit_elsewhere(best_of(3, pairs));
     keep_best();
@@ -138,6 +140,12 @@ class Search {
     return diverse;
   }
 
+  /// Where many causes act, each set of few leaves what looks like structure: those beside which
+  /// noise stands alone go on as well, or the whole of them is never reached.
+  std::vector<Visit> best_beside_noise(int size) const {
+    return best_of(size, evaluator_.rule_.extended_further, Beside::noise);
+  }
+
   /// The best pair with either cause exchanged for the next best ones: where two causes do better
   /// than one that looks like both, neither pair that leads there may be among the best.
   void add_exchanged(std::vector<Visit>& pairs) {
@@ -187,7 +195,7 @@ class Search {
   /// further candidates of their families, as long as that makes them more probable. They count
   /// where they make all structure needless.
   void grow_beside_noise() {
-    std::vector<Visit> best = best_of(3, evaluator_.rule_.extended_further, Beside::noise);
+    std::vector<Visit> best = best_beside_noise(3);
     while (!best.empty() && best.front().count < kDiagnosis.evidence.most_together) {
       const double before = best.front().log_weight;
       const int count = best.front().count + 1;
@@ -200,7 +208,7 @@ class Search {
         return each.count == count && each.impossible.value_or(false);
       });
       distinct_ = visited_.size();
-      best = best_of(count, evaluator_.rule_.extended_further, Beside::noise);
+      best = best_beside_noise(count);
       std::erase_if(best, [&](const Visit& each) { return each.log_weight <= before; });
     }
   }

@@ -110,7 +110,7 @@ TEST(EvidenceEvaluator, FindsTheSameInManyRowsAtOnceAsInOneAfterTheOther) {
 TEST(EvidenceEvaluator, SearchesCoarselyForTheSameFamilies) {
   DiagnosisOptions options = quick();
   options.search.extended_singles = 4;
-  options.search.extended_pairs = 0;
+  options.search.extended_pairs = options.search.extended_further = 0;
   const DataSet data = noisy(60, 3);
   const LinearisedModel linearised(TwoSessions(2).robot, data, options, {});
   const EvidenceEvaluator evaluator(
