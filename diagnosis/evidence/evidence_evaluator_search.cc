@@ -1,11 +1,10 @@
-// The sets of causes that are visited.
+// Which sets of causes are visited.
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/evidence_evaluator.h"
+#include "diagnosis/evidence/visited_sets.h"
 
 namespace selfcal {
 
@@ -17,26 +16,27 @@ class Search {
         coarse_(coarse),
         goes_on_(!coarse && evaluator.rule_.extended_further > 0),
         candidates_(static_cast<int>(evaluator.blocks_.size())),
-        kept_(evaluator.marginal_likelihoods_.size(), 0) {}
+        kept_(evaluator.marginal_likelihoods_.size(), 0),
+        visited_(evaluator.numbers_.cause) {}
 
   Posterior run(int singles, int pairs) {
     visit_singles();
     extend(best_of(1, singles));
     if (goes_on_) extend(best_beside_noise(1));
-    keep_best();
+    visited_.keep_best();
     std::vector<Visit> best_pairs = best_of(2, pairs);
     visit_elsewhere(best_pairs);
     add_exchanged(best_pairs);
     extend(best_pairs);
     if (goes_on_) extend(best_beside_noise(2));
-    keep_best();
+    visited_.keep_best();
     visit_elsewhere(best_of(3, pairs));
-    keep_best();
+    visited_.keep_best();
     if (goes_on_) {
       if (!is_enough()) grow_beside_noise();
       lower_impossible();
     }
-    Posterior found = posterior_of(visited_, evaluator_.ingredients());
+    Posterior found = posterior_of(visited_.list(), evaluator_.ingredients());
     found.log_total -= evaluator_.marginal_likelihoods_.front().log_evidence({});
     return found;
   }
@@ -46,19 +46,18 @@ class Search {
 
   double note(Visit visit, double log_evidence) {
     visit.log_weight = log_evidence + evaluator_.log_prior(visit.all(), visit.structure);
-    visited_.push_back(visit);
-    top_ = std::max(top_, visit.log_weight);
+    visited_.add(visit);
     return visit.log_weight;
   }
 
   /// What was noted last is to be judged: it may be among what counts in the end.
   bool counts() const {
-    return goes_on_ && visited_.back().log_weight > top_ - kDiagnosis.evidence.counts;
+    return goes_on_ && visited_.last().log_weight > visited_.top() - kDiagnosis.evidence.counts;
   }
 
   /// Whether a machine can have what was noted last, from G of its columns.
   void judge(const Hypothesis& h, const Eigen::MatrixXd& G) {
-    visited_.back().impossible = evaluator_.is_impossible(h, G);
+    visited_.last().impossible = evaluator_.is_impossible(h, G);
   }
 
   bool is_impossible(Visit& visit) const {
@@ -71,18 +70,7 @@ class Search {
   bool hopeless(const MarginalLikelihood& marginal_likelihood, int candidate,
                 double log_prior) const {
     return coarse_ && marginal_likelihood.at_most(evaluator_.blocks_[candidate]) + log_prior <
-                          top_ - kDiagnosis.evidence.hopeless;
-  }
-
-  /// Of those with the same candidates and structure, reached by different ways, the best.
-  void keep_best() {
-    const auto first = visited_.begin() + static_cast<std::ptrdiff_t>(distinct_);
-    std::sort(first, visited_.end(), [](const Visit& a, const Visit& b) {
-      return std::tuple(a.key(), -a.log_weight) < std::tuple(b.key(), -b.log_weight);
-    });
-    const auto same = [](const Visit& a, const Visit& b) { return a.key() == b.key(); };
-    visited_.erase(std::unique(first, visited_.end(), same), visited_.end());
-    distinct_ = visited_.size();
+                          visited_.top() - kDiagnosis.evidence.hopeless;
   }
 
   /// Every candidate alone in every structure; the structures that do best go on.
@@ -92,7 +80,7 @@ class Search {
     for (int s = 0; s < evaluator_.structures(); ++s)
       note({.structure = s}, evaluator_.marginal_likelihoods_[s].log_evidence({}));
     for (int s = 0; s < evaluator_.structures(); ++s) {
-      double best = visited_[static_cast<std::size_t>(s)].log_weight;
+      double best = visited_.list()[static_cast<std::size_t>(s)].log_weight;
       for (int c = 0; c < candidates_; ++c) {
         if (!evaluator_.seen_[c] ||
             hopeless(evaluator_.marginal_likelihoods_[s], c, evaluator_.log_prior({&c, 1}, s)))
@@ -111,63 +99,41 @@ class Search {
     for (size_t i = 0; i < ranked.size() && static_cast<int>(i) < evaluator_.rule_.most_structures;
          ++i)
       kept_[ranked[i].second] = 1;
-    distinct_ = visited_.size();
+    visited_.keep_best();
   }
 
-  enum class Beside { any, noise };
-  /// The best of `size` candidates. Not one cause in all its shapes: two of each cause and
-  /// structure.
-  std::vector<Visit> best_of(int size, int most, Beside which = Beside::any) const {
-    std::vector<const Visit*> list;
-    for (const Visit& each : visited_)
-      if (each.count == size && kept_[each.structure] && std::isfinite(each.log_weight) &&
-          (which == Beside::any || evaluator_.structure(each.structure).kind == 0))
-        list.push_back(&each);
-    const auto worse = [](const Visit* a, const Visit* b) {
-      return a->log_weight != b->log_weight ? a->log_weight < b->log_weight : a > b;
-    };
-    std::ranges::make_heap(list, worse);
-    std::map<std::pair<std::vector<int>, int>, int> taken;
-    std::vector<Visit> diverse;
-    while (!list.empty() && static_cast<int>(diverse.size()) < most) {
-      std::ranges::pop_heap(list, worse);
-      const Visit& each = *list.back();
-      list.pop_back();
-      std::vector<int> causes;
-      for (const int c : each.all()) causes.push_back(evaluator_.numbers_.cause[c]);
-      if (++taken[{causes, each.structure}] <= 2) diverse.push_back(each);
-    }
-    return diverse;
+  std::vector<Visit> best_of(int size, int most) const {
+    return visited_.best_of(size, most, [&](int structure) { return kept_[structure] != 0; });
   }
 
   /// Where many causes act, each set of few leaves what looks like structure: those beside which
   /// noise stands alone go on as well, or the whole of them is never reached.
   std::vector<Visit> best_beside_noise(int size) const {
-    return best_of(size, evaluator_.rule_.extended_further, Beside::noise);
+    return visited_.best_of(size, evaluator_.rule_.extended_further, [&](int structure) {
+      return evaluator_.structure(structure).kind == 0;
+    });
   }
 
   /// The best pair with either cause exchanged for the next best ones: where two causes do better
   /// than one that looks like both, neither pair that leads there may be among the best.
   void add_exchanged(std::vector<Visit>& pairs) {
     if (pairs.empty()) return;
-    const Visit best = *std::ranges::max_element(visited_, {}, [](const Visit& each) {
-      return each.count == 2 ? each.log_weight : -INFINITY;
-    });
+    const Visit best = *visited_.best(2);
     const std::vector<int>& cause = evaluator_.numbers_.cause;
     std::vector<Visit> alone;
-    for (const Visit& each : visited_)
+    for (const Visit& each : visited_.list())
       if (each.count == 1 && each.structure == best.structure &&
           std::ranges::count(best.all(), each.candidates[0]) > 0)
         alone.push_back(each);
     extend(alone);
-    keep_best();
+    visited_.keep_best();
     for (const int out : {best.candidates[0], best.candidates[1]}) {
       const int kept = out == best.candidates[0] ? best.candidates[1] : best.candidates[0];
       const auto beside = [&](const Visit& each) {
         return each.candidates[0] == kept ? each.candidates[1] : each.candidates[0];
       };
       std::vector<const Visit*> others;
-      for (const Visit& each : visited_)
+      for (const Visit& each : visited_.list())
         if (each.count == 2 && each.structure == best.structure &&
             std::ranges::count(each.all(), kept) > 0 && cause[beside(each)] != cause[out])
           others.push_back(&each);
@@ -186,8 +152,8 @@ class Search {
 
   /// One or two candidates explain the rows best, beside noise alone.
   bool is_enough() const {
-    const auto best = std::ranges::max_element(visited_, {}, &Visit::log_weight);
-    return best == visited_.end() ||
+    const auto best = std::ranges::max_element(visited_.list(), {}, &Visit::log_weight);
+    return best == visited_.list().end() ||
            (best->count < 3 && evaluator_.structure(best->structure).kind == 0);
   }
 
@@ -200,14 +166,11 @@ class Search {
       const double before = best.front().log_weight;
       const int count = best.front().count + 1;
       extend(best, Of::same_families);
-      keep_best();
-      for (Visit& each : visited_)
+      visited_.keep_best();
+      for (Visit& each : visited_.list())
         if (each.count == count && each.log_weight > before - kDiagnosis.evidence.hopeless)
           is_impossible(each);
-      std::erase_if(visited_, [&](const Visit& each) {
-        return each.count == count && each.impossible.value_or(false);
-      });
-      distinct_ = visited_.size();
+      visited_.drop_impossible(count);
       best = best_beside_noise(count);
       std::erase_if(best, [&](const Visit& each) { return each.log_weight <= before; });
     }
@@ -215,16 +178,17 @@ class Search {
 
   /// Of all that counts, what is impossible counts less.
   void lower_impossible() {
-    std::vector<char> seen(visited_.size(), 0);
+    std::vector<Visit>& all = visited_.list();
+    std::vector<char> seen(all.size(), 0);
     for (bool lowered = true; lowered;) {
       lowered = false;
-      const double least = std::ranges::max(visited_, {}, &Visit::log_weight).log_weight -
-                           kDiagnosis.evidence.counts;
-      for (std::size_t i = 0; i < visited_.size(); ++i) {
-        if (seen[i] || visited_[i].log_weight < least) continue;
+      const double least =
+          std::ranges::max(all, {}, &Visit::log_weight).log_weight - kDiagnosis.evidence.counts;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (seen[i] || all[i].log_weight < least) continue;
         seen[i] = 1;
-        if (!is_impossible(visited_[i])) continue;
-        visited_[i].log_weight -= kDiagnosis.evidence.impossible;
+        if (!is_impossible(all[i])) continue;
+        all[i].log_weight -= kDiagnosis.evidence.impossible;
         lowered = true;
       }
     }
@@ -296,8 +260,7 @@ class Search {
         if (!kept_[s] || s == each.structure) continue;
         Visit other = each;
         other.structure = s;
-        if (std::ranges::any_of(visited_, [&](const Visit& v) { return v.key() == other.key(); }))
-          continue;
+        if (visited_.has(other)) continue;
         Hypothesis h = other.hypothesis();
         const Eigen::MatrixXd G = evaluator_.gram(h);
         const double log_evidence = evaluator_.sized(h, G);
@@ -313,12 +276,10 @@ class Search {
 
   const EvidenceEvaluator& evaluator_;
   const bool coarse_;
-  const bool goes_on_;      ///< beyond triples, and asks of each set whether a machine can have it
-  double top_ = -INFINITY;  ///< log weight of the best so far
+  const bool goes_on_;  ///< beyond triples, and asks of each set whether a machine can have it
   int candidates_;
   std::vector<char> kept_;  ///< by structure: pairs and triples are tried in it
-  std::vector<Visit> visited_;
-  std::size_t distinct_ = 0;     ///< the first of them that are known to be
+  VisitedSets visited_;
   std::vector<Visit> extended_;  ///< by every candidate
 };
 

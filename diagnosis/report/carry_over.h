@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "constraints/methods/data_set.h"
 #include "diagnosis/findings.h"
 
 namespace selfcal {
