@@ -110,11 +110,12 @@ std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEqua
   for (int j = 0; j < static_cast<int>(readings.cols()); ++j) {
     const Eigen::VectorXd by_reading = joints.readings.by_joint.col(j);
     const Eigen::MatrixXd periodic = periodic_in_reading(readings.col(j));
+    const Eigen::MatrixXd uneven = periodic.rightCols(periodic.cols() - 1);
     list.push_back({KernelDomain::turned, j, places.root(by_reading, smooth)});
     list.push_back(
         {KernelDomain::kinked, j, places.root(by_reading, kinked_in_reading(readings.col(j)))});
     if (joints.by_load.cols() > j && !joints.by_load.col(j).isZero())
-      list.push_back({KernelDomain::load, j, places.root(joints.by_load.col(j), periodic)});
+      list.push_back({KernelDomain::load, j, places.root(joints.by_load.col(j), uneven)});
     if (!warm.isZero())
       list.push_back(
           {KernelDomain::warmth, j, places.root(places.times(by_reading, warm), periodic)});

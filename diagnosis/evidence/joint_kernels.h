@@ -35,7 +35,8 @@ struct JointKernel {
   Eigen::MatrixXd root;  ///< equations x directions: F of F F'
 };
 
-/// Of every joint: `turned`, `kinked`, `load` where the load is told, `warmth` where it changes.
+/// Of every joint: `turned`, `kinked`, `load` where the load is told (without what is the same at
+/// each reading: that is a spring, which an effect has), `warmth` where it changes.
 std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEquations& rows,
                                        const JointErrors& joints);
 
@@ -50,7 +51,7 @@ Eigen::MatrixXd kinked_in_reading(const Eigen::VectorXd& reading);
 
 /// Root of a smooth function of one reading that is the same a turn later:
 ///   exp((cos(q1 - q2) - 1) / length^2) = exp(-z) (I_0(z) + 2 sum over n of I_n(z) cos n(q1 - q2)),
-/// z = 1 / length^2 (Abramowitz and Stegun, 9.6.34).
+/// z = 1 / length^2 (Abramowitz and Stegun, 9.6.34). The first column is its constant part.
 Eigen::MatrixXd periodic_in_reading(const Eigen::VectorXd& reading);
 
 }  // namespace selfcal

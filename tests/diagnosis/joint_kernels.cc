@@ -84,6 +84,8 @@ TEST(JointKernels, AreWhatTheJointMovesOfMeanSquareOne) {
   Rows of;
   of.data.temperature.resize(3);
   of.data.temperature << 20, 23, 26;
+  of.errors.by_load = Eigen::MatrixXd::Zero(3, 2);
+  of.errors.by_load.col(0) << 2, 5, 3;
   const auto list = joint_kernels(of.data, of.rows, of.errors);
   const auto kernel = [&](KernelDomain domain) -> Eigen::MatrixXd {
     const auto found = std::ranges::find_if(
@@ -95,6 +97,11 @@ TEST(JointKernels, AreWhatTheJointMovesOfMeanSquareOne) {
   const Eigen::MatrixXd kinked = kernel(KernelDomain::kinked);
   EXPECT_NEAR(kinked(0, 2), 12 / square * std::exp(-0.8), 1e-12);
   EXPECT_EQ(kinked(1, 1), 0);
+  // What the load does alike at each reading is a spring's: the kernel less its mean over a turn.
+  const Eigen::MatrixXd load = kernel(KernelDomain::load);
+  const double mean = std::cyl_bessel_i(0, 4.0) * std::exp(-4.0);
+  EXPECT_NEAR(load(0, 2), 6 / ((4 + 25 + 9) / 3.0) * (std::exp(4 * (std::cos(0.8) - 1)) - mean),
+              3e-3);
   // 20 and 26 degrees are one spread below and above their mean.
   const Eigen::MatrixXd warm = kernel(KernelDomain::warmth);
   EXPECT_NEAR(warm(0, 2), -12 / ((9 + 16) / 3.0) * std::exp(4 * (std::cos(0.8) - 1)), 5e-3);
