@@ -32,11 +32,13 @@ class Weighing {
       if (pass + 1 == kDiagnosis.rows.passes) break;
       const std::vector<char> aside = linearised_.outlier();
       const bool refined = refine_by(posterior_.hypotheses.front());
+      // By the candidates' places, which change where more of them are tried.
       const std::vector<ShapedEffect> steps = likely_steps();
+      const std::vector<char> pulses = there_and_back(posterior_.hypotheses.front());
       const bool finer = linearised_.try_moments_near(steps);
       if (finer) linearised_.take_back(wronged_by(steps, aside));
       const bool waves = linearised_.try_fine_waves();
-      const bool fewer = linearised_.put_aside(there_and_back(posterior_.hypotheses.front()));
+      const bool fewer = linearised_.put_aside(pulses);
       if (!finer && !waves && !refined && !fewer) break;
     }
     return {std::move(evaluator_), std::move(posterior_), {}};
