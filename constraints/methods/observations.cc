@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include "constraints/statistics.h"
 #include "kinematics/description.h"
 
 namespace selfcal {
@@ -104,10 +102,9 @@ Observations joined(const Observations& a, const Observations& b) {
 
 namespace {
 
-constexpr int kLongGap = 10;        ///< rows that lack their temperature one after the other
-constexpr int kAround = 4;          ///< rows before and behind, that a temperature is held against
-constexpr double kJumps = 15;       ///< K, farther from these than any part is
-constexpr double kMostJump = 0.33;  ///< of the rows: more of them are no slips of a thermometer
+constexpr int kLongGap = 10;           ///< rows that lack their temperature one after the other
+constexpr double kUnread = 85;         ///< C, of a usual thermometer before its first reading
+constexpr double kFarFromUnread = 15;  ///< K, that all others lie below it
 
 /// "temperature is empty in 3 of 60 rows, first row 17".
 std::string emptiness(const char* column, const Eigen::VectorXd& values) {
@@ -118,31 +115,25 @@ std::string emptiness(const char* column, const Eigen::VectorXd& values) {
          std::to_string(values.size()) + " rows, first row " + std::to_string(first + 1);
 }
 
-/// Temperatures that are far from those of the rows around, as a thermometer's that is not read (85
-/// or -127 degrees): none of these rows has one then. In words; empty where there are none.
-std::string without_jumps(Eigen::VectorXd& values, const std::vector<int>& order) {
-  if (values.size() == 0) return {};
-  std::vector<int> told;
-  std::ranges::copy_if(order, std::back_inserter(told),
-                       [&](int row) { return std::isfinite(values[row]); });
-  std::vector<int> jumps;
-  const auto count = std::ssize(told);
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    std::vector<double> around;
-    for (auto k = std::max<std::ptrdiff_t>(0, i - kAround); k <= std::min(count - 1, i + kAround);
-         ++k)
-      around.push_back(values[told[static_cast<size_t>(k)]]);
-    const int row = told[static_cast<size_t>(i)];
-    if (std::abs(values[row] - median(std::move(around))) > kJumps) jumps.push_back(row);
+/// Temperatures that are what a thermometer says that is not read, far from all others: these rows
+/// have none then. In words; empty where there are none.
+std::string without_unread(Eigen::VectorXd& values) {
+  std::vector<double> others;
+  std::vector<Eigen::Index> unread;
+  for (Eigen::Index row = 0; row < values.size(); ++row) {
+    if (values[row] == kUnread)
+      unread.push_back(row);
+    else if (std::isfinite(values[row]))
+      others.push_back(values[row]);
   }
-  if (jumps.empty() || static_cast<double>(jumps.size()) > kMostJump * static_cast<double>(count))
+  if (unread.empty() || others.size() < unread.size() ||
+      kUnread - std::ranges::max(others) < kFarFromUnread)
     return {};
-  for (const int row : jumps) values[row] = kNaN;
-  return "temperature is more than " + format_number(kJumps) +
-         " K from that of the rows around in " + std::to_string(jumps.size()) + " of " +
-         std::to_string(values.size()) + " rows, first row " +
-         std::to_string(1 + std::ranges::min(jumps)) +
-         ", as of a thermometer that is not read: these rows are taken to have none";
+  for (const Eigen::Index row : unread) values[row] = kNaN;
+  return "temperature is " + format_number(kUnread) + " in " + std::to_string(unread.size()) +
+         " of " + std::to_string(values.size()) + " rows, first row " +
+         std::to_string(unread.front() + 1) +
+         ", as of a thermometer that is not read: it is taken as empty there";
 }
 
 /// Values between the neighbours' of the rows that have one, of few next to each other; whether all
@@ -184,8 +175,8 @@ std::vector<std::string> fill_gaps(Observations& rows) {
   if (!fill("time", rows.time, order,
             ", many of them one after the other: the order of the rows is taken for it"))
     rows.time = {};
-  if (std::string jumps = without_jumps(rows.temperature, in_time(rows)); !jumps.empty())
-    done.push_back(std::move(jumps));
+  if (std::string unread = without_unread(rows.temperature); !unread.empty())
+    done.push_back(std::move(unread));
   fill("temperature", rows.temperature, in_time(rows),
        ", many of them one after the other: these are taken to be as warm as the reference");
   if (!rows.temperature.array().isFinite().any()) rows.temperature = {};

@@ -62,7 +62,7 @@ Observations joined(const Observations& a, const Observations& b);
 
 /// Times, and temperatures, that few rows next to each other lack are those between their
 /// neighbours'. Where more lack their times none of the rows has one, and where more lack their
-/// temperatures they stay without (NaN). A temperature that jumps away and back by 15 K is none.
+/// temperatures they stay without (NaN). What a thermometer says that is not read is none.
 /// What was done, in words.
 std::vector<std::string> fill_gaps(Observations& rows);
 
