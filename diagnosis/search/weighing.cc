@@ -96,22 +96,43 @@ class Weighing {
   /// The rows for which one cause steps away and back, where they are so few that these are false.
   std::vector<char> there_and_back(const Hypothesis& best) const {
     std::vector<char> rows(linearised_.outlier().size(), 0);
+    const std::vector<MarginalLikelihood::Term> terms = evaluator_->terms(best);
+    const Eigen::VectorXd mean =
+        evaluator_->marginal_likelihood(best.structure).estimate(terms).mean;
+    std::vector<Eigen::VectorXd> steps;  // by candidate
+    Eigen::Index first = 0;
+    for (const MarginalLikelihood::Term& term : terms) {
+      const auto size = static_cast<Eigen::Index>(term.block->columns.size());
+      steps.emplace_back(mean.segment(first, size));
+      first += size;
+    }
     const std::vector<Candidate>& list = evaluator_->candidates().list;
-    for (const int a : best.candidates)
-      for (const int b : best.candidates) {
-        const Candidate &away = list[static_cast<std::size_t>(a)],
-                        &back = list[static_cast<std::size_t>(b)];
+    for (std::size_t a = 0; a < steps.size(); ++a)
+      for (std::size_t b = 0; b < steps.size(); ++b) {
+        const Candidate &away = list[static_cast<std::size_t>(best.candidates[a])],
+                        &back = list[static_cast<std::size_t>(best.candidates[b])];
         if (away.effect != back.effect || away.at != back.at || !away.shape.moment ||
-            !back.shape.moment || *away.shape.moment >= *back.shape.moment)
+            !back.shape.moment || *away.shape.moment >= *back.shape.moment ||
+            steps[a].size() != steps[b].size() || !(steps[a].dot(steps[b]) < 0))
           continue;
-        std::vector<std::size_t> between;
-        for (std::size_t row = 0; row < rows.size(); ++row)
-          if (const double t = data_.rows.time[static_cast<Eigen::Index>(row)];
-              t > *away.shape.moment && t < *back.shape.moment)
-            between.push_back(row);
+        const std::vector<std::size_t> between =
+            rows_between(*away.shape.moment, *back.shape.moment, away.at);
         if (between.size() >= kDiagnosis.shapes.fewest_between) continue;
         for (const std::size_t row : between) rows[row] = 1;
       }
+    return rows;
+  }
+
+  /// Rows that take part, between two moments; of one set alone where `at` is one.
+  std::vector<std::size_t> rows_between(double from, double to, const std::string& at) const {
+    const auto named = std::ranges::find(data_.sets, at, &Set::name);
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < linearised_.outlier().size(); ++row) {
+      const double t = data_.rows.time[static_cast<Eigen::Index>(row)];
+      if (t > from && t < to && data_.rows.check[row] == 0 && !linearised_.outlier()[row] &&
+          (named == data_.sets.end() || data_.rows.set[row] == named - data_.sets.begin()))
+        rows.push_back(row);
+    }
     return rows;
   }
 
