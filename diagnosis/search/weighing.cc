@@ -97,8 +97,8 @@ class Weighing {
   std::vector<char> there_and_back(const Hypothesis& best) const {
     std::vector<char> rows(linearised_.outlier().size(), 0);
     const std::vector<MarginalLikelihood::Term> terms = evaluator_->terms(best);
-    const Eigen::VectorXd mean =
-        evaluator_->marginal_likelihood(best.structure).estimate(terms).mean;
+    const MarginalLikelihood& own = evaluator_->marginal_likelihood(best.structure);
+    const Eigen::VectorXd mean = own.estimate(terms).mean;
     std::vector<Eigen::VectorXd> steps;  // by candidate
     Eigen::Index first = 0;
     for (const MarginalLikelihood::Term& term : terms) {
@@ -113,7 +113,9 @@ class Weighing {
                         &back = list[static_cast<std::size_t>(best.candidates[b])];
         if (away.effect != back.effect || away.at != back.at || !away.shape.moment ||
             !back.shape.moment || *away.shape.moment >= *back.shape.moment ||
-            steps[a].size() != steps[b].size() || !(steps[a].dot(steps[b]) < 0))
+            steps[a].size() != steps[b].size() ||
+            // As the rows behind both see them.
+            !(steps[a].dot(own.gram(*terms[b].block) * steps[b]) < 0))
           continue;
         const std::vector<std::size_t> between =
             rows_between(*away.shape.moment, *back.shape.moment, away.at);
