@@ -15,6 +15,7 @@
 #include <span>
 
 #include "diagnosis/constants.h"
+#include "diagnosis/evidence/rows.h"
 #include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
@@ -30,6 +31,7 @@ class Kernel {
         near_(kDiagnosis.structure.place * size),
         readings_(joints.readings),
         alike_(joints.alike),
+        places_(rows.row),
         visit_(visits(data)) {
     std::vector<double> times;  // a row need not have one
     std::ranges::copy_if(data.time, std::back_inserter(times),
@@ -64,11 +66,11 @@ class Kernel {
 
   Eigen::MatrixXd of(KernelDomain domain) const {
     const auto n = static_cast<Eigen::Index>(rows_.row.size());
-    const auto used = static_cast<Eigen::Index>(used_.size());
+    const auto used = static_cast<Eigen::Index>(places_.rows.size());
     Eigen::MatrixXd near(used, used);
     for (Eigen::Index i = 0; i < used; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
-        near(i, j) = near(j, i) = close(domain, used_[i], used_[j]);
+        near(i, j) = near(j, i) = close(domain, places_.rows[i], places_.rows[j]);
     Eigen::MatrixXd directions = direction_;
     if (domain == KernelDomain::base) directions = motions_of_base();
     if (domain == KernelDomain::time)
@@ -77,21 +79,17 @@ class Kernel {
     Eigen::MatrixXd K = directions * directions.transpose();
     for (Eigen::Index j = 0; j < n; ++j)
       for (Eigen::Index i = 0; i < n; ++i)
-        K(i, j) *= place_[i] < 0 || place_[j] < 0 ? 0 : near(place_[i], place_[j]);
+        K(i, j) *= places_.of[i] < 0 || places_.of[j] < 0 ? 0 : near(places_.of[i], places_.of[j]);
     return K;
   }
 
  private:
-  /// The rows that have equations, and the equations of each configuration.
+  /// The equations of each configuration.
   void number() {
-    std::map<int, int> place;  // of a row, among those used
     const std::vector<int> configuration = configurations(data_);
     std::map<std::pair<int, int>, int> block;  // of a configuration, or of an equation of no row
     for (int i = 0; i < static_cast<int>(rows_.row.size()); ++i) {
       const int row = rows_.row[i];
-      const auto [found, made] = place.try_emplace(row, static_cast<int>(used_.size()));
-      if (made && row >= 0) used_.push_back(row);
-      place_.push_back(row < 0 ? -1 : found->second);
       const std::pair<int, int> key =
           row < 0 ? std::pair(-1, i) : std::pair(configuration[row], -1);
       const auto [at, first] = block.try_emplace(key, static_cast<int>(blocks_.size()));
@@ -104,7 +102,7 @@ class Kernel {
   /// that of rows of one equation that no shift changes.
   void find_directions() {
     const Eigen::Index n = rows_.shift.rows();
-    std::vector<int> equations(used_.empty() ? 0 : 1 + std::ranges::max(used_));
+    std::vector<int> equations(places_.rows.empty() ? 0 : 1 + std::ranges::max(places_.rows));
     for (const int row : rows_.row)
       if (row >= 0) ++equations[row];
     const int sets = data_.set.empty() ? 0 : 1 + std::ranges::max(data_.set);
@@ -176,10 +174,10 @@ class Kernel {
   const double near_;  ///< m, over which places are alike
   const ReadingErrors& readings_;
   const Eigen::MatrixXd& alike_;
+  const RowPlaces places_;
   const std::vector<int> visit_;
   Eigen::MatrixXd direction_;
   double span_ = 0;
-  std::vector<int> used_, place_;         ///< rows with equations; by equation, its row among them
   std::vector<std::vector<int>> blocks_;  ///< equations of each configuration
 };
 

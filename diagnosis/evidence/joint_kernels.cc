@@ -1,13 +1,15 @@
+// What one joint moves, times how alike its errors are: the kernels' roots are a few columns over
+// the rows each, at the equations' rows.
 #include "diagnosis/evidence/joint_kernels.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <numeric>
 
 #include "diagnosis/constants.h"
 #include "diagnosis/evidence/kernel_basis.h"
+#include "diagnosis/evidence/rows.h"
 
 namespace selfcal {
 namespace {
@@ -51,43 +53,23 @@ Eigen::VectorXd warmth(const Observations& data, const std::vector<int>& rows) {
   return from_mean;
 }
 
-/// The equations' places among the rows that have any.
-class Places {
- public:
-  explicit Places(const std::vector<int>& row_of_equation) {
-    std::ranges::copy_if(row_of_equation, std::back_inserter(rows_),
-                         [](int row) { return row >= 0; });
-    std::ranges::sort(rows_);
-    rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
-    for (const int row : row_of_equation)
-      of_.push_back(row < 0 ? -1
-                            : static_cast<Eigen::Index>(std::ranges::lower_bound(rows_, row) -
-                                                        rows_.begin()));
-  }
+/// `of_rows` (by place) at the equations' places, times `moved` brought to a mean square of 1.
+Eigen::MatrixXd root_of(Eigen::VectorXd moved, const Eigen::MatrixXd& of_rows,
+                        const std::vector<int>& place) {
+  const auto equations = static_cast<double>(moved.size());
+  if (moved.norm() > 0) moved *= std::sqrt(equations) / moved.norm();
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(moved.size(), of_rows.cols());
+  for (Eigen::Index i = 0; i < moved.size(); ++i)
+    if (place[i] >= 0) F.row(i) = moved[i] * of_rows.row(place[i]);
+  return F;
+}
 
-  /// Of the data set, in order, each once.
-  const std::vector<int>& rows() const { return rows_; }
-
-  /// `of_rows` (by place) at the equations' places, times `moved` brought to a mean square of 1.
-  Eigen::MatrixXd root(Eigen::VectorXd moved, const Eigen::MatrixXd& of_rows) const {
-    const auto equations = static_cast<double>(moved.size());
-    if (moved.norm() > 0) moved *= std::sqrt(equations) / moved.norm();
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(moved.size(), of_rows.cols());
-    for (Eigen::Index i = 0; i < moved.size(); ++i)
-      if (of_[i] >= 0) F.row(i) = moved[i] * of_rows.row(of_[i]);
-    return F;
-  }
-
-  /// `moved` of each equation, times what `of_rows` has for its row.
-  Eigen::VectorXd times(Eigen::VectorXd moved, const Eigen::VectorXd& of_rows) const {
-    for (Eigen::Index i = 0; i < moved.size(); ++i) moved[i] *= of_[i] < 0 ? 0 : of_rows[of_[i]];
-    return moved;
-  }
-
- private:
-  std::vector<int> rows_;
-  std::vector<Eigen::Index> of_;  ///< by equation; -1: of no row
-};
+/// `moved` of each equation, times what `of_rows` has for its row.
+Eigen::VectorXd times(Eigen::VectorXd moved, const Eigen::VectorXd& of_rows,
+                      const std::vector<int>& place) {
+  for (Eigen::Index i = 0; i < moved.size(); ++i) moved[i] *= place[i] < 0 ? 0 : of_rows[place[i]];
+  return moved;
+}
 
 }  // namespace
 
@@ -102,23 +84,23 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 
 std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEquations& rows,
                                        const JointErrors& joints) {
-  const Places places(rows.row);
-  const Eigen::MatrixXd readings = joints.alike(places.rows(), Eigen::all);
-  const Eigen::VectorXd warm = warmth(data, places.rows());
+  const RowPlaces places(rows.row);
+  const Eigen::MatrixXd readings = joints.alike(places.rows, Eigen::all);
+  const Eigen::VectorXd warm = warmth(data, places.rows);
   const Eigen::MatrixXd smooth = smooth_in_two_readings(readings);
   std::vector<JointKernel> list;
   for (int j = 0; j < static_cast<int>(readings.cols()); ++j) {
     const Eigen::VectorXd by_reading = joints.readings.by_joint.col(j);
     const Eigen::MatrixXd periodic = periodic_in_reading(readings.col(j));
     const Eigen::MatrixXd uneven = periodic.rightCols(periodic.cols() - 1);
-    list.push_back({KernelDomain::turned, j, places.root(by_reading, smooth)});
-    list.push_back(
-        {KernelDomain::kinked, j, places.root(by_reading, kinked_in_reading(readings.col(j)))});
+    list.push_back({KernelDomain::turned, j, root_of(by_reading, smooth, places.of)});
+    list.push_back({KernelDomain::kinked, j,
+                    root_of(by_reading, kinked_in_reading(readings.col(j)), places.of)});
     if (joints.by_load.cols() > j && !joints.by_load.col(j).isZero())
-      list.push_back({KernelDomain::load, j, places.root(joints.by_load.col(j), uneven)});
+      list.push_back({KernelDomain::load, j, root_of(joints.by_load.col(j), uneven, places.of)});
     if (!warm.isZero())
-      list.push_back(
-          {KernelDomain::warmth, j, places.root(places.times(by_reading, warm), periodic)});
+      list.push_back({KernelDomain::warmth, j,
+                      root_of(times(by_reading, warm, places.of), periodic, places.of)});
   }
   return list;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -13,6 +14,15 @@
 #include "diagnosis/evidence/visits.h"
 
 namespace selfcal {
+
+RowPlaces::RowPlaces(const std::vector<int>& row_of_equation) {
+  std::ranges::copy_if(row_of_equation, std::back_inserter(rows), [](int row) { return row >= 0; });
+  std::ranges::sort(rows);
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  for (const int row : row_of_equation)
+    of.push_back(row < 0 ? -1
+                         : static_cast<int>(std::ranges::lower_bound(rows, row) - rows.begin()));
+}
 namespace {
 
 /// Variance of the log of a variance that is told from the middle of so many freedoms, times these:

@@ -8,6 +8,13 @@
 
 namespace selfcal {
 
+/// The rows that have equations, in order and each once, and by equation its row's place among
+/// them; -1 of an equation of no row.
+struct RowPlaces {
+  explicit RowPlaces(const std::vector<int>& row_of_equation);
+  std::vector<int> rows, of;
+};
+
 /// What the rows themselves say, whatever the data sheet does: one noise for all sets of a method
 /// and stated noise, since the set that holds the cause would otherwise be taken for a noisy one;
 /// of a set whose rows all judge, with no other of its kind, what its data sheet says. By set.
