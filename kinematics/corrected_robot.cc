@@ -108,7 +108,7 @@ class CorrectedRobot final : public Robot, public RobotText {
     std::vector<std::string> lines = geometry_->text().remarks();
     for (const auto& effect : effects_)
       for (const EffectParameter& p : effect->parameters())
-        if (p.positive && p.value < 0)
+        if (p.positive && p.value < -p.usual_least)  // an estimate of nothing may lie below
           lines.push_back(std::string(effect->name()) +
                           (effect->at().empty() ? "" : " at " + effect->at()) + ": " + p.name +
                           " is " + format_number(p.value) + " " + p.unit +

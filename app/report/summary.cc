@@ -158,9 +158,10 @@ std::string scale_line(const ScaleLength& each, bool alone) {
   text += printed(": 0.1 mm of it makes %.2g mm at the end position", 0.1 * each.moves);
   text += printed("; the maker's lengths expect %.6g +- %.2g mm", 1e3 * each.expected,
                   1e3 * each.expected_sigma);
-  return text + printed(alone ? " and notice an error from %.2g mm on"
-                              : ", and with the other lengths given notice an error of it alone "
-                                "from %.2g mm on",
+  return text + printed(each.by_others_sigma < 0
+                            ? " and notice an error from %.2g mm on"
+                            : ", and with the other lengths given notice an error of it alone "
+                              "from %.2g mm on",
                         1e3 * each.unseen);
 }
 

@@ -126,7 +126,7 @@ class Search {
           std::ranges::count(best.all(), each.candidates[0]) > 0)
         alone.push_back(each);
     extend(alone);
-    visited_.keep_best();
+    visited_.keep_best_of_all();  // a pair may have been reached from its other cause before
     for (const int out : {best.candidates[0], best.candidates[1]}) {
       const int kept = out == best.candidates[0] ? best.candidates[1] : best.candidates[0];
       const auto beside = [&](const Visit& each) {

@@ -91,8 +91,9 @@ std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEqua
   std::vector<JointKernel> list;
   for (int j = 0; j < static_cast<int>(readings.cols()); ++j) {
     const Eigen::VectorXd by_reading = joints.readings.by_joint.col(j);
-    const Eigen::MatrixXd periodic = periodic_in_reading(readings.col(j));
-    const Eigen::MatrixXd uneven = periodic.rightCols(periodic.cols() - 1);
+    if (by_reading.isZero(0)) continue;
+    const Eigen::MatrixXd with_mean = periodic_in_reading(readings.col(j));
+    const Eigen::MatrixXd uneven = with_mean.rightCols(with_mean.cols() - 1);
     list.push_back({KernelDomain::turned, j, root_of(by_reading, smooth, places.of)});
     list.push_back({KernelDomain::kinked, j,
                     root_of(by_reading, kinked_in_reading(readings.col(j)), places.of)});
@@ -100,7 +101,7 @@ std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEqua
       list.push_back({KernelDomain::load, j, root_of(joints.by_load.col(j), uneven, places.of)});
     if (!warm.isZero())
       list.push_back({KernelDomain::warmth, j,
-                      root_of(times(by_reading, warm, places.of), periodic, places.of)});
+                      root_of(times(by_reading, warm, places.of), uneven, places.of)});
   }
   return list;
 }

@@ -35,8 +35,9 @@ struct JointKernel {
   Eigen::MatrixXd root;  ///< equations x directions: F of F F'
 };
 
-/// Of every joint: `turned`, `kinked`, `load` where the load is told (without what is the same at
-/// each reading: that is a spring, which an effect has), `warmth` where it changes.
+/// Of every joint that moves an equation: `turned`, `kinked`, `load` where the load is told,
+/// `warmth` where it changes; the last two without what is the same at each reading, which is a
+/// spring or a zero that goes with the temperature.
 std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEquations& rows,
                                        const JointErrors& joints);
 

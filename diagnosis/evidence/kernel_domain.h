@@ -14,7 +14,7 @@ enum class KernelDomain {
   turned = 5,  ///< one joint is off by a smooth function of one or two readings
   base = 6,    ///< soon after each other, as if the base moved
   kinked = 7,  ///< one joint is off by a function of its reading with steps and kinks
-  load = 8,    ///< one joint gives way to its load differently at each of its angles
+  load = 8,    ///< one joint gives way to its load differently at each of its readings
   warmth = 9,  ///< one joint is off by a function of its reading that grows with the warmth
 };
 
@@ -42,9 +42,10 @@ inline std::string in_words(const UnknownStructure& structure) {
       return "rows err as if the reading of " + joint + " were off";
     case KernelDomain::kinked:
       return "rows err as if the reading of " + joint +
-             " were off by something that steps or bends at some of its angles";
+             " were off by something that steps or bends at some of its readings";
     case KernelDomain::load:
-      return "rows err as if " + joint + " gave way to its load differently at each of its angles";
+      return "rows err as if " + joint +
+             " gave way to its load differently at each of its readings";
     case KernelDomain::warmth:
       return "rows err as if an error of " + joint + " grew with the temperature";
   }

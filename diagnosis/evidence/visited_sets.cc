@@ -29,6 +29,11 @@ void VisitedSets::keep_best() {
   distinct_ = list_.size();
 }
 
+void VisitedSets::keep_best_of_all() {
+  distinct_ = 0;
+  keep_best();
+}
+
 void VisitedSets::drop_impossible(int size) {
   std::erase_if(list_, [&](const CompactHypothesis& each) {
     return each.count == size && each.impossible.value_or(false);

@@ -25,8 +25,10 @@ class VisitedSets {
   const std::vector<CompactHypothesis>& list() const { return list_; }
   bool has(const CompactHypothesis& set) const;
 
-  /// Of those with the same candidates and structure, reached by different ways, the best.
+  /// Of those with the same candidates and structure, reached by different ways, the best; of those
+  /// that came since the last time, or of all.
   void keep_best();
+  void keep_best_of_all();
   /// Those of so many candidates leave if they are impossible.
   void drop_impossible(int size);
   /// The best of `size` candidates in the structures asked for. Not one cause in all its shapes:

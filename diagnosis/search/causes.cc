@@ -252,16 +252,26 @@ std::optional<UnknownStructure> structure_of_unknown(const EvidenceEvaluator& ev
       weights[structure.kind][structure.joint] += weight;
       all += weight;
     }
-  for (const auto& [kind, by_joint] : weights) {
-    double of_kind = 0;
-    for (const auto& [joint, weight] : by_joint) of_kind += weight;
-    if (!(of_kind > all / 2)) continue;
-    UnknownStructure found{static_cast<KernelDomain>(kind)};
-    for (const auto& [joint, weight] : by_joint)
-      if (joint >= 0 && weight > of_kind / 2)
-        found.joint = robot.joints()[static_cast<std::size_t>(joint)].name;
-    return found;
+  const auto largest = [](const std::map<int, double>& of) {
+    return *std::ranges::max_element(of, {}, &std::pair<const int, double>::second);
+  };
+  std::map<int, double> by_kind, by_joint;
+  for (const auto& [kind, joints] : weights)
+    for (const auto& [joint, weight] : joints) {
+      by_kind[kind] += weight;
+      if (joint >= 0) by_joint[joint] += weight;
+    }
+  if (!by_joint.empty() && largest(by_joint).second > all / 2) {
+    const int joint = largest(by_joint).first;
+    std::map<int, double> of_joint;
+    for (const auto& [kind, joints] : weights)
+      if (const auto found = joints.find(joint); found != joints.end())
+        of_joint[kind] = found->second;
+    return UnknownStructure{static_cast<KernelDomain>(largest(of_joint).first),
+                            robot.joints()[static_cast<std::size_t>(joint)].name};
   }
+  if (!by_kind.empty() && largest(by_kind).second > all / 2)
+    return UnknownStructure{static_cast<KernelDomain>(largest(by_kind).first)};
   return std::nullopt;
 }
 

@@ -18,7 +18,6 @@ namespace {
 
 /// Levels of elements: TinyXML, and all that reads its tree, calls itself for each.
 constexpr int kDeepest = 200;
-constexpr double kMostTurned = 6.3;  ///< rad, of an origin
 
 std::string at_line(const std::string& file, int line) {
   return line > 0 ? file + ":" + std::to_string(line) : file;
@@ -55,7 +54,8 @@ const TiXmlElement* first_named_by_other_bytes(const TiXmlElement& root) {
   return nullptr;
 }
 
-/// The first angle of a joint's origin that is more than a turn, and the joint; null where none is.
+/// The first origin of a joint that is turned by more than any file in radians, and by how much;
+/// null where none is.
 std::pair<const TiXmlElement*, double> first_in_degrees(const TiXmlElement& root) {
   for (auto* joint = root.FirstChildElement("joint"); joint;
        joint = joint->NextSiblingElement("joint")) {
@@ -135,7 +135,7 @@ Result<UrdfLines> UrdfLines::of(const std::string& text, const std::string& file
     return bad_input(at_line(file, element->Row()) + ": expected a name in UTF-8, got other bytes");
   if (const auto [origin, angle] = first_in_degrees(*root); origin)
     return bad_input(at_line(file, origin->Row()) + ": rpy " + format_number(angle) +
-                     " is more than a turn, radians expected (degrees?)");
+                     " is more than four turns, radians expected (degrees?)");
   return UrdfLines(file, std::move(document));
 }
 

@@ -96,6 +96,11 @@ TEST(JointLaws, OfAPlainSpringAreItsCompliance) {
   expect_named(off.diagnose(), "joint_compliance");
 }
 
+TEST(JointLaws, OfAZeroThatGoesWithTheWarmthAreItsShift) {
+  const OneJointOff off([](const At& at) { return kSize * at.warm; });
+  expect_named(off.diagnose(), "zero_shift");
+}
+
 TEST(JointLaws, OfAPlainGearAreItsTransmissionError) {
   const OneJointOff off([](const At& at) { return kSize * std::cos(2 * at.q + 0.3); });
   expect_named(off.diagnose(), "transmission_error");

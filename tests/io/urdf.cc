@@ -270,7 +270,7 @@ TEST(Urdf, IsRefusedWithTheLine) {
   EXPECT_THAT(why("<robot name='r'>\n<!-- J\xF6rg -->\n<link name='B\xFChne'/>\n</robot>"),
               HasSubstr("f.urdf:3: expected a name in UTF-8"));
   EXPECT_THAT(why("<robot name='r'>\n<joint name='j'>\n<origin rpy='0 -90 0'/></joint></robot>"),
-              HasSubstr("f.urdf:3: rpy -90 is more than a turn, radians expected (degrees?)"));
+              HasSubstr("f.urdf:3: rpy -90 is more than four turns, radians expected (degrees?)"));
   EXPECT_THAT(why(joint(step("planar", ""))), HasSubstr("f.urdf:4: joint 'j1' is neither"));
   EXPECT_THAT(why(joint(step("revolute", "", "0 0 0"))),
               HasSubstr("f.urdf:4: joint 'j1' has an axis"));
