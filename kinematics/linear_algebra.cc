@@ -247,6 +247,13 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
   return large_product(CblasTrans, A, B);
 }
 
+void add_square(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& H) {
+  expects(H.rows() == A.cols() && H.cols() == A.cols(), "as many sums as columns");
+  const auto turn = turn_of_one();
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, width(A.cols()), width(A.rows()), 1, A.data(),
+              width(A.outerStride()), 1, H.data(), width(H.rows()));
+}
+
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A) {
   if (A.rows() < kLarge) {
     const Eigen::LLT<Eigen::MatrixXd> factor(A);

@@ -48,6 +48,8 @@ Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& L, const Eigen::Ma
 Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// A^T B.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// Adds A^T A to the lower triangle of `H`.
+void add_square(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& H);
 /// Inverse of the positive definite `A`; not a number where it is none.
 Eigen::MatrixXd inverse_of_positive(const Eigen::MatrixXd& A);
 

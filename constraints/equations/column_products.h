@@ -21,9 +21,12 @@ class ColumnProducts {
   Eigen::MatrixXd sum();
 
  private:
+  bool wide() const { return square_.size() > 0; }
+
   Eigen::Index columns_, filled_ = 0;
   Eigen::MatrixXd buffer_;
-  std::vector<double> sums_;  ///< as kernels::add_column_products keeps them
+  std::vector<double> sums_;  ///< of few columns, as kernels::add_column_products keeps them
+  Eigen::MatrixXd square_;    ///< of many, whose sums no cache would hold: its lower triangle
 };
 
 }  // namespace selfcal
