@@ -23,6 +23,8 @@
 namespace selfcal {
 
 /// Everything that the search needs and that does not depend on y.
+class ProductsOfColumns;
+
 class EvidenceEvaluator {
  public:
   EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovariance> structures,
@@ -120,7 +122,7 @@ class EvidenceEvaluator {
   double sized(Hypothesis& h, const Eigen::MatrixXd& G) const;
   Hypothesis with(Hypothesis h, int candidate, const MarginalLikelihood& rest) const;
   Hypothesis with_best(const Hypothesis& h, const MarginalLikelihood& rest) const;
-  Hypothesis pruned(Hypothesis h) const;
+  Hypothesis pruned(Hypothesis h, ProductsOfColumns& products) const;
   Hypothesis without_parts(Hypothesis h) const;
   /// One of them holds all that the other has.
   bool overlap(int a, int b) const;

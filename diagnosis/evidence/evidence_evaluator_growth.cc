@@ -2,6 +2,7 @@
 // those that others make up for; and whether a machine can have a set.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
@@ -10,11 +11,37 @@
 
 namespace selfcal {
 
+/// Rows of G as a growing set asks for them: those of a column are made once.
+class ProductsOfColumns {
+ public:
+  explicit ProductsOfColumns(const MarginalLikelihood& of) : of_(of) {}
+
+  /// `columns` by all columns of G.
+  Eigen::MatrixXd rows(const std::vector<int>& columns) {
+    std::vector<int> missing;
+    for (const int column : columns)
+      if (!at_.contains(column)) missing.push_back(column);
+    if (!missing.empty()) {
+      const Eigen::MatrixXd more = of_.products(missing);
+      for (std::size_t i = 0; i < missing.size(); ++i)
+        at_[missing[i]] = more.row(static_cast<Eigen::Index>(i));
+    }
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(columns.size()), of_.rows().rows().C.cols());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      rows.row(static_cast<Eigen::Index>(i)) = at_.at(columns[i]);
+    return rows;
+  }
+
+ private:
+  const MarginalLikelihood& of_;
+  std::map<int, Eigen::RowVectorXd> at_;
+};
+
 /// Without one candidate after the other, as long as that makes it more probable.
-Hypothesis EvidenceEvaluator::pruned(Hypothesis h) const {
+Hypothesis EvidenceEvaluator::pruned(Hypothesis h, ProductsOfColumns& products) const {
   const MarginalLikelihood& marginal_likelihood = marginal_likelihoods_[h.structure];
   const std::vector<int> all = MarginalLikelihood::unfold(terms(h)).first;
-  const Eigen::MatrixXd G = marginal_likelihood.gram(all);
+  const Eigen::MatrixXd G = products.rows(all)(Eigen::all, all);
   const auto weigh_again = [&](Hypothesis& of) {
     const std::vector<MarginalLikelihood::Term> list = terms(of);
     std::vector<int> at;  // of its columns, among all
@@ -57,10 +84,16 @@ Hypothesis EvidenceEvaluator::without_parts(Hypothesis h) const {
 }
 
 Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
-  h.log_weight = marginal_likelihoods_[h.structure].given(terms(h)).log_evidence({}) + held(h) +
-                 log_prior(h.candidates, h.structure);
+  const MarginalLikelihood& own = marginal_likelihoods_[h.structure];
+  ProductsOfColumns products(own);
+  const auto left_by = [&](const Hypothesis& of) {
+    return of.candidates.empty()
+               ? own
+               : own.given(terms(of), products.rows(MarginalLikelihood::unfold(terms(of)).first));
+  };
+  h.log_weight = left_by(h).log_evidence({}) + held(h) + log_prior(h.candidates, h.structure);
   while (h.candidates.size() < most) {
-    const MarginalLikelihood rest = marginal_likelihoods_[h.structure].given(terms(h));
+    const MarginalLikelihood rest = left_by(h);
     std::set<std::string> families;
     for (const int c : h.candidates) families.insert(all_.list[static_cast<size_t>(c)].effect);
     Hypothesis best = h;
@@ -77,7 +110,7 @@ Hypothesis EvidenceEvaluator::grow(Hypothesis h, size_t most) const {
       if (more.log_weight > best.log_weight + 1) best = std::move(more);
     }
     if (best.candidates.size() == h.candidates.size()) break;
-    h = pruned(without_parts(std::move(best)));
+    h = pruned(without_parts(std::move(best)), products);
   }
   return h;
 }

@@ -264,7 +264,7 @@ class Search {
         Hypothesis h = other.hypothesis();
         const Eigen::MatrixXd G = evaluator_.gram(h);
         const double log_evidence = evaluator_.sized(h, G);
-        for (int i = 0; i < other.count; ++i) other.sizes[i] = h.sizes[i];
+        for (int i = 0; i < other.count; ++i) other.sizes[i] = static_cast<float>(h.sizes[i]);
         note(other, log_evidence);
         if (counts()) judge(h, G);
       }

@@ -26,12 +26,12 @@ struct Hypothesis {
 struct CompactHypothesis {
   int count = 0, structure = 0;
   std::array<int, kDiagnosis.evidence.most_together> candidates{};
-  std::array<double, kDiagnosis.evidence.most_together> sizes{};
+  std::array<float, kDiagnosis.evidence.most_together> sizes{};  ///< powers of two
   double log_weight = 0;
   std::optional<bool> impossible = {};  ///< no machine can have it; without a value: not asked
 
   std::span<const int> all() const { return {candidates.data(), static_cast<std::size_t>(count)}; }
-  auto key() const { return std::tuple(count, structure, candidates); }
+  auto key() const { return std::tie(count, structure, candidates); }
   void add(int candidate, double size) {
     int at = count++;
     for (; at > 0 && candidates[at - 1] > candidate; --at) {
@@ -39,7 +39,7 @@ struct CompactHypothesis {
       sizes[at] = sizes[at - 1];
     }
     candidates[at] = candidate;
-    sizes[at] = size;
+    sizes[at] = static_cast<float>(size);
   }
   Hypothesis hypothesis() const {
     return {{candidates.begin(), candidates.begin() + count},

@@ -34,19 +34,20 @@ NoiseBlocks::NoiseBlocks(std::vector<std::vector<int>> blocks,
     if (n == 1)
       alone_[each.front()] = root(0, 0);
     else
-      parts_.push_back({std::move(each), std::move(root)});
+      parts_.push_back({std::move(each), root, root.diagonal().cwiseInverse()});
   }
+  inverse_alone_ = alone_.cwiseInverse();
 }
 
 void NoiseBlocks::whiten(Eigen::MatrixXd& X) const {
   for (auto column : X.colwise()) {
-    column.array() /= alone_.array();
+    column.array() *= inverse_alone_.array();
     for (const Part& part : parts_) {
       const auto n = static_cast<Eigen::Index>(part.equations.size());
       for (Eigen::Index i = 0; i < n; ++i) {
         double sum = column[part.equations[i]];
         for (Eigen::Index j = 0; j < i; ++j) sum -= part.root(i, j) * column[part.equations[j]];
-        column[part.equations[i]] = sum / part.root(i, i);
+        column[part.equations[i]] = sum * part.inverse[i];
       }
     }
   }
@@ -54,13 +55,13 @@ void NoiseBlocks::whiten(Eigen::MatrixXd& X) const {
 
 void NoiseBlocks::whiten_transposed(Eigen::MatrixXd& X) const {
   for (auto column : X.colwise()) {
-    column.array() /= alone_.array();
+    column.array() *= inverse_alone_.array();
     for (const Part& part : parts_) {
       const auto n = static_cast<Eigen::Index>(part.equations.size());
       for (Eigen::Index i = n - 1; i >= 0; --i) {
         double sum = column[part.equations[i]];
         for (Eigen::Index j = i + 1; j < n; ++j) sum -= part.root(j, i) * column[part.equations[j]];
-        column[part.equations[i]] = sum / part.root(i, i);
+        column[part.equations[i]] = sum * part.inverse[i];
       }
     }
   }

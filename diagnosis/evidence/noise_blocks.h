@@ -25,10 +25,12 @@ class NoiseBlocks {
  private:
   struct Part {
     std::vector<int> equations;
-    Eigen::MatrixXd root;  ///< lower Cholesky factor
+    Eigen::MatrixXd root;     ///< lower Cholesky factor
+    Eigen::VectorXd inverse;  ///< of its diagonal
   };
   Eigen::Index equations_ = 0;
-  Eigen::VectorXd alone_;  ///< root of an equation that shares with none; 1 of the others
+  /// Root of an equation that shares with none, and its inverse; 1 of the others.
+  Eigen::VectorXd alone_, inverse_alone_;
   std::vector<Part> parts_;
   double log_volume_ = 0;
 };
