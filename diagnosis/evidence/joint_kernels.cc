@@ -53,21 +53,60 @@ Eigen::VectorXd warmth(const Observations& data, const std::vector<int>& rows) {
   return from_mean;
 }
 
-/// `of_rows` (by place) at the equations' places, times `moved` brought to a mean square of 1.
-Eigen::MatrixXd root_of(Eigen::VectorXd moved, const Eigen::MatrixXd& of_rows,
-                        const std::vector<int>& place) {
-  const auto equations = static_cast<double>(moved.size());
-  if (moved.norm() > 0) moved *= std::sqrt(equations) / moved.norm();
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(moved.size(), of_rows.cols());
-  for (Eigen::Index i = 0; i < moved.size(); ++i)
-    if (place[i] >= 0) F.row(i) = moved[i] * of_rows.row(place[i]);
-  return F;
-}
+/// What an error in the row of each equation moves it, and one in the row before that.
+struct Moved {
+  Eigen::VectorXd now, before;
+};
 
-/// `moved` of each equation, times what `of_rows` has for its row.
-Eigen::VectorXd times(Eigen::VectorXd moved, const Eigen::VectorXd& of_rows,
-                      const std::vector<int>& place) {
-  for (Eigen::Index i = 0; i < moved.size(); ++i) moved[i] *= place[i] < 0 ? 0 : of_rows[place[i]];
+/// The rows of equations by their places among all that have any.
+class Places {
+ public:
+  Places(const std::vector<int>& row, const std::vector<int>& before)
+      : equations_(row.size()), of_(both(row, before)) {}
+  const std::vector<int>& rows() const { return of_.rows; }
+
+  /// `of_rows` (by place) at the equations' places, times `moved` brought to a mean square of 1.
+  Eigen::MatrixXd root(const Moved& moved, const Eigen::MatrixXd& of_rows) const {
+    const double norm = std::hypot(moved.now.norm(), moved.before.norm());
+    const double scale = norm > 0 ? std::sqrt(static_cast<double>(equations_)) / norm : 0;
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(moved.now.size(), of_rows.cols());
+    for (Eigen::Index i = 0; i < moved.now.size(); ++i) {
+      if (const int at = now(i); at >= 0) F.row(i) += scale * moved.now[i] * of_rows.row(at);
+      if (const int at = before(i); at >= 0) F.row(i) += scale * moved.before[i] * of_rows.row(at);
+    }
+    return F;
+  }
+
+  /// `moved` times what `of_rows` has for each row.
+  Moved times(Moved moved, const Eigen::VectorXd& of_rows) const {
+    for (Eigen::Index i = 0; i < moved.now.size(); ++i) {
+      moved.now[i] *= now(i) < 0 ? 0 : of_rows[now(i)];
+      moved.before[i] *= before(i) < 0 ? 0 : of_rows[before(i)];
+    }
+    return moved;
+  }
+
+ private:
+  static std::vector<int> both(std::vector<int> row, const std::vector<int>& before) {
+    row.insert(row.end(), before.begin(), before.end());
+    row.resize(2 * (row.size() - before.size()), -1);
+    return row;
+  }
+  int now(Eigen::Index equation) const { return of_.of[static_cast<std::size_t>(equation)]; }
+  int before(Eigen::Index equation) const {
+    return of_.of[equations_ + static_cast<std::size_t>(equation)];
+  }
+
+  std::size_t equations_;
+  RowPlaces of_;
+};
+
+/// What errors of a joint's readings do.
+Moved moved_by(const JointErrors& joints, int joint) {
+  Moved moved{joints.readings.by_joint.col(joint), {}};
+  moved.before.setZero(moved.now.size());
+  if (joints.by_before.cols() > joint) moved.before = joints.by_before.col(joint);
+  moved.now -= moved.before;
   return moved;
 }
 
@@ -84,24 +123,26 @@ Eigen::MatrixXd comparable_readings(const Robot& robot, Eigen::MatrixXd q) {
 
 std::vector<JointKernel> joint_kernels(const Observations& data, const DenseEquations& rows,
                                        const JointErrors& joints) {
-  const RowPlaces places(rows.row);
-  const Eigen::MatrixXd readings = joints.alike(places.rows, Eigen::all);
-  const Eigen::VectorXd warm = warmth(data, places.rows);
+  const Places places(rows.row, joints.before);
+  const Eigen::MatrixXd readings = joints.alike(places.rows(), Eigen::all);
+  const Eigen::VectorXd warm = warmth(data, places.rows());
   const Eigen::MatrixXd smooth = smooth_in_two_readings(readings);
   std::vector<JointKernel> list;
   for (int j = 0; j < static_cast<int>(readings.cols()); ++j) {
-    const Eigen::VectorXd by_reading = joints.readings.by_joint.col(j);
-    if (by_reading.isZero(0)) continue;
+    const Moved by_reading = moved_by(joints, j);
+    if (by_reading.now.isZero(0) && by_reading.before.isZero(0)) continue;
     const Eigen::MatrixXd with_mean = periodic_in_reading(readings.col(j));
     const Eigen::MatrixXd uneven = with_mean.rightCols(with_mean.cols() - 1);
-    list.push_back({KernelDomain::turned, j, root_of(by_reading, smooth, places.of)});
-    list.push_back({KernelDomain::kinked, j,
-                    root_of(by_reading, kinked_in_reading(readings.col(j)), places.of)});
-    if (joints.by_load.cols() > j && !joints.by_load.col(j).isZero())
-      list.push_back({KernelDomain::load, j, root_of(joints.by_load.col(j), uneven, places.of)});
+    list.push_back({KernelDomain::turned, j, places.root(by_reading, smooth)});
+    list.push_back(
+        {KernelDomain::kinked, j, places.root(by_reading, kinked_in_reading(readings.col(j)))});
+    if (joints.by_load.cols() > j && !joints.by_load.col(j).isZero()) {
+      const Moved by_load{joints.by_load.col(j), Eigen::VectorXd::Zero(joints.by_load.rows())};
+      list.push_back({KernelDomain::load, j, places.root(by_load, uneven)});
+    }
     if (!warm.isZero())
-      list.push_back({KernelDomain::warmth, j,
-                      root_of(times(by_reading, warm, places.of), uneven, places.of)});
+      list.push_back(
+          {KernelDomain::warmth, j, places.root(places.times(by_reading, warm), uneven)});
   }
   return list;
 }

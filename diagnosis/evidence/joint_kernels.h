@@ -2,7 +2,7 @@
 // and on the warmth. Errors of two equations share
 //   J(1) J(2) k(q1, q2),
 // J (of mean square 1 over all equations) what the joint's reading, its giving way to its load, or
-// its reading times the warmth moves an equation.
+// its reading times the warmth moves an equation; an equation of two rows has one of each.
 #pragma once
 
 #include <Eigen/Dense>
@@ -26,6 +26,10 @@ struct JointErrors {
   /// Equations x joints: what giving way to its load moves, to any scale; a joint of which nothing
   /// tells has zeros. Empty: of none.
   Eigen::MatrixXd by_load = {};
+  /// Of equations of two rows: the former of them, by equation (-1 of none), and what of
+  /// `readings.by_joint` is its share; empty: there are none.
+  std::vector<int> before = {};
+  Eigen::MatrixXd by_before = {};
 };
 
 /// A covariance by its root.

@@ -73,6 +73,7 @@ void LinearisedModel::linearise() {
   all_ = all_equations_->dense(
       extended(adjusted_.fitted.state, static_cast<Eigen::Index>(everything_->parameters().size())),
       noise_, left_out);
+  before_ = rows_before(*equations_, adjusted_.fitted.state, noise_, left_out, all_);
   nuisance_ = nuisance(adjusted_, all_equations_->robot_columns(), all_.W.cols());
 }
 
@@ -101,9 +102,7 @@ bool LinearisedModel::try_fine_waves() {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const int row = all_.row[static_cast<size_t>(equations[static_cast<size_t>(i)])];
       // Equations of two rows have two readings, and take no part.
-      if (row < 0 || data_.sets[static_cast<size_t>(data_.rows.set[static_cast<size_t>(row)])]
-                         .method->paired())
-        continue;
+      if (row < 0 || (!before_.of.empty() && before_.of[static_cast<size_t>(row)] >= 0)) continue;
       q[i] = data_.rows.q(row, static_cast<Eigen::Index>(j));
       by[i] = by_joint(i, static_cast<Eigen::Index>(j));
     }
@@ -203,9 +202,20 @@ ReadingErrors LinearisedModel::reading_errors() const {
 }
 
 JointErrors LinearisedModel::joint_errors() const {
-  return {.readings = reading_errors(),
-          .alike = comparable_readings(*geometry_, data_.rows.q),
-          .by_load = by_load()};
+  JointErrors errors{.readings = reading_errors(),
+                     .alike = comparable_readings(*geometry_, data_.rows.q),
+                     .by_load = by_load()};
+  if (before_.of.empty()) return errors;
+  const std::vector<int> equations = equations_of(all_, taking_part());
+  errors.by_before =
+      before_.by_joint(equations, Eigen::all).array().colwise() / scales(equations).array();
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    const int row = all_.row[static_cast<std::size_t>(equations[i])];
+    errors.before.push_back(row < 0 ? -1 : before_.of[static_cast<std::size_t>(row)]);
+    // What either of two loads moves is not known apart.
+    if (errors.before.back() >= 0) errors.by_load.row(static_cast<Eigen::Index>(i)).setZero();
+  }
+  return errors;
 }
 
 Eigen::MatrixXd LinearisedModel::by_load() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "constraints/equations/resolution.h"
+#include "constraints/equations/rows_before.h"
 #include "constraints/estimation/adjustment.h"
 #include "diagnosis/evidence/candidates.h"
 #include "diagnosis/evidence/joint_kernels.h"
@@ -142,6 +143,7 @@ class LinearisedModel {
   Adjusted adjusted_;
   Nuisance nuisance_;
   DenseEquations all_;  ///< of the noise as the geometry's fit has it
+  RowsBefore before_;   ///< of the same equations
   std::vector<int> quieter_;
   std::vector<Scale> noise_;   ///< by set, at a scale of one
   std::vector<char> held_;     ///< by row: all() is of it

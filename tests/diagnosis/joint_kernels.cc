@@ -111,5 +111,24 @@ TEST(JointKernels, AreWhatTheJointMovesOfMeanSquareOne) {
               5e-3);
 }
 
+TEST(JointKernels, HaveBothReadingsOfAnEquationOfTwoRows) {
+  Rows of;
+  of.errors.before = {-1, -1, 1};  // row 1, which has no equation of its own
+  of.errors.by_before = Eigen::MatrixXd::Zero(3, 2);
+  of.errors.by_before(2, 0) = -6;
+  const auto list = joint_kernels(of.data, of.rows, of.errors);
+  const auto found = std::ranges::find_if(list, [](const JointKernel& each) {
+    return each.domain == KernelDomain::kinked && each.joint == 0;
+  });
+  ASSERT_NE(found, list.end());
+  const Eigen::MatrixXd K = found->root * found->root.transpose();
+  // 4 in all: 10 of the third row, at 0.9 rad, and -6 of the second, at 0.5; the first one's is 3,
+  // at 0.1. Between knots, a 23rd of 0.8 rad apart, the kernel is straight.
+  const double square = (9 + 49 + 100 + 36) / 3.0;
+  EXPECT_NEAR(K(0, 2), 3 * (10 * std::exp(-0.8) - 6 * std::exp(-0.4)) / square, 1e-3);
+  EXPECT_NEAR(K(2, 2), (100 + 36 - 120 * std::exp(-0.4)) / square, 1e-2);
+  EXPECT_EQ(K(1, 1), 0);
+}
+
 }  // namespace
 }  // namespace selfcal
