@@ -59,7 +59,7 @@ class Weighing {
   }
 
   /// A cause that acts in few rows has these put aside before it is looked for. Where one of all
-  /// rows leaves hardly any of them far, they take part.
+  /// rows that a machine can have leaves hardly any of them far, they take part.
   void offer_back() {
     const std::vector<char> aside = linearised_.outlier();
     const auto count = std::ranges::count(aside, char{1});
@@ -69,7 +69,7 @@ class Weighing {
     if (lacking(*evaluator_).empty()) {
       posterior_ = evaluator_->search();
       const Hypothesis& best = posterior_.hypotheses.front();
-      if (!best.candidates.empty()) {
+      if (!best.candidates.empty() && !evaluator_->is_impossible(best)) {
         refine_by(best);
         const auto left = std::ranges::count(linearised_.outlier(), char{1});
         if (static_cast<double>(left) <= kDiagnosis.rows.hardly_any * static_cast<double>(count))
