@@ -56,6 +56,16 @@ TEST(Config, RefusesWaysThatDoNotFitTogether) {
   EXPECT_EQ(refusal({{"motion.clearance", "0.021"}}), "");
 }
 
+TEST(Config, RefusesAPlaceToTouchThatMissesTheSurface) {
+  const std::string said = refusal({{"sets.within", "{center: [0.75, 0, 9], radius: 0.3}"}});
+  EXPECT_THAT(said, AllOf(HasSubstr("within"), HasSubstr("a ball that meets the surface")));
+}
+
+TEST(Config, SaysFirstThatAKeyIsMistyped) {
+  EXPECT_THAT(refusal({{"motion.apart", "0.03"}, {"motion.clearence", "0.05"}}),
+              testing::ContainsRegex("^[^;]*unknown key 'clearence'"));
+}
+
 TEST(Config, RefusesAHomeBeyondAPassiveJointsSwing) {
   const auto said = [](const std::string& home) {
     std::string robot = text_of(example("stewart.robot.yaml"));

@@ -10,6 +10,7 @@
 #include "io/files/file.h"
 #include "io/files/robot_file.h"
 #include "io/files/yaml.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 namespace {
@@ -73,11 +74,16 @@ class Reader {
   }
 
  private:
+  /// A mistyped key is said first: what does not fit together may come of it.
   template <class Read>
   void part(Fields& fields, std::string_view key, const Read& read) {
     Fields inner(entry_of(fields, key), std::string(key), problems_);
+    const auto first = static_cast<std::ptrdiff_t>(problems_.list.size());
     read(inner);
+    const auto read_by_then = static_cast<std::ptrdiff_t>(problems_.list.size());
     inner.refuse_unknown();
+    const auto begin = problems_.list.begin();
+    std::rotate(begin + first, begin + read_by_then, problems_.list.end());
   }
 
   void read_robot(Fields& fields) {
@@ -226,6 +232,10 @@ class Reader {
     target.within = read_patch(*within, f.what() + " within", problems_);
     target.outward = s.normal;
     target.plane = Plane{s.normal, s.normal.dot(s.point)};
+    const double off = std::abs(s.normal.dot(target.within.centre - s.point));
+    if (!problems_.any() && off >= target.within.radius)
+      return f.fail("within", "a ball that meets the surface, which is " +
+                                  in_readable_unit(off, "m") + " from its center");
     target.obstacle = static_cast<int>(c_.obstacles.size());
     c_.obstacles.push_back({s.point, s.normal, target.within});
   }
