@@ -92,6 +92,9 @@ Result<void> write_page(const ReportArguments& arguments) {
   const nlohmann::ordered_json session = session_json(rows->record, *result);
   if (rows->record.kind == to_string(SessionKind::cause))
     return write_file_atomically(arguments.out, cause_page(*rows, session));
+  if (const std::string why = lacking_reference(rows->data); !why.empty())
+    return bad_input("session " + std::to_string(record->id) +
+                     " cannot be solved from the touches that it has: " + why);
   Engagements found;
   {
     ProgressLine line;

@@ -194,6 +194,20 @@ void adopt(DataSet& first, const std::vector<Set>& sets, Observations& rows) {
 
 }  // namespace
 
+std::string lacking_reference(const DataSet& data) {
+  std::vector<int> fitted(data.sets.size(), 0), judging = fitted;
+  for (int row = 0; row < data.rows.rows(); ++row)
+    ++(data.rows.check[row] ? judging : fitted)[data.rows.set[row]];
+  for (size_t s = 0; s < data.sets.size(); ++s) {
+    const int other = data.sets[s].reference;
+    if (other < 0 || fitted[s] + judging[s] == 0 || fitted[other] > 0) continue;
+    if (fitted[s] == 0 && judging[other] > 0) continue;
+    return "set " + data.sets[s].name + " is parallel to " + data.sets[other].name +
+           ", which has no `" + (fitted[s] > 0 ? "fit" : "fit` or `check") + "` rows";
+  }
+  return {};
+}
+
 DataSet merged(const DataSet& before, const DataSet& after) {
   DataSet all = before;
   Observations later = after.rows;

@@ -54,6 +54,10 @@ std::vector<Set> read_sets(const Node& node, Problems& problems);
 /// it can.
 std::string lacking_body(const Robot& robot, const std::vector<Set>& sets);
 
+/// Why a set with rows cannot be solved for: it shares the unknowns of another that has no rows of
+/// their use (those that identify need some that do); empty when none is so.
+std::string lacking_reference(const DataSet& data);
+
 /// The set among `sets` of the same name, method and options as `set`; -1 without.
 int same_set(const std::vector<Set>& sets, const Set& set);
 

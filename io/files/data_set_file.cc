@@ -45,22 +45,6 @@ Description read_description(const Node& node, DataSet& data, Problems& problems
   return description;
 }
 
-/// A set that shares another's unknowns needs rows of the other: `fit` rows where its own identify.
-Result<void> check_references(const DataSet& data, const std::string& file) {
-  std::vector<int> fitted(data.sets.size(), 0), judging = fitted;
-  for (int row = 0; row < data.rows.rows(); ++row)
-    ++(data.rows.check[row] ? judging : fitted)[data.rows.set[row]];
-  for (size_t s = 0; s < data.sets.size(); ++s) {
-    const int other = data.sets[s].reference;
-    if (other < 0 || fitted[s] + judging[s] == 0 || fitted[other] > 0) continue;
-    if (fitted[s] == 0 && judging[other] > 0) continue;
-    return bad_input(file + ": set " + data.sets[s].name + " is parallel to " +
-                     data.sets[other].name + ", which has no `" +
-                     (fitted[s] > 0 ? "fit" : "fit` or `check") + "` rows");
-  }
-  return {};
-}
-
 /// The folder's own name, also when it is given as "." or with a slash at its end.
 std::string folder_name(const std::filesystem::path& folder) {
   std::error_code error;
@@ -94,8 +78,8 @@ Result<LoadedDataSet> load_data_set(const std::filesystem::path& path, Readings 
       read_observations(folder / description.observations, *loaded.robot, description.map, readings,
                         loaded.data, loaded.notices);
   if (!read) return tl::unexpected(read.error());
-  if (const auto checked = check_references(loaded.data, file.string()); !checked)
-    return tl::unexpected(checked.error());
+  if (const std::string why = lacking_reference(loaded.data); !why.empty())
+    return bad_input(file.string() + ": " + why);
   loaded.robot = in_context(std::move(loaded.robot), loaded.data, problems);
   if (problems.any()) return bad_input(problems);
   return loaded;
