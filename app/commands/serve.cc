@@ -27,6 +27,7 @@
 #include "io/dds/participant.h"
 #include "io/dds/thermometer.h"
 #include "io/files/file.h"
+#include "io/store/folder.h"
 #include "io/urgency.h"
 #include "sim/ports.h"
 
@@ -139,6 +140,7 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   if (auto made = make_folder(config.state); !made) return made;
   const auto lock = Lock::take(config.state);
   if (!lock) return tl::unexpected(lock.error());
+  if (auto owned = own_folder(config.state, config.id); !owned) return owned;
   auto opened = Store::open(config.state);
   if (!opened) return tl::unexpected(opened.error());
   auto models = Models::load(config.robot, *opened->store);
@@ -230,6 +232,8 @@ int serve_command(const ServeArguments& arguments) {
   if (arguments.simulate)
     if (const auto machine = load_machine(config->simulation, *config); !machine)
       return tell(machine.error());
+  if (const auto owned = may_own_folder(config->state, config->id); !owned)
+    return tell(owned.error());
   if (arguments.check) return show_plan(*config);
   set_up_log(arguments.log);
   listen_to_signals();

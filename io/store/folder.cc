@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMadeMark = "selfcal.made";
 constexpr const char* kLog = "selfcal.db-wal";
+constexpr const char* kOwner = "robot.id";
+constexpr std::size_t kLongestOwner = 4096;  // bytes
 /// The service writes it next to its store; stores of before had no mark.
 constexpr const char* kExport = "active.robot.yaml";
 
@@ -106,6 +108,25 @@ void remove_unnamed_store(const fs::path& folder) {
   for (const char* end : {"", "-journal", "-wal", "-shm"}) {
     fs::remove(with(unnamed_store_in(folder), end), ignored);
   }
+}
+
+Result<void> may_own_folder(const fs::path& folder, const std::string& robot) {
+  std::error_code error;
+  if (!fs::exists(folder / kOwner, error)) return {};
+  const auto owner = read_file(folder / kOwner, kLongestOwner);
+  if (!owner) return tl::unexpected(owner.error());
+  const std::string name = owner->substr(0, owner->find('\n'));
+  if (name == robot) return {};
+  return bad_input(folder.string() + ": is the state of robot '" + name + "', not of '" + robot +
+                   "': give each robot a `state` of its own; if this one has a new name, remove " +
+                   (folder / kOwner).string());
+}
+
+Result<void> own_folder(const fs::path& folder, const std::string& robot) {
+  if (auto may = may_own_folder(folder, robot); !may) return may;
+  std::error_code error;
+  if (fs::exists(folder / kOwner, error)) return {};
+  return write_file_atomically(folder / kOwner, robot + "\n");
 }
 
 Result<std::unique_ptr<StoreMark>> StoreMark::open(const fs::path& folder) {

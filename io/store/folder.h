@@ -35,6 +35,12 @@ Result<void> name_store(const std::filesystem::path& folder);
 /// Removes what a power cut has left of one that was being made.
 void remove_unnamed_store(const std::filesystem::path& folder);
 
+/// Makes the folder the state of the robot of that name: its file robot.id says so from then on.
+/// Bad input where it is another one's.
+Result<void> own_folder(const std::filesystem::path& folder, const std::string& robot);
+/// The same failure without making it anybody's.
+Result<void> may_own_folder(const std::filesystem::path& folder, const std::string& robot);
+
 /// selfcal.made, open to be written.
 class StoreMark {
  public:

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/store/folder.h"
 #include "tests/io/scratch.h"
 #include "tests/io/store_content.h"
 
@@ -21,6 +22,18 @@ TEST(StoreLost, ANewFolderIsANewRobot) {
   const Scratch scratch;
   EXPECT_EQ(said_of(scratch), "");
   EXPECT_EQ(said_of(scratch), "");
+}
+
+TEST(StoreFolder, IsOfOneRobot) {
+  const Scratch scratch;
+  EXPECT_TRUE(may_own_folder(scratch.folder(), "a").has_value()) << "nobody's yet";
+  ASSERT_TRUE(own_folder(scratch.folder(), "a").has_value());
+  EXPECT_TRUE(own_folder(scratch.folder(), "a").has_value());
+  const auto other = own_folder(scratch.folder(), "b");
+  ASSERT_FALSE(other.has_value());
+  EXPECT_THAT(other.error().what,
+              AllOf(HasSubstr(scratch.folder().string()), HasSubstr("of robot 'a', not of 'b'")));
+  EXPECT_FALSE(may_own_folder(scratch.folder(), "b").has_value());
 }
 
 TEST(StoreLost, AFileOfNoBytesIsSaidAndANewStoreBegun) {

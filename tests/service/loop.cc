@@ -108,6 +108,41 @@ TEST_F(Loop, SaysWhyItIsIdleOnceAResultWasRolledBack) {
   EXPECT_THAT(state().why, HasSubstr("session 1 was rolled back"));
 }
 
+TEST_F(Loop, LeavesTheParametersOfAnotherRobotAsTheyAre) {
+  const Config cell = config({{"commands.allow", "[rollback]"}});
+  {
+    const auto before = opened(scratch.folder());
+    const std::int64_t id = before->begin(some_session(), some_plan(2, 6)).value();
+    const SlotRecord other{id, id, std::string(64, 'f'), "robot: another"};
+    ASSERT_TRUE(before->finish(some_result(id), &other).has_value());
+    ASSERT_TRUE(before->accept(id).has_value());
+  }
+  start(cell);
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  person.say("rollback");
+  ASSERT_TRUE(turning([&] { return !person.replies.empty(); }));
+  EXPECT_FALSE(person.replies.back().accepted);
+  EXPECT_THAT(person.replies.back().why, HasSubstr("belongs to another robot"));
+  EXPECT_EQ(must(store->slot(Slot::active))->model_hash, std::string(64, 'f'));
+}
+
+TEST_F(Loop, KeepsEachCommandThatItGrants) {
+  start(config());
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(comes_to(ServiceState::idle));
+    person.say("start");
+    ASSERT_TRUE(comes_to(ServiceState::planning));
+    person.say("abort");
+  }
+  ASSERT_TRUE(comes_to(ServiceState::idle));
+  const auto kept = [&](const std::string& text) {
+    const std::vector<EventRecord> events = must(store->events(50));
+    return std::ranges::count(events, text, &EventRecord::text);
+  };
+  EXPECT_TRUE(turning([&] { return kept("command start from a test") == 2; }));
+  EXPECT_TRUE(turning([&] { return kept("command abort from a test") == 2; }));
+}
+
 TEST_F(Loop, MakesNoTouchOfASessionThatWasGivenUpAtItsBeginning) {
   start(config());
   ASSERT_TRUE(comes_to(ServiceState::idle));

@@ -13,7 +13,17 @@ namespace {
 
 constexpr std::size_t kMostEvents = 1024;
 constexpr Nanoseconds kTellAgain = 3600 * kSecond;  // the same sentence in the store
+constexpr Nanoseconds kSayAgain = 60 * kSecond;     // of a store that fails, in the log
 constexpr std::size_t kToldApart = 8;               // sentences that may take turns
+
+void log_at(const std::string& level, const std::string& text) {
+  if (level == "error")
+    spdlog::error("{}", text);
+  else if (level == "warning")
+    spdlog::warn("{}", text);
+  else
+    spdlog::info("{}", text);
+}
 
 }  // namespace
 
@@ -39,26 +49,28 @@ void ServiceContext::put(Event::What what, bool ok, std::string why) {
 }
 
 bool ServiceContext::store_failed(const Failure& failure) {
-  spdlog::error("{}", failure.what);
-  put(Event::What::broken, false, "store: " + failure.what);
+  if (failure.what != store_told.text || now - store_told.at >= kSayAgain) {
+    spdlog::error("{}", failure.what);
+    store_told = {failure.what, now};
+  }
+  put(Event::What::broken, false, std::string(kStoreFailed) + failure.what);
   return false;
 }
 
+void ServiceContext::record(const std::string& level, const std::string& text) {
+  log_at(level, text);
+  journal.add(EventRecord{0, unix_ms(), level, text});
+}
+
 void ServiceContext::tell(const std::string& level, const std::string& text) {
-  if (level == "error")
-    spdlog::error("{}", text);
-  else if (level == "warning")
-    spdlog::warn("{}", text);
-  else
-    spdlog::info("{}", text);
   // A robot that is switched off must not fill the store with a few sentences.
   if (const auto again = std::ranges::find(told, text, &Told::text); again != told.end()) {
-    if (now - again->at < kTellAgain) return;
+    if (now - again->at < kTellAgain) return log_at(level, text);
     told.erase(again);
   }
   if (told.size() == kToldApart) told.pop_back();
   told.push_front({text, now});
-  journal.add(EventRecord{0, unix_ms(), level, text});
+  record(level, text);
 }
 
 bool ServiceContext::can_compare() const {

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
 
 #include "app/service/config/calendar.h"
 #include "app/service/config/config.h"
@@ -29,6 +30,8 @@ struct Usage {
 /// of ours may be under way.
 inline constexpr const char* kWanted = "wanted";
 inline constexpr const char* kMoves = "moves";
+/// What the reason of a fault begins with where the store has failed.
+inline constexpr std::string_view kStoreFailed = "store: ";
 
 /// All references outlive it.
 struct ServiceContext {
@@ -49,6 +52,7 @@ struct ServiceContext {
     Nanoseconds at = 0;
   };
   std::deque<Told> told = {};
+  Told store_told = {};  ///< the store, last in the log
 
   /// Of more than 1024 that wait the others are lost, which is a fault.
   void put(Event event);
@@ -60,6 +64,8 @@ struct ServiceContext {
   }
   /// To the log and, the same sentence once an hour at most, to the store.
   void tell(const std::string& level, const std::string& text);
+  /// The same each time.
+  void record(const std::string& level, const std::string& text);
   std::int64_t unix_ms() const { return ports.clock->unix_ms(); }
   /// The session behind the active parameters is there for a quick check to compare with.
   bool can_compare() const;

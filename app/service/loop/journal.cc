@@ -31,6 +31,7 @@ void Journal::add(EventRecord event) {
 }
 
 void Journal::write() {
+  bool failing = false;
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
@@ -41,9 +42,12 @@ void Journal::write() {
     lock.unlock();
     if (dropped > 0)
       event.text = std::to_string(dropped) + " lines before this one were not kept; " + event.text;
-    // An event that cannot be stored must not become an event itself.
-    if (const auto kept = store_->add(event); !kept) spdlog::error("{}", kept.error().what);
+    // An event that cannot be stored must not become an event itself, nor fill the log.
+    const auto kept = store_->add(event);
+    if (!kept && !failing) spdlog::error("{}", kept.error().what);
+    failing = !kept;
     lock.lock();
+    if (!kept) dropped_ += dropped + 1;
   }
 }
 

@@ -115,12 +115,16 @@ void Reporter::tell_damage() {
 
 HealthMessage Reporter::health_of_store() const {
   const auto bytes = c_.store.bytes();
-  const bool error = !bytes || !damaged_.empty();
+  const std::string& why = c_.extended_state.why;
+  const bool failing =
+      c_.extended_state.state == ServiceState::fault && why.starts_with(kStoreFailed);
+  const bool error = !bytes || failing || !damaged_.empty();
   return {"selfcal: store",
           error                     ? Health::error
           : damaged_before_.empty() ? Health::ok
                                     : Health::warn,
           !bytes                    ? bytes.error().what
+          : failing                 ? why.substr(kStoreFailed.size())
           : !damaged_.empty()       ? damaged_
           : damaged_before_.empty() ? "sound"
                                     : damaged_before_,

@@ -46,6 +46,7 @@ class Service {
   void handle_command(const CommandMessage& command);
   void answer(const Action& action);
   void refuse(const CommandMessage& command, const std::string& why);
+  void grant(const CommandMessage& command, const std::string& why);
   void tell_refused();
 
   // service_actions.cc: what the transition says

@@ -48,8 +48,12 @@ void Service::handle_command(const CommandMessage& command) {
 void Service::answer(const Action& action) {
   if (!command_) return;
   if (action.what != Action::Do::grant) return refuse(*command_, action.why);
-  c_.messenger.reply({command_->id, command_->verb, true, action.why});
-  c_.tell("info", "command " + command_->verb + " from " + command_->from.substr(0, kMostName));
+  grant(*command_, action.why);
+}
+
+void Service::grant(const CommandMessage& command, const std::string& why) {
+  c_.messenger.reply({command.id, command.verb, true, why});
+  c_.record("info", "command " + command.verb + " from " + command.from.substr(0, kMostName));
 }
 
 void Service::refuse(const CommandMessage& command, const std::string& why) {

@@ -6,7 +6,7 @@ namespace selfcal {
 bool Service::reload_models() {
   auto models = Models::load(c_.models.factory(), c_.store);
   if (!models) {
-    c_.put(Event::What::broken, false, "store: " + models.error().what);
+    c_.put(Event::What::broken, false, std::string(kStoreFailed) + models.error().what);
     return false;
   }
   return use(std::move(*models));
@@ -61,6 +61,15 @@ void Service::reject() {
 }
 
 void Service::roll_back() {
+  const auto active = c_.store.slot(Slot::active);
+  if (active && *active && (*active)->session != 0 && (*active)->model_hash != c_.models.hash()) {
+    if (command_)
+      refuse(*command_,
+             "what is stored belongs to another robot, or to this one by another file: "
+             "it is left as it is; active: " +
+                 c_.models.name());
+    return;
+  }
   const std::string given_up = c_.models.name();
   const auto done = c_.store.roll_back(c_.unix_ms());
   if (!done) {
@@ -72,7 +81,7 @@ void Service::roll_back() {
   tell_result();
   const std::string said = c_.models.name() + " is active now; " + given_up +
                            " was rolled back and is not used again by itself";
-  if (command_) c_.messenger.reply({command_->id, command_->verb, true, said});
+  if (command_) grant(*command_, said);
   c_.tell("warning", said);
   c_.put(Event::What::rolled_back, true, said);
 }
@@ -87,7 +96,9 @@ void Service::tell_result() {
   const auto results = c_.store.results(1);
   if (results && !results->empty()) {
     const auto result = c_.store.result(results->front().session);
-    if (c_.stored(result) && *result) reporter_.result(**result);
+    if (!c_.stored(result) || !*result) return;
+    const auto session = c_.store.session(results->front().session);
+    if (c_.stored(session) && session->model_hash == c_.models.hash()) reporter_.result(**result);
   }
 }
 
