@@ -5,10 +5,32 @@
 
 #include <algorithm>
 
+#include "kinematics/description.h"
+
 namespace selfcal {
 
 bool Mechanics::masses_known() const {
   return std::any_of(links.begin(), links.end(), [](const Link& link) { return link.mass > 0.0; });
+}
+
+std::string strange_masses(const Mechanics& mechanics) {
+  double carries = 0, tool = 0;  // what moves but for the tool, and what is fixed to the last of it
+  bool moves = false;
+  for (const Link& link : mechanics.links) {
+    moves = moves || link.joint >= 0;
+    if (!moves || !link.mass) continue;
+    if (link.joint >= 0) {
+      carries += tool + *link.mass;
+      tool = 0;
+    } else {
+      tool += *link.mass;
+    }
+  }
+  if (carries <= 0 || std::max(tool, mechanics.payload) <= carries) return {};
+  return std::string(tool > carries ? "the tool weighs " : "the payload is ") +
+         format_number(tool > carries ? tool : mechanics.payload) +
+         " kg in the robot's file, all that carries it " + format_number(carries) +
+         " kg: is one of them in grams or pounds?";
 }
 
 int Mechanics::link_of(int j) const {

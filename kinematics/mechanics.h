@@ -30,6 +30,10 @@ struct Mechanics {
   int link_of(int j) const;
 };
 
+/// What no machine weighs, in words: a tool or a payload heavier than all that carries it. Empty of
+/// others.
+std::string strange_masses(const Mechanics& mechanics);
+
 /// The capability of a robot to say what loads it: masses and links.
 class Statics {
  public:

@@ -91,6 +91,12 @@ std::string of_order(const DataSet& data) {
          "like one";
 }
 
+std::string of_strange_masses(const Robot& robot) {
+  const std::string strange =
+      robot.statics() ? strange_masses(robot.statics()->mechanics()) : std::string();
+  return strange.empty() ? strange : strange + " What gives way under weights is told with them";
+}
+
 }  // namespace
 
 std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
@@ -198,7 +204,7 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
         warning_of_few_waves(linearised.geometry(), data.rows.q, diagnosis.named),
         of_noise(linearised, data, diagnosis.gap), warning_of_scatter(linearised, data, diagnosis),
         warning_of_uneven_noise(linearised, data, diagnosis), of_order(data), of_masses(linearised),
-        warning_of_gravity(linearised.geometry())})
+        warning_of_gravity(linearised.geometry()), of_strange_masses(linearised.geometry())})
     if (!each.empty()) list.push_back(each);
   return list;
 }

@@ -64,6 +64,8 @@ void add_gravity(const Model& model, std::vector<std::string>& lines) {
     lines.emplace_back("no masses given: static torques are unknown");
     return;
   }
+  if (std::string strange = strange_masses(mechanics(model)); !strange.empty())
+    lines.push_back(std::move(strange));
   const Eigen::VectorXd torques = gravity_torques(model, middle);
   lines.emplace_back(std::string("static torques with every joint in the middle of its limits") +
                      (mechanics(model).masses_assumed ? ", by usual masses of the links:" : ":"));

@@ -27,6 +27,20 @@ const char* const kArm =
     "  - {name: j2, joint: revolute, d: 0.5, mass: 2, com: [0.15, 0, 0]}\n"
     "  - {name: tool, joint: fixed, d: 0.3, mass: 1}\n";
 
+TEST(StrangeMasses, AreThoseOfAToolOrAPayloadHeavierThanTheArm) {
+  const auto said = [](const std::string& tool, const std::string& more = "") {
+    std::string text = kArm;
+    text.replace(text.rfind("mass: 1"), 7, "mass: " + tool);
+    return strange_masses(
+        serial::mechanics(model_of("robot: arm\nkind: serial\n" + more + "frames:\n" + text)));
+  };
+  EXPECT_EQ(said("5.9"), "");
+  EXPECT_THAT(said("600"), testing::HasSubstr("the tool weighs 600 kg"));
+  EXPECT_THAT(said("600"), testing::HasSubstr("all that carries it 6 kg"));
+  EXPECT_EQ(said("1", "payload: 3\n"), "");
+  EXPECT_THAT(said("1", "payload: 3000\n"), testing::HasSubstr("the payload is 3000 kg"));
+}
+
 TEST(GravityTorques, OfATwoJointArmAreTheOnesWorkedByHand) {
   const serial::Model model = model_of(with_frames(kArm));
   const double g = 9.81;
