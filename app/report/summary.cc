@@ -165,22 +165,50 @@ std::string scale_line(const ScaleLength& each, bool alone) {
                         1e3 * each.unseen);
 }
 
+/// Of the rows that judge, those within the noise: how they are met, as a root mean square.
+struct WithinNoise {
+  int rows = 0;
+  double before = 0, after = 0;
+};
+
+WithinNoise within_noise(const Solution& solution) {
+  WithinNoise within;
+  for (const RowFigure& row : solution.residual.rows) {
+    if (!row.check || row.outlier) continue;
+    ++within.rows;
+    within.before += row.before * row.before;
+    within.after += row.after * row.after;
+  }
+  if (within.rows == 0) return within;
+  within.before = std::sqrt(within.before / within.rows);
+  within.after = std::sqrt(within.after / within.rows);
+  return within;
+}
+
+/// How the rows kept aside are met. False ones among them count; where they hide what is left of
+/// the others these come first.
+std::string met(const Solution& solution) {
+  const Figures& check = solution.residual.check;
+  if (check.rows == 0) return {};
+  const char* unit = check.angle_alone ? "mrad" : "mm";
+  const auto from_to = [&](double before, double after) {
+    return printed("%s %s instead of %s %s", plain_figure(1e3 * after).c_str(), unit,
+                   plain_figure(1e3 * before).c_str(), unit);
+  };
+  const std::string all = from_to(check.rms_before, check.rms_after);
+  const std::string what = check.angle_alone ? "directions are met to " : "the tool is met to ";
+  const WithinNoise within = within_noise(solution);
+  const int beyond = check.rows - within.rows;
+  if (within.rows == 0 || beyond == 0 || within.after >= 0.9 * check.rms_after)
+    return what + all + " on " + counted(check.rows, "row") + " kept aside";
+  return what + from_to(within.before, within.after) + " on " + counted(within.rows, "row") +
+         " kept aside; with " + std::to_string(beyond) + " beyond the noise " + all;
+}
+
 }  // namespace
 
 std::string headline(const Solution& solution) {
-  const Figures& check = solution.residual.check;
-  const char* unit = check.angle_alone ? "mrad" : "mm";
-  const std::string what = check.angle_alone ? "directions are met" : "the tool is met";
-  std::string figures;
-  if (check.rows > 0)
-    figures = what +
-              printed(" to %s %s instead of %s %s on ", plain_figure(1e3 * check.rms_after).c_str(),
-                      unit, plain_figure(1e3 * check.rms_before).c_str(), unit) +
-              counted(check.rows, "row") + " kept aside";
-  // False rows among those kept aside count; say what is left without them, where any row is.
-  if (check.rms_without_outliers > 0 && check.rms_without_outliers < 0.9 * check.rms_after)
-    figures +=
-        with_figures(" (%.3g without those beyond the noise)", 1e3 * check.rms_without_outliers);
+  const std::string figures = met(solution);
   const bool files_first = std::ranges::any_of(
       solution.warnings, [](const std::string& each) { return each.starts_with(kFilesFirst); });
   if (files_first && solution.verdict.answer != Answer::improved)

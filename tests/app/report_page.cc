@@ -156,14 +156,14 @@ TEST_F(ReportPage, TellsInOneSentenceWhatFalseRowsHide) {
   solution.residual.check.rows = 12;
   solution.residual.check.rms_before = 2e-3;
   solution.residual.check.rms_after = 1e-3;
-  solution.residual.check.rms_without_outliers = 2.5e-5;
+  for (int row = 0; row < 12; ++row)
+    solution.residual.rows.push_back(
+        {.check = true, .outlier = row == 3, .before = 1e-3, .after = 2.5e-5});
+  EXPECT_EQ(headline(solution),
+            "Improved: the tool is met to 0.025 mm instead of 1 mm on 11 rows kept aside; with 1 "
+            "beyond the noise 1 mm instead of 2 mm.");
 
-  EXPECT_EQ(
-      headline(solution),
-      "Improved: the tool is met to 1 mm instead of 2 mm on 12 rows kept aside (0.025 without "
-      "those beyond the noise).");
-
-  solution.residual.check.rms_without_outliers = 0;  // all of them are
+  for (RowFigure& row : solution.residual.rows) row.outlier = true;
   EXPECT_EQ(headline(solution),
             "Improved: the tool is met to 1 mm instead of 2 mm on 12 rows kept aside.");
 }
