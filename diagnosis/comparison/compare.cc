@@ -181,12 +181,18 @@ bool add_moved(const Robot& geometry, const Comparison& result, Between between,
   return elsewhere.size() > had;
 }
 
+/// Beside a change that no parameter stands for, those that are listed may stand in for it.
 std::string changes_in_words(const Comparison& result) {
+  const bool more = result.unknown > kDiagnosis.naming.probable;
   std::string text;
   for (const Change& each : result.changes)
     if (each.probability > kDiagnosis.naming.probable)
-      text += (text.empty() ? "changed: " : ", ") + each.effect + " at " + each.where;
-  if (!text.empty()) return text;
+      text += (text.empty() ? "" : ", ") + each.effect + " at " + each.where;
+  if (!text.empty() && more)
+    return "something changed that no known change explains: compare what causes the gap in each. "
+           "Nearest to it are, perhaps in its place: " +
+           text;
+  if (!text.empty()) return "changed: " + text;
   return result.none > kDiagnosis.naming.probable
              ? "nothing changed that these rows would show"
              : "something changed, but not one known thing alone";

@@ -69,6 +69,18 @@ TEST(Compare, DoesNotTakeForAChangeWhatBothShow) {
   EXPECT_GT(comparison.unknown, 0.5);
 }
 
+TEST(Compare, SaysWhereMoreChangedThanParametersStandFor) {
+  TwoSessions sessions;
+  Eigen::MatrixXd& q = sessions.after.rows.q;
+  q.col(2).array() += kShift;
+  q.col(1).array() += 1e-3 * (3 * q.col(1).array()).sin() * q.col(2).array().cos();
+  const Comparison comparison =
+      compare(sessions.robot, sessions.before, sessions.after, Between::sessions, quick());
+  EXPECT_GT(comparison.unknown, 0.9);
+  EXPECT_THAT(comparison.why,
+              testing::StartsWith("something changed that no known change explains"));
+}
+
 TEST(Compare, ListsMoreChangesThanAreSearchedTogether) {
   TwoSessions sessions(100);
   const std::vector<double> shifts = {0, 1e-3, -7e-4, 5e-4, -9e-4, 0};
