@@ -61,7 +61,7 @@ class Diagnostician {
     result_.next_why = std::move(next.why);
     if (!left_out_.empty()) result_.warnings.push_back(left_out_);
     trust_plain_steps(linearised_, data_, result_);
-    result_.why = verdict_in_words(result_);
+    result_.why = verdict_in_words(result_) + gears_beside_none(result_);
     const Solution calibrated = identify(linearised_.geometry(), data_);
     std::ranges::copy(calibrated.scale.contradictions, std::back_inserter(result_.warnings));
     if (const std::string doubt = doubt_of(linearised_, data_, calibrated, result_); !doubt.empty())

@@ -121,12 +121,19 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
     sliding.push_back(i);
   }
   if (gears.empty()) return {};
-  return "gear ratios are free here, so that none that is off is taken for a cause; off by more "
-         "than three sigma: " +
-         gears +
+  return std::string(kGearsOff) + gears +
          (alike && sliding.size() > 1 ? "; those of all sliding joints by as much: an instrument "
                                         "whose scale is off looks the same"
                                       : "");
+}
+
+std::string gears_beside_none(const Diagnosis& diagnosis) {
+  const auto off = std::ranges::find_if(
+      diagnosis.warnings, [](const std::string& each) { return each.starts_with(kGearsOff); });
+  if (diagnosis.verdict.effect != kNone || off == diagnosis.warnings.end()) return {};
+  const std::string gears = off->substr(kGearsOff.size());
+  return "; that is with the gears' ratios free, of which the robot's file has some wrong: " +
+         gears.substr(0, gears.find(';')) + " (identify frees one with --free and its name)";
 }
 
 std::string warning_of_few_waves(const Robot& robot, const Eigen::MatrixXd& q,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnosis/evidence/linearised_model.h"
@@ -21,6 +22,14 @@ std::vector<std::string> warnings_of(const LinearisedModel& linearised, const Da
 
 /// That the effects of the robot's own file are not used; empty where it has none.
 std::string warning_of_own_effects(const Robot& robot);
+
+/// What warning_of_gears() begins with.
+inline constexpr std::string_view kGearsOff =
+    "gear ratios are free here, so that none that is off is taken for a cause; off by more than "
+    "three sigma: ";
+/// Where no cause is named: that a gear's ratio is off all the same, from the warning of it; empty
+/// of others.
+std::string gears_beside_none(const Diagnosis& diagnosis);
 
 /// Gear ratios that `xi` puts off the maker's by more than three `sigma` (both by parameter), and
 /// whether all sliding joints' are off alike, as the scale of an instrument would be; empty where

@@ -117,5 +117,15 @@ TEST(Warnings, SayWhetherTheRowsKeptAsideConfirmTheName) {
   EXPECT_THAT(warning_of_gap(none), IsEmpty());
 }
 
+TEST(Warnings, OfGearsStandBesideNoCause) {
+  Diagnosis diagnosis;
+  diagnosis.verdict.effect = kNone;
+  EXPECT_EQ(gears_beside_none(diagnosis), "");
+  diagnosis.warnings = {"another", std::string(kGearsOff) + "K2 -1996 ppm; those of all"};
+  EXPECT_THAT(gears_beside_none(diagnosis), testing::HasSubstr("has some wrong: K2 -1996 ppm (id"));
+  diagnosis.verdict.effect = "backlash";
+  EXPECT_EQ(gears_beside_none(diagnosis), "");
+}
+
 }  // namespace
 }  // namespace selfcal
