@@ -213,6 +213,14 @@ std::optional<Command> Compensation::own_solution(const Location& wanted,
   return nearest;
 }
 
+/// Near a singularity the corrections of the nominal robot's nearest solution may end where another
+/// one is nearer: the calibrated robot's own there, where `command` is far from `near`.
+std::optional<Command> Compensation::nearer_own(const Location& wanted, const Command& command,
+                                                const Eigen::VectorXd& near) const {
+  if (apart(*nominal_, command.q, near) <= kFarFromNominal) return std::nullopt;
+  return own_solution(wanted, near, kFarFromNominal);
+}
+
 Command Compensation::command(const Location& wanted,
                               const std::optional<Eigen::VectorXd>& near) const {
   const Eigen::VectorXd& from = near ? *near : middle_;
@@ -224,7 +232,11 @@ Command Compensation::command(const Location& wanted,
     command = best_of(wanted, solutions);
   }
   // Chain by chain there is one solution, which is looked at already.
-  if (command.status == Reach::reached || exact_calibrated_) return command;
+  if (exact_calibrated_) return command;
+  if (command.status == Reach::reached) {
+    const auto nearer = near ? nearer_own(wanted, command, *near) : std::nullopt;
+    return nearer ? *nearer : command;
+  }
   // At the edge of what it reaches the calibrated robot gets to places that the nominal one does
   // not, or far from where that does: there it may be near what was asked for.
   const bool nominal_gets_there = std::ranges::any_of(solutions, [&](const ReachedPose& each) {
@@ -246,7 +258,10 @@ std::vector<Command> Compensation::commands(const Location& wanted,
         list, [&](const Command& other) { return apart(*nominal_, other.q, command.q) < kTwins; });
     if (!twin) list.push_back(std::move(command));
   }
-  if (list.empty()) list.push_back(command(wanted, near));
+  if (list.empty()) return {command(wanted, near)};
+  if (!near || exact_calibrated_) return list;
+  if (auto nearer = nearer_own(wanted, list.front(), *near))
+    list.insert(list.begin(), *std::move(nearer));
   return list;
 }
 

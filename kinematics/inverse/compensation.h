@@ -57,6 +57,8 @@ class Compensation {
   Command best_of(const Location& wanted, const std::vector<ReachedPose>& solutions) const;
   std::optional<Command> own_solution(const Location& wanted, const Eigen::VectorXd& near,
                                       double at_most) const;
+  std::optional<Command> nearer_own(const Location& wanted, const Command& command,
+                                    const Eigen::VectorXd& near) const;
   Command corrected(const Location& wanted, const ReachedPose& nominal) const;
   Command corrected_from(const Location& wanted, const Eigen::VectorXd& near, bool there) const;
   Eigen::VectorXd turned_within(const Eigen::VectorXd& q) const;

@@ -282,6 +282,23 @@ TEST(Compensation, ReachesWhereTheCalibratedRobotIsNearTheReadingsThatAreAskedFo
   }
 }
 
+/// A wrist that is nearly stretched: the nominal robot's nearest solution may be the other one.
+TEST(Compensation, DoesNotTurnAWristRoundThatIsWhereItIsWanted) {
+  const auto [nominal, calibrated] = off_by_a_millimetre(shipped("irb1600"));
+  const Compensation compensation(nominal, calibrated);
+  Eigen::MatrixXd q = random_poses(*nominal, nullptr, 200, 7);
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    q(i, 4) = 0.06 * static_cast<double>(i) / static_cast<double>(q.rows() - 1) - 0.03;
+    const Eigen::VectorXd here = q.row(i).transpose();
+    const Location wanted = locate(*calibrated, values(*calibrated), here);
+    const Command command = compensation.command(wanted, here);
+    ASSERT_EQ(command.status, Reach::reached) << i;
+    EXPECT_LT((command.q - here).cwiseAbs().maxCoeff(), 0.3) << i;
+    const auto all = compensation.commands(wanted, here);
+    EXPECT_LT((all.front().q - here).cwiseAbs().maxCoeff(), 0.3) << i;
+  }
+}
+
 TEST(Compensation, TriesEverySolutionBeforeItSaysThatThereIsNone) {
   const auto [nominal, calibrated] = off_by_a_millimetre(kWithoutClosedForm);
   const Compensation compensation(nominal, calibrated);
