@@ -44,6 +44,23 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
   return {};
 }
 
+/// A step with hardly a row of its set before it is no event: all of the set lies elsewhere.
+std::string elsewhere_from_the_first(const DataSet& data, const std::vector<CauseResult>& named) {
+  for (const CauseResult& each : named) {
+    if (each.effect != "fixture_shift" || !each.between || each.where.size() != 1) continue;
+    const auto set = std::ranges::find(data.sets, each.where.front(), &Set::name);
+    std::size_t before = 0;
+    for (int row = 0; row < data.rows.rows(); ++row)
+      before += set - data.sets.begin() == data.rows.set[row] &&
+                data.rows.time[row] < each.between->second;
+    if (set != data.sets.end() && before < kDiagnosis.shapes.fewest_between)
+      return "nearly all rows of " + set->name +
+             " lie elsewhere than its set says, from the first ones on: is its place in the file "
+             "(plane, distance, normal, radius) right, and are they of that surface?";
+  }
+  return {};
+}
+
 bool gives_way(const CauseResult& cause) { return cause.effect.ends_with("_compliance"); }
 
 /// A spring stiffer than any would be seen where the loads are said to be larger than they are.
@@ -204,6 +221,7 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
   if (std::string why = length_given_wrongly(diagnosis, calibrated); !why.empty()) return why;
   if (std::string why = ratio_given_wrongly(linearised, data, diagnosis); !why.empty()) return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
+  if (std::string why = elsewhere_from_the_first(data, diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;
   if (std::string why = too_stiff(diagnosis.named); !why.empty()) return why;
   if (std::string why = beyond_tolerances(linearised, diagnosis); !why.empty()) return why;

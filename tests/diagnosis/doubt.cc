@@ -176,6 +176,25 @@ TEST(Doubt, KnowsAnotherSurfaceFromOneThatMoved) {
   EXPECT_THAT(doubt_of_fixture(-0.2), HasSubstr("some touches of side are of another surface"));
 }
 
+TEST(Doubt, TakesAStepAtTheFirstRowsOfASetForItsPlaceInTheFile) {
+  Rows rows;
+  const LinearisedModel linearised(rows.robot, rows.data, quick(), {});
+  const int count = rows.data.rows.rows();
+  rows.data.rows.time = Eigen::VectorXd::LinSpaced(count, 0, count - 1);
+  const auto doubt = [&](double from) {
+    Diagnosis diagnosis;
+    diagnosis.verdict.effect = "fixture_shift";
+    diagnosis.named = {{.effect = "fixture_shift",
+                        .where = {rows.data.sets.front().name},
+                        .between = std::pair(from, from + 1)}};
+    diagnosis.gap.rms_before = 1e-4;
+    diagnosis.gap.rms_after = 0.5e-4;
+    return doubt_of(linearised, rows.data, identify(linearised.geometry(), rows.data), diagnosis);
+  };
+  EXPECT_THAT(doubt(0), HasSubstr("lie elsewhere than its set says"));
+  EXPECT_EQ(doubt(10), "");
+}
+
 /// Where joint j2 is said to give way by `compliance`, to `sigma`.
 std::string doubt_of_spring(double compliance, double sigma) {
   return doubt_of_named({.effect = "joint_compliance",
