@@ -1,6 +1,5 @@
 // How well the service and what it needs are: a line each, once a second and at once when something
 // gets worse.
-#include <cmath>
 #include <cstdio>
 
 #include "app/service/loop/reporter.h"
@@ -139,6 +138,7 @@ HealthMessage Reporter::health_of_calibration() const {
   std::string message = wrong ? c_.models.refused() : c_.models.name() + " is active";
   if (c_.extended_state.candidate) message += "; a result waits: accept or reject";
   if (unexplained) message += "; the last check was not explained";
+  const auto celsius = collector_.front_end().celsius();
   const auto age_ms = c_.models.since_ms() == 0 ? 0 : c_.unix_ms() - c_.models.since_ms();
   return {"selfcal: calibration",
           wrong  ? Health::error
@@ -150,7 +150,7 @@ HealthMessage Reporter::health_of_calibration() const {
            {"check_rms_mm",
             analyst_.last_check() ? text(1e3 * analyst_.last_check()->check_after) : "none yet"},
            {"motion_h", text(c_.use.motion_hours)},
-           {"temperature_c", text(collector_.front_end().celsius().value_or(std::nan("")))}}};
+           {"temperature_c", celsius ? text(*celsius) : "none yet"}}};
 }
 
 }  // namespace selfcal

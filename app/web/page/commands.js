@@ -119,6 +119,9 @@ function command_bar() {
     buttons.hidden = !server.commands;
     buttons.style.display = server.commands ? "" : "none";
     only_shows.hidden = server.commands;
-    for (const [verb, button] of made) button.disabled = !status || link.problem !== "" || !VERBS[verb].able(status);
+    // A service that is not heard does nothing, but may hear that it is to stop.
+    const silent = (link.parts.silence || {}).silent > 0;
+    for (const [verb, button] of made)
+      button.disabled = !status || link.problem !== "" || !VERBS[verb].able(status) || (silent && verb !== "abort");
   }, clear() { said.replaceChildren(); }};
 }

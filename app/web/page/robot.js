@@ -17,10 +17,10 @@ function span(seconds) {
   return figure(seconds / 3600, 2) + " h";
 }
 
-function progress_words(progress) {
+function progress_words(progress, silent) {
   let text = progress.done + " of " + plural(progress.planned, "touch", "touches");
   if (progress.put_aside > 0) text += ", " + progress.put_aside + " put aside";
-  if (progress.done < progress.planned && known(progress.seconds_left)) text += ", " + span(progress.seconds_left) + " left";
+  if (progress.done < progress.planned && known(progress.seconds_left) && !silent) text += ", " + span(progress.seconds_left) + " left";
   if (progress.set === "" && progress.note) text += ": " + progress.note;
   return text;
 }
@@ -38,10 +38,10 @@ function status_card(parts, line) {
                                      "aria-valuenow": progress.done}, element("div", {})) : null;
   if (bar) bar.firstChild.style.width = 100 * share + "%";
   return element("div", {class: "verdict " + concern},
-    element("div", {class: "state-line"}, level_mark(concern), element("span", {class: "kicker"}, "the robot may " + status.hardware)),
+    element("div", {class: "state-line"}, level_mark(concern), element("span", {class: "kicker"}, silent ? "what the robot may do is not known" : "the robot may " + status.hardware)),
     element("h1", {id: "state"}, (silent ? "Silent for " + span(parts.silence.silent) + "; last heard: " : "") + status.state +
       (status.phase ? ", " + status.phase : "") + session),
-    paragraph(status.why), line && line.why && line.why !== status.why ? paragraph(line.why, "soft") : null, bar, runs ? paragraph(progress_words(progress), "soft") : null);
+    paragraph(status.why), line && line.why && line.why !== status.why ? paragraph(line.why, "soft") : null, bar, runs ? paragraph(progress_words(progress, silent), "soft") : null);
 }
 
 function status_facts(status, cell) {
