@@ -76,8 +76,22 @@ std::string one_cause(const Diagnosis& diagnosis) {
   return words + worth_of(diagnosis, "It closes");
 }
 
+/// Each closes alone what all do, and nothing beside the others.
+bool any_will_do(const Diagnosis& diagnosis) {
+  const std::optional<double>& all = diagnosis.gap.closed.fraction;
+  return all && std::ranges::all_of(diagnosis.named, [&](const CauseResult& each) {
+           return each.closes_alone && each.closes_beside &&
+                  *each.closes_beside<kDiagnosis.naming.nothing_alone&& * each.closes_alone> * all -
+                      kDiagnosis.naming.nothing_alone;
+         });
+}
+
 std::string several_causes(const Diagnosis& diagnosis) {
-  std::string words = phrase("%zu causes make the gap together: ", diagnosis.named.size());
+  const bool any = any_will_do(diagnosis);
+  std::string words =
+      any ? "any one of these closes the gap alone, and which of them are there the "
+            "rows cannot tell: "
+          : phrase("%zu causes make the gap together: ", diagnosis.named.size());
   for (size_t i = 0; i < diagnosis.named.size(); ++i) {
     const CauseResult& each = diagnosis.named[i];
     words += (i == 0 ? "" : "; ") + with_shape(each) + " (" + sure(each.probability);
@@ -88,7 +102,8 @@ std::string several_causes(const Diagnosis& diagnosis) {
     if (const std::string alike = look_alikes(each); !alike.empty())
       words += ", or " + alike + ": these rows cannot tell which";
   }
-  return words + worth_of(diagnosis, "Together they close");
+  return words +
+         worth_of(diagnosis, any ? "One as well as all of them closes" : "Together they close");
 }
 
 /// ". Besides there is structure that …" where there is that as well; empty where what is named may

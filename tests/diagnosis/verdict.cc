@@ -116,6 +116,23 @@ TEST(VerdictInWords, TellsAllThatAreSureAndTheirShares) {
             "others, 60 % alone). Noise alone explains as much in 0.005 of cases");
 }
 
+TEST(VerdictInWords, SaysThatOneCauseIsEnoughWhereEachClosesAllAlone) {
+  Diagnosis diagnosis = with({.effect = "zero_shift", .where = {"j1"}, .probability = 0.95});
+  diagnosis.gap.closed.fraction = 0.99;
+  diagnosis.named.front().closes_alone = 0.985;
+  diagnosis.named.front().closes_beside = 0.004;
+  diagnosis.named.push_back({.effect = "base_drift",
+                             .where = {"base"},
+                             .probability = 0.5,
+                             .closes_alone = 0.99,
+                             .closes_beside = 0.01});
+  EXPECT_THAT(verdict_in_words(diagnosis),
+              testing::StartsWith("any one of these closes the gap alone, and which of them are "
+                                  "there the rows cannot tell: zero_shift at j1 (95 % sure"));
+  diagnosis.named.front().closes_beside = 0.2;
+  EXPECT_THAT(verdict_in_words(diagnosis), testing::StartsWith("2 causes make the gap together"));
+}
+
 TEST(VerdictInWords, TellsOfStepsThatComeAgain) {
   CauseResult cause{.effect = "zero_shift", .where = {"j4"}, .probability = 0.97};
   const auto step = [&](const char* at, double moment) {
