@@ -220,6 +220,9 @@ std::string doubt_of(const LinearisedModel& linearised, const DataSet& data,
     return why;
   if (std::string why = length_given_wrongly(diagnosis, calibrated); !why.empty()) return why;
   if (std::string why = ratio_given_wrongly(linearised, data, diagnosis); !why.empty()) return why;
+  if (std::string why = reading_scaled_wrongly(linearised.geometry(), data.rows.q, diagnosis.named);
+      !why.empty())
+    return why;
   if (std::string why = impossible_size(diagnosis.named); !why.empty()) return why;
   if (std::string why = elsewhere_from_the_first(data, diagnosis.named); !why.empty()) return why;
   if (std::string why = impossible_sign(diagnosis.named); !why.empty()) return why;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
+#include <numbers>
 
 #include "constraints/estimation/identification.h"
 #include "diagnosis/constants.h"
@@ -29,6 +31,21 @@ const ParameterResult* farthest_off(const Solution& calibrated) {
     farthest = &each;
   }
   return farthest;
+}
+
+/// What a transmission error with these parameters (JOINT.sinK, JOINT.cosK) adds to the joint's
+/// reading.
+double added_at(const std::vector<NamedValue>& parameters, const std::string& joint, double angle) {
+  double sum = 0;
+  for (const NamedValue& each : parameters) {
+    if (!each.name.starts_with(joint + ".")) continue;
+    const std::size_t wave = each.name.rfind("sin"), other = each.name.rfind("cos");
+    if (wave == std::string::npos && other == std::string::npos) continue;
+    const bool sine = wave != std::string::npos;
+    const double waves = std::strtod(each.name.c_str() + (sine ? wave : other) + 3, nullptr);
+    sum += each.value * (sine ? std::sin(waves * angle) : std::cos(waves * angle));
+  }
+  return sum;
 }
 
 }  // namespace
@@ -81,6 +98,34 @@ std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet
          with_figures("%.5g", gear->value) + "), calibration leaves " +
          in_readable_unit(left, unit) + ", as little as with what would be named (" +
          in_readable_unit(with_all, unit) + ")";
+}
+
+std::string reading_scaled_wrongly(const Robot& robot, const Eigen::MatrixXd& q,
+                                   const std::vector<CauseResult>& named) {
+  constexpr double kStraight = 0.9;  // of its squares about its mean, that a line explains
+  for (std::size_t j = 0; j < robot.joints().size(); ++j) {
+    const Joint& joint = robot.joints()[j];
+    const auto of_joint = std::ranges::find_if(named, [&](const CauseResult& each) {
+      return each.effect == "transmission_error" && std::ranges::count(each.where, joint.name) > 0;
+    });
+    if (of_joint == named.end() || q.rows() == 0 ||
+        std::ranges::any_of(robot.parameters(), [&](const Parameter& p) {
+          return p.part == Part::gear && p.frame == joint.name;
+        }))
+      continue;
+    const double scale = joint.quantity == Quantity::angle ? 1 : 2 * std::numbers::pi;
+    const Eigen::ArrayXd reading = q.col(static_cast<Eigen::Index>(j)).array();
+    const Eigen::ArrayXd error = (scale * reading).unaryExpr([&](double at) {
+      return added_at(of_joint->parameters, joint.name, at);
+    });
+    const Eigen::ArrayXd x = reading - reading.mean(), e = error - error.mean();
+    const double along = (x * e).sum(), squares = x.square().sum() * e.square().sum();
+    if (!(squares > 0) || along * along < kStraight * squares) continue;
+    return "what would be named at " + joint.name + " grows with its reading, by " +
+           with_figures("%.2g", 100 * along / x.square().sum()) +
+           " %: is the unit that it is read in (lead, pulses, gear) right?";
+  }
+  return {};
 }
 
 }  // namespace selfcal

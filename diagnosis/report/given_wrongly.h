@@ -20,4 +20,10 @@ std::string length_given_wrongly(const Diagnosis& diagnosis, const Solution& cal
 std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet& data,
                                 const Diagnosis& diagnosis);
 
+/// A transmission error that is named at a joint without a gear ratio to be free and, over the
+/// readings `q` (rows x joints), is nearly a straight line: the unit that the joint is read in is
+/// off. In words; empty where none is so.
+std::string reading_scaled_wrongly(const Robot& robot, const Eigen::MatrixXd& q,
+                                   const std::vector<CauseResult>& named);
+
 }  // namespace selfcal

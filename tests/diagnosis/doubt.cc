@@ -10,6 +10,7 @@
 #include "diagnosis/constants.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/evidence/linearised_model.h"
+#include "diagnosis/report/given_wrongly.h"
 #include "kinematics/corrected_robot.h"
 #include "tests/diagnosis/two_sessions.h"
 
@@ -206,6 +207,28 @@ std::string doubt_of_spring(double compliance, double sigma) {
                                          .usual_least = 2e-7,
                                          .usual_most = 1e-4,
                                          .positive = true}}});
+}
+
+TEST(Doubt, TakesAWaveThatIsNearlyALineForTheUnitOfALegsReading) {
+  const auto hexapod = load_robot(SELFCAL_SOURCE_DIR "/app/examples/stewart.robot.yaml");
+  ASSERT_TRUE(hexapod.has_value());
+  const std::string leg = (*hexapod)->joints()[4].name;
+  Eigen::MatrixXd q = Eigen::MatrixXd::Constant(30, 6, 0.9);
+  q.col(4).setLinSpaced(0.45, 0.55);  // sin(2 pi q) falls as a line there
+  const auto doubt = [&](double waves, const Robot& robot, const std::string& at) {
+    return reading_scaled_wrongly(
+        robot, q,
+        {{.effect = "transmission_error",
+          .where = {at},
+          .parameters = {{.name = at + ".sin" + std::to_string(static_cast<int>(waves)),
+                          .unit = "m",
+                          .value = 1e-3}}}});
+  };
+  EXPECT_THAT(doubt(1, **hexapod, leg),
+              HasSubstr("at " + leg + " grows with its reading, by -0.6"));
+  EXPECT_EQ(doubt(20, **hexapod, leg), "") << "waves of 5 cm";
+  const Rows arm;
+  EXPECT_EQ(doubt(1, *arm.robot, "j5"), "") << "whose ratio is free";
 }
 
 TEST(Doubt, NamesNoSpringThatPushesBack) {
