@@ -165,15 +165,17 @@ std::string scale_line(const ScaleLength& each, bool alone) {
                         1e3 * each.unseen);
 }
 
-/// Of the rows that judge, those within the noise: how they are met, as a root mean square.
+/// Of the rows that judge and are told one by one, those within the noise: how they are met, as a
+/// root mean square.
 struct WithinNoise {
-  int rows = 0;
+  int told = 0, rows = 0;
   double before = 0, after = 0;
 };
 
 WithinNoise within_noise(const Solution& solution) {
   WithinNoise within;
   for (const RowFigure& row : solution.residual.rows) {
+    within.told += row.check;
     if (!row.check || row.outlier) continue;
     ++within.rows;
     within.before += row.before * row.before;
@@ -199,7 +201,8 @@ std::string met(const Solution& solution) {
   const std::string what = check.angle_alone ? "directions are met to " : "the tool is met to ";
   const WithinNoise within = within_noise(solution);
   const int beyond = check.rows - within.rows;
-  if (within.rows == 0 || beyond == 0 || within.after >= 0.9 * check.rms_after)
+  const bool all_told = within.told == check.rows;  // of very many rows only some are
+  if (!all_told || within.rows == 0 || beyond == 0 || within.after >= 0.9 * check.rms_after)
     return what + all + " on " + counted(check.rows, "row") + " kept aside";
   return what + from_to(within.before, within.after) + " on " + counted(within.rows, "row") +
          " kept aside; with " + std::to_string(beyond) + " beyond the noise " + all;

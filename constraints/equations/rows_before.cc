@@ -37,6 +37,7 @@ RowsBefore rows_before(const Equations& equations, const State& state,
     for (int row = 0; row < data.rows.rows(); ++row)
       if (odd[static_cast<std::size_t>(row)]) moved.rows.q(row, j) += kOff;
     const Eigen::VectorXd y = Equations(robot, moved, Use::fit).dense(state, scale, outlier).y;
+    if (y.size() != dense.y.size()) continue;  // a loop at its edge is open, or no longer
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       const int row = dense.row[static_cast<std::size_t>(i)];
       if (row < 0 || before.of[static_cast<std::size_t>(row)] < 0) continue;

@@ -47,7 +47,9 @@ std::string impossible_size(const std::vector<CauseResult>& named) {
 /// A step with hardly a row of its set before it is no event: all of the set lies elsewhere.
 std::string elsewhere_from_the_first(const DataSet& data, const std::vector<CauseResult>& named) {
   for (const CauseResult& each : named) {
-    if (each.effect != "fixture_shift" || !each.between || each.where.size() != 1) continue;
+    if (each.effect != "fixture_shift" || !each.between || each.where.size() != 1 ||
+        data.rows.time.size() == 0)
+      continue;
     const auto set = std::ranges::find(data.sets, each.where.front(), &Set::name);
     std::size_t before = 0;
     for (int row = 0; row < data.rows.rows(); ++row)

@@ -163,6 +163,11 @@ TEST_F(ReportPage, TellsInOneSentenceWhatFalseRowsHide) {
             "Improved: the tool is met to 0.025 mm instead of 1 mm on 11 rows kept aside; with 1 "
             "beyond the noise 1 mm instead of 2 mm.");
 
+  solution.residual.check.rows = 24;  // of which every other one is told
+  EXPECT_EQ(headline(solution),
+            "Improved: the tool is met to 1 mm instead of 2 mm on 24 rows kept aside.");
+
+  solution.residual.check.rows = 12;
   for (RowFigure& row : solution.residual.rows) row.outlier = true;
   EXPECT_EQ(headline(solution),
             "Improved: the tool is met to 1 mm instead of 2 mm on 12 rows kept aside.");
