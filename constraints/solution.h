@@ -84,6 +84,9 @@ struct Figures {
   double rms_without_outliers = 0;
   AngleFigures angle;
   int configurations = 0;  ///< of them; repeats of one count once
+  /// Of those within the noise, as rms_without_outliers; 0 where there are none.
+  int rows_without_outliers = 0;
+  double rms_before_without_outliers = 0;
 };
 
 struct SetFigures {

@@ -165,28 +165,6 @@ std::string scale_line(const ScaleLength& each, bool alone) {
                         1e3 * each.unseen);
 }
 
-/// Of the rows that judge and are told one by one, those within the noise: how they are met, as a
-/// root mean square.
-struct WithinNoise {
-  int told = 0, rows = 0;
-  double before = 0, after = 0;
-};
-
-WithinNoise within_noise(const Solution& solution) {
-  WithinNoise within;
-  for (const RowFigure& row : solution.residual.rows) {
-    within.told += row.check;
-    if (!row.check || row.outlier) continue;
-    ++within.rows;
-    within.before += row.before * row.before;
-    within.after += row.after * row.after;
-  }
-  if (within.rows == 0) return within;
-  within.before = std::sqrt(within.before / within.rows);
-  within.after = std::sqrt(within.after / within.rows);
-  return within;
-}
-
 /// How the rows kept aside are met. False ones among them count; where they hide what is left of
 /// the others these come first.
 std::string met(const Solution& solution) {
@@ -199,13 +177,13 @@ std::string met(const Solution& solution) {
   };
   const std::string all = from_to(check.rms_before, check.rms_after);
   const std::string what = check.angle_alone ? "directions are met to " : "the tool is met to ";
-  const WithinNoise within = within_noise(solution);
-  const int beyond = check.rows - within.rows;
-  const bool all_told = within.told == check.rows;  // of very many rows only some are
-  if (!all_told || within.rows == 0 || beyond == 0 || within.after >= 0.9 * check.rms_after)
+  const int beyond = check.rows - check.rows_without_outliers;
+  const double within = check.rms_without_outliers;
+  if (!(within > 0) || beyond == 0 || within >= 0.9 * check.rms_after)
     return what + all + " on " + counted(check.rows, "row") + " kept aside";
-  return what + from_to(within.before, within.after) + " on " + counted(within.rows, "row") +
-         " kept aside; with " + std::to_string(beyond) + " beyond the noise " + all;
+  return what + from_to(check.rms_before_without_outliers, within) + " on " +
+         counted(check.rows_without_outliers, "row") + " kept aside; with " +
+         std::to_string(beyond) + " beyond the noise " + all;
 }
 
 }  // namespace

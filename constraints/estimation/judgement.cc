@@ -22,8 +22,8 @@ double size_before(const RowNorm& norm, const RowResidual& same) {
 /// Residuals of one unit that come one by one.
 struct Sums {
   int rows = 0, kept_rows = 0;
-  double before = 0, after = 0, kept = 0;  ///< squares
-  double mean = 0, max = 0;                ///< after; mean is a sum
+  double before = 0, after = 0, kept_before = 0, kept = 0;  ///< squares
+  double mean = 0, max = 0;                                 ///< after; mean is a sum
 
   void add(double b, double a, bool left_out) {
     ++rows;
@@ -32,6 +32,7 @@ struct Sums {
     mean += a;
     max = std::max(max, a);
     if (left_out) return;
+    kept_before += b * b;
     kept += a * a;
     ++kept_rows;
   }
@@ -52,6 +53,7 @@ class Tally {
     if (after.lengths > 0) lengths_.add(before.length, after.length, left_out);
     if (after.angles > 0) angles_.add(before.angle, after.angle, left_out);
     ++rows_;
+    kept_rows_ += !left_out;
   }
 
   Figures figures() const {
@@ -61,14 +63,18 @@ class Tally {
     f.angle_alone = lengths_.rows == 0;
     const Sums& of = f.angle_alone ? angles_ : lengths_;
     of.put(f);
-    f.rms_without_outliers = of.kept_rows > 0 ? std::sqrt(of.kept / of.kept_rows) : 0;
+    f.rows_without_outliers = kept_rows_;
+    if (of.kept_rows > 0) {
+      f.rms_without_outliers = std::sqrt(of.kept / of.kept_rows);
+      f.rms_before_without_outliers = std::sqrt(of.kept_before / of.kept_rows);
+    }
     f.angle.rows = angles_.rows;
     angles_.put(f.angle);
     return f;
   }
 
  private:
-  int rows_ = 0;
+  int rows_ = 0, kept_rows_ = 0;
   Sums lengths_, angles_;
 };
 

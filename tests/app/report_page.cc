@@ -156,19 +156,15 @@ TEST_F(ReportPage, TellsInOneSentenceWhatFalseRowsHide) {
   solution.residual.check.rows = 12;
   solution.residual.check.rms_before = 2e-3;
   solution.residual.check.rms_after = 1e-3;
-  for (int row = 0; row < 12; ++row)
-    solution.residual.rows.push_back(
-        {.check = true, .outlier = row == 3, .before = 1e-3, .after = 2.5e-5});
+  solution.residual.check.rows_without_outliers = 11;
+  solution.residual.check.rms_without_outliers = 2.5e-5;
+  solution.residual.check.rms_before_without_outliers = 1e-3;
   EXPECT_EQ(headline(solution),
             "Improved: the tool is met to 0.025 mm instead of 1 mm on 11 rows kept aside; with 1 "
             "beyond the noise 1 mm instead of 2 mm.");
 
-  solution.residual.check.rows = 24;  // of which every other one is told
-  EXPECT_EQ(headline(solution),
-            "Improved: the tool is met to 1 mm instead of 2 mm on 24 rows kept aside.");
-
-  solution.residual.check.rows = 12;
-  for (RowFigure& row : solution.residual.rows) row.outlier = true;
+  solution.residual.check.rows_without_outliers = 0;  // all of them are
+  solution.residual.check.rms_without_outliers = 0;
   EXPECT_EQ(headline(solution),
             "Improved: the tool is met to 1 mm instead of 2 mm on 12 rows kept aside.");
 }
