@@ -4,8 +4,9 @@
 #include "kinematics/mechanics.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "kinematics/description.h"
+#include "kinematics/readable.h"
 
 namespace selfcal {
 
@@ -18,19 +19,16 @@ std::string strange_masses(const Mechanics& mechanics) {
   bool moves = false;
   for (const Link& link : mechanics.links) {
     moves = moves || link.joint >= 0;
-    if (!moves || !link.mass) continue;
-    if (link.joint >= 0) {
-      carries += tool + *link.mass;
-      tool = 0;
-    } else {
-      tool += *link.mass;
-    }
+    if (!moves) continue;
+    if (link.joint >= 0 && !link.mass) return {};
+    if (link.joint >= 0) carries += std::exchange(tool, 0);
+    (link.joint >= 0 ? carries : tool) += link.mass.value_or(0);
   }
-  if (carries <= 0 || std::max(tool, mechanics.payload) <= carries) return {};
-  return std::string(tool > carries ? "the tool weighs " : "the payload is ") +
-         format_number(tool > carries ? tool : mechanics.payload) +
-         " kg in the robot's file, all that carries it " + format_number(carries) +
-         " kg: is one of them in grams or pounds?";
+  if (mechanics.masses_assumed || carries <= 0 || std::max(tool, mechanics.payload) <= carries)
+    return {};
+  return std::string(tool > carries ? "the tool weighs" : "the payload is") +
+         with_figures(" %.3g kg in the robot's file, ", std::max(tool, mechanics.payload)) +
+         with_figures("all that carries it %.3g kg: is one of them in grams or pounds?", carries);
 }
 
 int Mechanics::link_of(int j) const {

@@ -30,8 +30,8 @@ struct Mechanics {
   int link_of(int j) const;
 };
 
-/// What no machine weighs, in words: a tool or a payload heavier than all that carries it. Empty of
-/// others.
+/// A tool or a payload heavier than all that carries it, in words. Empty of others, and where the
+/// maker's masses are not all told.
 std::string strange_masses(const Mechanics& mechanics);
 
 /// The capability of a robot to say what loads it: masses and links.

@@ -38,6 +38,11 @@ TEST(StrangeMasses, AreThoseOfAToolOrAPayloadHeavierThanTheArm) {
   EXPECT_THAT(said("600"), testing::HasSubstr("the tool weighs 600 kg"));
   EXPECT_THAT(said("600"), testing::HasSubstr("all that carries it 6 kg"));
   EXPECT_EQ(said("1", "payload: 3\n"), "");
+  std::string silent = kArm;
+  const std::string mass_of_first = ", mass: 4, com: [0.25, 0, 0]";
+  silent.erase(silent.find(mass_of_first), mass_of_first.size());
+  silent.replace(silent.rfind("mass: 1"), 7, "mass: 600");
+  EXPECT_EQ(strange_masses(serial::mechanics(model_of(with_frames(silent)))), "");
   EXPECT_THAT(said("1", "payload: 3000\n"), testing::HasSubstr("the payload is 3000 kg"));
 }
 
