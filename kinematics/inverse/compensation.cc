@@ -196,13 +196,13 @@ Command Compensation::best_of(const Location& wanted,
   return first ? *first : Command{};
 }
 
-/// The calibrated robot's own solution within the limits that is nearest to `near`, `at_most` so
-/// far from it.
+/// Of the calibrated robot's own solutions within the limits to which steps from `starts` come, the
+/// one that is nearest to `near`, `at_most` so far from it.
 std::optional<Command> Compensation::own_solution(const Location& wanted,
+                                                  const Eigen::MatrixXd& starts,
                                                   const Eigen::VectorXd& near,
                                                   double at_most) const {
   std::optional<Command> nearest;
-  const Eigen::MatrixXd starts = starts_from(near);
   for (const ReachedPose& each : reach_pose(*calibrated_, xi_calibrated_, wanted, starts, at_)) {
     if (!each.there || !within_limits(*nominal_, each.q)) continue;
     const double away = apart(*nominal_, each.q, near);
@@ -218,7 +218,7 @@ std::optional<Command> Compensation::own_solution(const Location& wanted,
 std::optional<Command> Compensation::nearer_own(const Location& wanted, const Command& command,
                                                 const Eigen::VectorXd& near) const {
   if (apart(*nominal_, command.q, near) <= kFarFromNominal) return std::nullopt;
-  return own_solution(wanted, near, kFarFromNominal);
+  return own_solution(wanted, near.transpose(), near, kFarFromNominal);
 }
 
 Command Compensation::command(const Location& wanted,
@@ -243,7 +243,8 @@ Command Compensation::command(const Location& wanted,
     return each.there && within_limits(*nominal_, each.q);
   });
   if (nominal_gets_there && !near) return command;
-  const auto own = own_solution(wanted, from, nominal_gets_there ? kFarFromNominal : HUGE_VAL);
+  const auto own = own_solution(wanted, starts_from(from), from,
+                                nominal_gets_there ? kFarFromNominal : HUGE_VAL);
   return own ? *own : command;
 }
 
@@ -260,8 +261,11 @@ std::vector<Command> Compensation::commands(const Location& wanted,
   }
   if (list.empty()) return {command(wanted, near)};
   if (!near || exact_calibrated_) return list;
-  if (auto nearer = nearer_own(wanted, list.front(), *near))
+  if (auto nearer = nearer_own(wanted, list.front(), *near)) {
+    std::erase_if(
+        list, [&](const Command& other) { return apart(*nominal_, other.q, nearer->q) < kTwins; });
     list.insert(list.begin(), *std::move(nearer));
+  }
   return list;
 }
 

@@ -55,8 +55,8 @@ class Compensation {
   /// `near`, and readings all over the range.
   Eigen::MatrixXd starts_from(const Eigen::VectorXd& near) const;
   Command best_of(const Location& wanted, const std::vector<ReachedPose>& solutions) const;
-  std::optional<Command> own_solution(const Location& wanted, const Eigen::VectorXd& near,
-                                      double at_most) const;
+  std::optional<Command> own_solution(const Location& wanted, const Eigen::MatrixXd& starts,
+                                      const Eigen::VectorXd& near, double at_most) const;
   std::optional<Command> nearer_own(const Location& wanted, const Command& command,
                                     const Eigen::VectorXd& near) const;
   Command corrected(const Location& wanted, const ReachedPose& nominal) const;

@@ -296,6 +296,8 @@ TEST(Compensation, DoesNotTurnAWristRoundThatIsWhereItIsWanted) {
     EXPECT_LT((command.q - here).cwiseAbs().maxCoeff(), 0.3) << i;
     const auto all = compensation.commands(wanted, here);
     EXPECT_LT((all.front().q - here).cwiseAbs().maxCoeff(), 0.3) << i;
+    for (std::size_t k = 1; k < all.size(); ++k)
+      EXPECT_GT((all[k].q - all.front().q).cwiseAbs().maxCoeff(), 1e-6) << i;
   }
 }
 
