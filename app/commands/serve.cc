@@ -140,7 +140,11 @@ Result<void> serve(const ServeArguments& arguments, Config config) {
   if (auto made = make_folder(config.state); !made) return made;
   const auto lock = Lock::take(config.state);
   if (!lock) return tl::unexpected(lock.error());
-  if (auto owned = own_folder(config.state, config.id); !owned) return owned;
+  const auto taken_over = own_folder(config.state, config.id);
+  if (!taken_over) return tl::unexpected(taken_over.error());
+  if (*taken_over)
+    spdlog::warn("{}: its store was nobody's by name, and is robot {}'s from now on (robot.id)",
+                 config.state.string(), config.id);
   auto opened = Store::open(config.state);
   if (!opened) return tl::unexpected(opened.error());
   auto models = Models::load(config.robot, *opened->store);

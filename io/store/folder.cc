@@ -122,11 +122,13 @@ Result<void> may_own_folder(const fs::path& folder, const std::string& robot) {
                    (folder / kOwner).string());
 }
 
-Result<void> own_folder(const fs::path& folder, const std::string& robot) {
-  if (auto may = may_own_folder(folder, robot); !may) return may;
+Result<bool> own_folder(const fs::path& folder, const std::string& robot) {
+  if (auto may = may_own_folder(folder, robot); !may) return tl::unexpected(may.error());
   std::error_code error;
-  if (fs::exists(folder / kOwner, error)) return {};
-  return write_file_atomically(folder / kOwner, robot + "\n");
+  if (fs::exists(folder / kOwner, error)) return false;
+  if (auto written = write_file_atomically(folder / kOwner, robot + "\n"); !written)
+    return tl::unexpected(written.error());
+  return has_store(folder);
 }
 
 Result<std::unique_ptr<StoreMark>> StoreMark::open(const fs::path& folder) {

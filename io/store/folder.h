@@ -36,8 +36,8 @@ Result<void> name_store(const std::filesystem::path& folder);
 void remove_unnamed_store(const std::filesystem::path& folder);
 
 /// Makes the folder the state of the robot of that name: its file robot.id says so from then on.
-/// Bad input where it is another one's.
-Result<void> own_folder(const std::filesystem::path& folder, const std::string& robot);
+/// True where it had a store and nobody's name so far. Bad input where it is another one's.
+Result<bool> own_folder(const std::filesystem::path& folder, const std::string& robot);
 /// The same failure without making it anybody's.
 Result<void> may_own_folder(const std::filesystem::path& folder, const std::string& robot);
 

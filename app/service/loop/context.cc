@@ -48,11 +48,19 @@ void ServiceContext::put(Event::What what, bool ok, std::string why) {
   put(std::move(event));
 }
 
-bool ServiceContext::store_failed(const Failure& failure) {
-  if (failure.what != store_told.text || now - store_told.at >= kSayAgain) {
-    spdlog::error("{}", failure.what);
-    store_told = {failure.what, now};
+bool ServiceContext::told_lately(std::deque<Told>& list, const std::string& text,
+                                 Nanoseconds within) const {
+  if (const auto again = std::ranges::find(list, text, &Told::text); again != list.end()) {
+    if (now - again->at < within) return true;
+    list.erase(again);
   }
+  if (list.size() == kToldApart) list.pop_back();
+  list.push_front({text, now});
+  return false;
+}
+
+bool ServiceContext::store_failed(const Failure& failure) {
+  if (!told_lately(store_told, failure.what, kSayAgain)) spdlog::error("{}", failure.what);
   put(Event::What::broken, false, std::string(kStoreFailed) + failure.what);
   return false;
 }
@@ -64,12 +72,7 @@ void ServiceContext::record(const std::string& level, const std::string& text) {
 
 void ServiceContext::tell(const std::string& level, const std::string& text) {
   // A robot that is switched off must not fill the store with a few sentences.
-  if (const auto again = std::ranges::find(told, text, &Told::text); again != told.end()) {
-    if (now - again->at < kTellAgain) return log_at(level, text);
-    told.erase(again);
-  }
-  if (told.size() == kToldApart) told.pop_back();
-  told.push_front({text, now});
+  if (told_lately(told, text, kTellAgain)) return log_at(level, text);
   record(level, text);
 }
 

@@ -52,7 +52,9 @@ struct ServiceContext {
     Nanoseconds at = 0;
   };
   std::deque<Told> told = {};
-  Told store_told = {};  ///< the store, last in the log
+  std::deque<Told> store_told = {};  ///< of a store that fails, in the log
+  /// False for a sentence that is not in `list` since `within`: it is from then on.
+  bool told_lately(std::deque<Told>& list, const std::string& text, Nanoseconds within) const;
 
   /// Of more than 1024 that wait the others are lost, which is a fault.
   void put(Event event);

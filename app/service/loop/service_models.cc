@@ -15,7 +15,7 @@ bool Service::reload_models() {
 bool Service::use(Models models) {
   c_.models = std::move(models);
   if (const auto written = c_.models.write_active(c_.config.state); !written) {
-    c_.put(Event::What::broken, false, written.error().what);
+    c_.put(Event::What::broken, false, std::string(kStoreFailed) + written.error().what);
     return false;
   }
   return true;
@@ -98,7 +98,7 @@ void Service::tell_result() {
     const auto result = c_.store.result(results->front().session);
     if (!c_.stored(result) || !*result) return;
     const auto session = c_.store.session(results->front().session);
-    if (c_.stored(session) && session->model_hash == c_.models.hash()) reporter_.result(**result);
+    if (session && session->model_hash == c_.models.hash()) reporter_.result(**result);
   }
 }
 
