@@ -22,9 +22,9 @@
 
 namespace selfcal {
 
-/// Everything that the search needs and that does not depend on y.
 class ProductsOfColumns;
 
+/// Everything that the search needs and that does not depend on y.
 class EvidenceEvaluator {
  public:
   EvidenceEvaluator(Whitened rows, std::vector<DiscrepancyCovariance> structures,

@@ -7,6 +7,39 @@
 
 namespace selfcal {
 
+EvidenceEvaluator::Statistics EvidenceEvaluator::statistics_of(const Eigen::MatrixXd& Y,
+                                                               Of which) const {
+  Statistics statistics(marginal_likelihoods_.size());
+  ObservedRows observed(*rows_, Y, true);
+  for (std::size_t s = 0; s < statistics.size(); ++s)
+    if (which == Of::all || marginal_likelihoods_[s].structure().kind == 0)
+      statistics[s] = marginal_likelihoods_[s].statistics_of(observed);
+  return statistics;
+}
+
+void EvidenceEvaluator::condition_on(const Statistics& statistics, Eigen::Index which) {
+  for (std::size_t s = 0; s < statistics.size(); ++s) {
+    if (statistics[s].g.cols() == 0) continue;
+    marginal_likelihoods_[s].condition_on(statistics[s], which);
+    if (!spectra_[s].empty()) continue;
+    spectra_[s].reserve(spectrum_at_.back());
+    for (const Block& block : blocks_)
+      marginal_likelihoods_[s].add_spectrum(block, kSizes, spectra_[s]);
+  }
+}
+
+void EvidenceEvaluator::condition_on_rows() {
+  for (MarginalLikelihood& each : marginal_likelihoods_) each.condition_on_rows();
+}
+
+Eigen::MatrixXd EvidenceEvaluator::log_evidences_of(const Eigen::MatrixXd& Y) const {
+  Eigen::MatrixXd all(structures(), Y.cols());
+  ObservedRows observed(*rows_, Y, false);
+  for (int s = 0; s < structures(); ++s)
+    all.row(s) = marginal_likelihoods_[s].log_evidences_of(observed).transpose();
+  return all;
+}
+
 int EvidenceEvaluator::best_noise() const {
   int home = 0;
   for (int s = 1; s < structures(); ++s)

@@ -102,7 +102,6 @@ std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet
 
 std::string reading_scaled_wrongly(const Robot& robot, const Eigen::MatrixXd& q,
                                    const std::vector<CauseResult>& named) {
-  constexpr double kStraight = 0.9;  // of its squares about its mean, that a line explains
   for (std::size_t j = 0; j < robot.joints().size(); ++j) {
     const Joint& joint = robot.joints()[j];
     const auto of_joint = std::ranges::find_if(named, [&](const CauseResult& each) {
@@ -120,7 +119,7 @@ std::string reading_scaled_wrongly(const Robot& robot, const Eigen::MatrixXd& q,
     });
     const Eigen::ArrayXd x = reading - reading.mean(), e = error - error.mean();
     const double along = (x * e).sum(), squares = x.square().sum() * e.square().sum();
-    if (!(squares > 0) || along * along < kStraight * squares) continue;
+    if (!(squares > 0) || along * along < kDiagnosis.report.straight * squares) continue;
     return "what would be named at " + joint.name + " grows with its reading, by " +
            with_figures("%.2g", 100 * along / x.square().sum()) +
            " %: is the unit that it is read in (lead, pulses, gear) right?";

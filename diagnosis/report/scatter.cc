@@ -78,7 +78,7 @@ double log_confirmed(const Scatter& scatter) {
 
 double unknown_by_scatter(const Scatter& scatter, double freedom) {
   const double ratio = scatter.found / scatter.declared;
-  const DiagnosisConstants::Report& rules = kDiagnosis.report;
+  const ReportConstants& rules = kDiagnosis.report;
   const double size = std::sqrt(std::max(0.0, ratio * ratio - 1));  // of it, over the noise
   if (size < rules.least_scattered) return 0;
   const double of_unknown =

@@ -76,14 +76,15 @@ std::string one_cause(const Diagnosis& diagnosis) {
   return words + worth_of(diagnosis, "It closes");
 }
 
-/// Each closes alone what all do, and nothing beside the others.
+/// Nearly all is closed, by each alone as by all, and nothing by one beside the others.
 bool any_will_do(const Diagnosis& diagnosis) {
-  const std::optional<double>& all = diagnosis.gap.closed.fraction;
-  return all && std::ranges::all_of(diagnosis.named, [&](const CauseResult& each) {
-           return each.closes_alone && each.closes_beside &&
-                  *each.closes_beside<kDiagnosis.naming.nothing_alone&& * each.closes_alone> * all -
-                      kDiagnosis.naming.nothing_alone;
-         });
+  const double all = diagnosis.gap.closed.fraction.value_or(0);
+  if (all < 1 - kDiagnosis.naming.hardly_left) return false;
+  return std::ranges::all_of(diagnosis.named, [&](const CauseResult& each) {
+    const double alone = each.closes_alone.value_or(0), beside = each.closes_beside.value_or(1);
+    return beside < kDiagnosis.naming.nothing_beside &&
+           all - alone < kDiagnosis.naming.nothing_alone;
+  });
 }
 
 std::string several_causes(const Diagnosis& diagnosis) {

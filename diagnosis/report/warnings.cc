@@ -131,9 +131,9 @@ std::string gears_beside_none(const Diagnosis& diagnosis) {
   const auto off = std::ranges::find_if(
       diagnosis.warnings, [](const std::string& each) { return each.starts_with(kGearsOff); });
   if (diagnosis.verdict.effect != kNone || off == diagnosis.warnings.end()) return {};
-  const std::string gears = off->substr(kGearsOff.size());
-  return "; that is with the gears' ratios free, of which the robot's file has some wrong: " +
-         gears.substr(0, gears.find(';')) + " (identify frees one with --free and its name)";
+  return "; that is with the gears' ratios free (identify frees one with --free and its name), of "
+         "which some are off: " +
+         off->substr(kGearsOff.size());
 }
 
 std::string warning_of_few_waves(const Robot& robot, const Eigen::MatrixXd& q,

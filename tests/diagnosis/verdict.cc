@@ -125,10 +125,15 @@ TEST(VerdictInWords, SaysThatOneCauseIsEnoughWhereEachClosesAllAlone) {
                              .where = {"base"},
                              .probability = 0.5,
                              .closes_alone = 0.99,
-                             .closes_beside = 0.01});
+                             .closes_beside = 0.003});
   EXPECT_THAT(verdict_in_words(diagnosis),
               testing::StartsWith("any one of these closes the gap alone, and which of them are "
                                   "there the rows cannot tell: zero_shift at j1 (95 % sure"));
+  diagnosis.gap.closed.fraction = 0.3;
+  for (CauseResult& each : diagnosis.named) each.closes_alone = 0.3;
+  EXPECT_THAT(verdict_in_words(diagnosis), testing::StartsWith("2 causes make the gap together"));
+  diagnosis.gap.closed.fraction = 0.99;
+  for (CauseResult& each : diagnosis.named) each.closes_alone = 0.99;
   diagnosis.named.front().closes_beside = 0.2;
   EXPECT_THAT(verdict_in_words(diagnosis), testing::StartsWith("2 causes make the gap together"));
 }

@@ -122,7 +122,8 @@ TEST(Warnings, OfGearsStandBesideNoCause) {
   diagnosis.verdict.effect = kNone;
   EXPECT_EQ(gears_beside_none(diagnosis), "");
   diagnosis.warnings = {"another", std::string(kGearsOff) + "K2 -1996 ppm; those of all"};
-  EXPECT_THAT(gears_beside_none(diagnosis), testing::HasSubstr("has some wrong: K2 -1996 ppm (id"));
+  EXPECT_THAT(gears_beside_none(diagnosis),
+              testing::HasSubstr("some are off: K2 -1996 ppm; those of all"));
   diagnosis.verdict.effect = "backlash";
   EXPECT_EQ(gears_beside_none(diagnosis), "");
 }
