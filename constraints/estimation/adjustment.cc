@@ -69,9 +69,8 @@ class Adjustment {
   const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
 
   double tolerance(const Parameter& p) const {
-    return options_.gear_sigma > 0 && p.part == Part::gear
-               ? options_.gear_sigma * std::abs(p.nominal)
-               : p.tolerance;
+    const auto other = options_.tolerance.find(p.name);
+    return other != options_.tolerance.end() ? other->second : p.tolerance;
   }
 
   void choose_free() {
