@@ -48,9 +48,11 @@ class Diagnostician {
   /// DiagnosisOptions::gears_off; empty where none does.
   std::map<std::string, double> gears_off() {
     const Weighed& weighed = this->weighed();
-    if (!weighed.problem.empty() || weighed.posterior.hypotheses.empty()) return {};
-    return selfcal::gears_off(linearised_.whitened(), linearised_.held_gears(), *weighed.evaluator,
-                              weighed.posterior.hypotheses.front());
+    if (!weighed.problem.empty()) return {};
+    std::vector<HeldGear> held;
+    for (const auto& [column, gear] : linearised_.held_gears())
+      held.push_back({column, gear->name, gear->nominal});
+    return selfcal::gears_off(held, *weighed.evaluator, weighed.posterior);
   }
 
   /// Why these rows cannot be diagnosed; empty where they can.
@@ -100,6 +102,7 @@ class Diagnostician {
   /// The causes, and what of them is named; false where the rows are too few.
   bool named() {
     Weighed weighed = std::move(this->weighed());
+    weighed_.reset();
     evaluator_ = std::move(weighed.evaluator);
     posterior_ = std::move(weighed.posterior);
     result_.problem = std::move(weighed.problem);
@@ -235,8 +238,10 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
   DiagnosisOptions options = asked;
   auto diagnostician = std::make_unique<Diagnostician>(robot, data, asked, progress);
   options.gears_off = diagnostician->gears_off();
-  if (options.gears_off != asked.gears_off)
+  if (!options.gears_off.empty()) {
+    diagnostician.reset();  // before there is a second one
     diagnostician = std::make_unique<Diagnostician>(robot, data, options, progress);
+  }
   Diagnosis diagnosis = diagnostician->run();
   diagnostician.reset();
   if (!diagnosis.problem.empty()) return diagnosis;
@@ -248,7 +253,7 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
     if (names_effect(diagnosis.verdict.effect)) {
       if (const std::optional<double>& closed = diagnosis.gap.closed.fraction)
         let_the_larger_lead(diagnosis.candidates, 1 - *closed, diagnosis.verdict);
-      diagnosis.why = verdict_in_words(diagnosis);
+      diagnosis.why = verdict_in_words(diagnosis) + gears_in_verdict(diagnosis);
     }
     if (const std::string doubt = closes_nothing(diagnosis); !doubt.empty())
       withdraw(doubt, options, diagnosis);

@@ -34,6 +34,7 @@ class Adjustment {
     const auto effects = static_cast<Eigen::Index>(options.effect_sigma.size());
     adjusted_.prior.sigma.tail(effects) =
         Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
+    adjusted_.prior.believed = adjusted_.prior.sigma;
     choose_free();
     few_ = few_of(equations.data());
     if (few_) few_equations_.emplace(robot_, *few_, Use::fit);
@@ -240,7 +241,8 @@ class Adjustment {
     if (!adjusted_.priors_fail) return;
     for (size_t i = 0; i < parameters().size(); ++i)
       if (is_own(parameters()[i]))
-        adjusted_.prior.sigma[i] = adjusted_.widening * tolerance(parameters()[i]);
+        adjusted_.prior.sigma[i] =
+            adjusted_.widening * adjusted_.prior.believed[static_cast<Eigen::Index>(i)];
     adjusted_.fitted =
         run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
   }

@@ -72,7 +72,8 @@ class ScaleTest {
     Prior prior = adjusted.prior;
     for (size_t i = 0; i < robot.parameters().size(); ++i) {
       const Parameter& p = robot.parameters()[i];
-      if (is_own(p)) prior.sigma[static_cast<Eigen::Index>(i)] = p.tolerance;
+      const auto at = static_cast<Eigen::Index>(i);
+      if (is_own(p)) prior.sigma[at] = prior.believed[at];
       if (p.link_length) prior.free[i] = 1;
     }
     return prior;

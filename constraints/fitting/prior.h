@@ -11,7 +11,8 @@ namespace selfcal {
 struct Prior {
   Eigen::VectorXd centre, sigma;
   std::vector<char> free;
-  bool use = true;  ///< false: no prior on free parameters
+  bool use = true;                ///< false: no prior on free parameters
+  Eigen::VectorXd believed = {};  ///< sigma before it was widened
 };
 
 /// The columns that are free: free parameters and all own freedoms.

@@ -207,12 +207,12 @@ Whitened LinearisedModel::whitened_geometry() const {
   return of(equations_of(all_, taking_part()), {});
 }
 
-std::vector<std::pair<Eigen::Index, std::string>> LinearisedModel::held_gears() const {
-  std::vector<std::pair<Eigen::Index, std::string>> held;
+std::vector<std::pair<Eigen::Index, const Parameter*>> LinearisedModel::held_gears() const {
+  std::vector<std::pair<Eigen::Index, const Parameter*>> held;
   for (const int gear : held_gears_)
     if (const auto at = std::ranges::find(nuisance_.columns, gear); at != nuisance_.columns.end())
       held.emplace_back(at - nuisance_.columns.begin(),
-                        geometry_->parameters()[static_cast<std::size_t>(gear)].name);
+                        &geometry_->parameters()[static_cast<std::size_t>(gear)]);
   return held;
 }
 

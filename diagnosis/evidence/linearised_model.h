@@ -58,7 +58,7 @@ class LinearisedModel {
   /// The same without any cause's columns.
   Whitened whitened_geometry() const;
   /// The ratios that are held_gears(), by their columns of whitened().A.
-  std::vector<std::pair<Eigen::Index, std::string>> held_gears() const;
+  std::vector<std::pair<Eigen::Index, const Parameter*>> held_gears() const;
   /// Which they are, without their columns W.
   DenseEquations kept() const;
   std::vector<Eigen::Isometry3d> ends() const;

@@ -122,7 +122,9 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
     const Parameter& gear = robot.parameters()[static_cast<std::size_t>(i)];
     if (gear.part != Part::gear) continue;
     const double off = xi[i] - gear.nominal;
-    const bool is_off = std::abs(off) > sigmas * sigma[i];
+    // Within the doubt of teeth none is off.
+    const bool is_off = std::abs(off) > sigmas * std::hypot(sigma[i], kDiagnosis.gears.exact *
+                                                                          std::abs(gear.nominal));
     if (is_off)
       gears += (gears.empty() ? "" : ", ") + gear.name + " (" + gear.frame + ") " +
                (is_plainly_off(gear, xi[i]) ? with_figures("%.2g %%", 100 * off / gear.nominal)

@@ -2,148 +2,165 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include "diagnosis/constants.h"
 
 namespace selfcal {
 namespace {
 
-/// Causes, and ratios of their own size: their columns in A, and 1 sigma.
+/// Causes and ratios (by their place among the held ones, with 1 sigma over what they are held to)
+/// in one noise.
 struct Explanation {
   std::vector<int> causes;
-  std::map<Eigen::Index, double> gears;
+  std::map<std::size_t, double> gears;
+  int structure = 0;
 };
 
 class GearsOff {
  public:
-  GearsOff(const Whitened& rows, const HeldGears& held, const EvidenceEvaluator& evaluator,
-           const Hypothesis& best)
-      : rows_(rows), held_(held), evaluator_(evaluator), best_(best), geometry_(rows.A.cols()) {
-    find_products();
+  GearsOff(const std::vector<HeldGear>& held, const EvidenceEvaluator& evaluator,
+           const Posterior& posterior)
+      : held_(held), evaluator_(evaluator), best_(posterior.hypotheses.front()) {
+    const auto alone = std::ranges::find_if(posterior.hypotheses, [&](const Hypothesis& h) {
+      return evaluator.structure(h.structure).kind == 0;
+    });
+    noise_ = alone != posterior.hypotheses.end() ? alone->structure : best_.structure;
+    auto rows = std::make_shared<Whitened>(evaluator.rows().rows());
+    const Eigen::Index causes = rows->C.cols();
+    rows->C.conservativeResize(Eigen::NoChange, causes + static_cast<Eigen::Index>(held.size()));
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const Eigen::Index column = causes + static_cast<Eigen::Index>(i);
+      rows->C.col(column) = rows->A.col(held[i].column);
+      exact_.push_back(1 / rows->weight[held[i].column]);
+      gears_.push_back({.columns = {static_cast<int>(column)}, .unit = Eigen::VectorXd::Ones(1)});
+    }
+    for (const int cause : best_.candidates) {
+      blocks_.push_back(evaluator.block(cause));
+      blocks_.back().group = -1;
+    }
+    for (const std::vector<Block>* list : {&blocks_, &gears_})
+      for (const Block& block : *list) {
+        first_.push_back(static_cast<Eigen::Index>(columns_.size()));
+        columns_.insert(columns_.end(), block.columns.begin(), block.columns.end());
+      }
+    for (const int structure : {best_.structure, noise_})
+      if (!seen_.contains(structure)) {
+        MarginalLikelihood seen(rows, evaluator.structure(structure), {});
+        Eigen::MatrixXd products = seen.gram(columns_);
+        seen_.emplace(structure, std::pair(std::move(seen), std::move(products)));
+      }
   }
 
-  std::map<std::string, double> find() {
-    std::map<std::string, double> off;
-    Explanation now{best_.candidates, {}};
+  std::map<std::string, double> find() const {
+    Explanation now{best_.candidates, {}, best_.structure};
     double log_now = log_weight(now);
-    for (std::size_t i = now.causes.size(); i-- > 0;) {  // one of no weight is no rival
-      Explanation fewer = without(now, i);
-      const double log_fewer = log_weight(fewer);
-      if (log_fewer <= log_now) continue;
-      now = std::move(fewer);
-      log_now = log_fewer;
-    }
-    while (now.gears.size() < held_.size()) {
-      Explanation next;
-      double log_next = -HUGE_VAL;
-      for (const auto& [gear, name] : held_) {
-        if (now.gears.contains(gear)) continue;
-        for (const double sigma : kDiagnosis.gears.off)
-          for (Explanation& other : with_gear(now, gear, sigma)) {
-            const double log_other = log_weight(other);
-            if (log_other > log_now - kDiagnosis.gears.nearly) off.emplace(name, sigma);
-            if (log_other <= log_next) continue;
-            log_next = log_other;
-            next = std::move(other);
-          }
-      }
-      if (log_next <= log_now) break;
+    for (std::size_t i = now.causes.size(); i-- > 0;)  // one of no weight is no rival
+      take_if_better(without_cause(now, i), now, log_now);
+    for (bool grows = true; grows;) {
+      grows = false;
+      Explanation next = now;
+      double log_next = log_now;
+      for (const Explanation& other : with_another_gear(now))
+        grows = take_if_better(other, next, log_next) || grows;
       now = std::move(next);
       log_now = log_next;
     }
-    for (const auto& [gear, name] : held_)
-      if (const auto found = now.gears.find(gear); found != now.gears.end())
-        off[name] = found->second;
+    for (std::size_t gear = 0; gear < held_.size(); ++gear) {
+      Explanation fewer = now;
+      if (fewer.gears.erase(gear) > 0) take_if_better(fewer, now, log_now);
+    }
+    std::map<std::string, double> off;
+    for (const auto& [gear, sigma] : now.gears) off[held_[gear].name] = sigma;
+    std::map<std::size_t, double> nearly;  // log weight of the best
+    for (const Explanation& other : with_another_gear(now)) {
+      const double log_other = log_weight(other);
+      if (log_other <= log_now - kDiagnosis.gears.nearly) continue;
+      for (const auto& [gear, sigma] : other.gears) {
+        if (now.gears.contains(gear)) continue;
+        const auto [best, first] = nearly.try_emplace(gear, log_other);
+        if (first || log_other > best->second) off[held_[gear].name] = sigma;
+        best->second = std::max(best->second, log_other);
+      }
+    }
     return off;
   }
 
  private:
-  static Explanation without(Explanation all, std::size_t cause) {
+  static Explanation without_cause(Explanation all, std::size_t cause) {
     all.causes.erase(all.causes.begin() + static_cast<std::ptrdiff_t>(cause));
     return all;
   }
 
-  /// Beside all causes, and in the place of each.
-  static std::vector<Explanation> with_gear(const Explanation& now, Eigen::Index gear,
-                                            double sigma) {
-    std::vector<Explanation> list = {now};
-    for (std::size_t i = 0; i < now.causes.size(); ++i) list.push_back(without(now, i));
-    for (Explanation& each : list) each.gears[gear] = sigma;
+  bool take_if_better(const Explanation& other, Explanation& best, double& log_best) const {
+    const double log_other = log_weight(other);
+    if (!(log_other > log_best)) return false;
+    best = other;
+    log_best = log_other;
+    return true;
+  }
+
+  /// One more ratio: beside all, in the place of a cause, or of structure.
+  std::vector<Explanation> with_another_gear(const Explanation& now) const {
+    std::vector<Explanation> fewer = {now}, list;
+    for (std::size_t i = 0; i < now.causes.size(); ++i) fewer.push_back(without_cause(now, i));
+    if (now.structure != noise_) {
+      fewer.push_back(now);
+      fewer.back().structure = noise_;
+    }
+    for (std::size_t gear = 0; gear < held_.size(); ++gear)
+      for (const double off : kDiagnosis.gears.off)
+        for (const Explanation& each : fewer) {
+          if (now.gears.contains(gear)) continue;
+          list.push_back(each);
+          list.back().gears[gear] = off * std::abs(held_[gear].nominal);
+        }
     return list;
   }
 
-  /// Of A, of the causes' columns, and of what the rows say.
-  void find_products() {
-    std::vector<int> columns;
-    for (std::size_t i = 0; i < best_.candidates.size(); ++i) {
-      const int cause = best_.candidates[i];
-      const Hypothesis alone{{cause}, 0, 0, {best_.sizes[i]}};
-      const auto [of_cause, sigma] = MarginalLikelihood::unfold(evaluator_.terms(alone));
-      first_[cause] = geometry_ + static_cast<Eigen::Index>(columns.size());
-      sigma_[cause] = sigma;
-      columns.insert(columns.end(), of_cause.begin(), of_cause.end());
-    }
-    Eigen::MatrixXd all(rows_.A.rows(), geometry_ + static_cast<Eigen::Index>(columns.size()) + 1);
-    all.leftCols(geometry_) = rows_.A;
-    all.middleCols(geometry_, static_cast<Eigen::Index>(columns.size())) =
-        rows_.C(Eigen::all, columns);
-    all.rightCols<1>() = rows_.y;
-    products_ = all.transpose() * all;
-  }
-
-  /// Log evidence of the rows, whatever their noise, and prior odds; of those that share the
-  /// geometry's other priors.
+  /// Log evidence times prior.
   double log_weight(const Explanation& of) const {
-    std::vector<Eigen::Index> columns(static_cast<std::size_t>(geometry_));
-    for (Eigen::Index i = 0; i < geometry_; ++i) columns[static_cast<std::size_t>(i)] = i;
-    Eigen::VectorXd weight = rows_.weight, pull = rows_.pull;
-    double log_priors = 0;
+    std::vector<MarginalLikelihood::Term> terms;
+    std::vector<Eigen::Index> columns;
+    const auto add = [&](const Block& block, std::size_t place, double size) {
+      terms.push_back({&block, size});
+      for (std::size_t i = 0; i < block.columns.size(); ++i)
+        columns.push_back(first_[place] + static_cast<Eigen::Index>(i));
+    };
+    for (std::size_t i = 0; i < best_.candidates.size(); ++i)
+      if (std::ranges::count(of.causes, best_.candidates[i]) > 0)
+        add(blocks_[i], i, best_.sizes[i]);
     for (const auto& [gear, sigma] : of.gears) {
-      pull[gear] /= weight[gear] * sigma;
-      log_priors -= std::log(weight[gear] * sigma);
-      weight[gear] = 1 / sigma;
+      const double beyond = sigma * sigma - exact_[gear] * exact_[gear];
+      add(gears_[gear], blocks_.size() + gear, std::sqrt(std::max(beyond, 0.0)));
     }
-    for (const int cause : of.causes) {
-      const Eigen::VectorXd& sigma = sigma_.at(cause);
-      for (Eigen::Index i = 0; i < sigma.size(); ++i) columns.push_back(first_.at(cause) + i);
-      weight.conservativeResize(weight.size() + sigma.size());
-      weight.tail(sigma.size()) = sigma.cwiseInverse();
-      log_priors -= sigma.array().log().sum();
-    }
-    pull.conservativeResize(weight.size());
-    pull.tail(weight.size() - geometry_).setZero();
-    const Eigen::Index says = products_.cols() - 1;
-    Eigen::MatrixXd information = products_(columns, columns);
-    information.diagonal() += weight.cwiseAbs2();
-    const Eigen::VectorXd side =
-        products_(columns, std::vector<Eigen::Index>{says}) + weight.cwiseProduct(pull);
-    const Eigen::LDLT<Eigen::MatrixXd> factor(information);
-    const double squares =
-        products_(says, says) + pull.squaredNorm() - side.dot(factor.solve(side));
-    const double odds = static_cast<double>(of.gears.size()) * std::log(kDiagnosis.gears.odds);
-    return log_priors - factor.vectorD().array().abs().log().sum() / 2 -
-           static_cast<double>(rows_.y.size()) / 2 * std::log(std::max(squares, 1e-300)) + odds +
-           evaluator_.log_prior(of.causes, 0);
+    const auto& [seen, products] = seen_.at(of.structure);
+    return seen.log_evidence(terms, products(columns, columns)) +
+           evaluator_.log_prior(of.causes, of.structure) +
+           static_cast<double>(of.gears.size()) * std::log(kDiagnosis.gears.odds);
   }
 
-  const Whitened& rows_;
-  const HeldGears& held_;
+  const std::vector<HeldGear>& held_;
   const EvidenceEvaluator& evaluator_;
   const Hypothesis& best_;
-  Eigen::Index geometry_;                 ///< columns
-  std::map<int, Eigen::Index> first_;     ///< column of a cause in products_
-  std::map<int, Eigen::VectorXd> sigma_;  ///< of a cause's columns
-  Eigen::MatrixXd products_;
+  int noise_ = 0;              ///< the structure of noise alone
+  std::vector<double> exact_;  ///< 1 sigma of each ratio as it is held
+  std::vector<Block> blocks_,
+      gears_;                        ///< of the best causes; of the ratios, at a size of their own
+  std::vector<int> columns_;         ///< of all of them
+  std::vector<Eigen::Index> first_;  ///< of each among columns_
+  /// By structure: the rows in it, and the products of columns_.
+  std::map<int, std::pair<MarginalLikelihood, Eigen::MatrixXd>> seen_;
 };
 
 }  // namespace
 
-std::map<std::string, double> gears_off(const Whitened& rows, const HeldGears& held,
+std::map<std::string, double> gears_off(const std::vector<HeldGear>& held,
                                         const EvidenceEvaluator& evaluator,
-                                        const Hypothesis& best) {
-  return GearsOff(rows, held, evaluator, best).find();
+                                        const Posterior& posterior) {
+  if (held.empty() || posterior.hypotheses.empty()) return {};
+  return GearsOff(held, evaluator, posterior).find();
 }
 
 }  // namespace selfcal

@@ -5,20 +5,24 @@
 
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "diagnosis/evidence/evidence_evaluator.h"
 
 namespace selfcal {
 
-/// Ratios that are held, by their columns of Whitened::A, with their names.
-using HeldGears = std::vector<std::pair<Eigen::Index, std::string>>;
+/// A ratio that is held to what the robot's file says.
+struct HeldGear {
+  Eigen::Index column = 0;  ///< of Whitened::A
+  std::string name;         ///< of the parameter
+  double nominal = 1;
+};
 
 /// 1 sigma of those `held` ratios that explain the rows in the place of one of the most probable
-/// causes, or beside all, nearly as well or better; empty where none does. The rows are the
-/// evaluator's.
-std::map<std::string, double> gears_off(const Whitened& rows, const HeldGears& held,
-                                        const EvidenceEvaluator& evaluator, const Hypothesis& best);
+/// causes or of structure, or beside all, nearly as well or better; empty where none does. The rows
+/// are the evaluator's.
+std::map<std::string, double> gears_off(const std::vector<HeldGear>& held,
+                                        const EvidenceEvaluator& evaluator,
+                                        const Posterior& posterior);
 
 }  // namespace selfcal

@@ -18,11 +18,12 @@ using ::testing::Key;
 constexpr int kRows = 120;
 constexpr double kMoves = 1e4;  // sigmas, that a ratio off by one moves a row whose reading is one
 
-/// A mean and the ratio of one gear, held within 1e-5, beside two causes: one that looks much like
-/// the ratio, and another.
+/// A mean and the ratios of two gears, held within 1e-5 of theirs, of which the first has one of a
+/// hundred; beside two causes: one that looks much like that ratio, and another. One column more
+/// says nothing.
 struct Session {
   Whitened rows;
-  Eigen::VectorXd gear{kRows}, alike{kRows}, other{kRows};
+  Eigen::VectorXd gear{kRows}, second{kRows}, alike{kRows}, other{kRows};
   Candidates all;
   std::vector<EffectParameter> parameters;
 
@@ -33,12 +34,14 @@ struct Session {
       const double reading = 3.0 * i / kRows - 1.5;
       gear[i] = reading;
       alike[i] = std::sin(reading);
+      second[i] = 0.3 * reading + normal(random);
       other[i] = normal(random);
     }
-    rows.A.resize(kRows, 2);
-    rows.A << Eigen::VectorXd::Ones(kRows), kMoves * gear;
-    rows.weight = Eigen::Vector2d(0, 1e5);
-    rows.pull = Eigen::Vector2d::Zero();
+    rows.A.resize(kRows, 4);
+    rows.A << Eigen::VectorXd::Ones(kRows), kMoves / 100 * gear, kMoves * second,
+        Eigen::VectorXd::Zero(kRows);
+    rows.weight = Eigen::Vector4d(0, 1e3, 1e5, 1);
+    rows.pull = Eigen::Vector4d(0, 0.5, -0.5, 0);
     rows.C.resize(kRows, 2);
     rows.C << alike, other;
     rows.y.resize(kRows);
@@ -56,8 +59,9 @@ struct Session {
     DiscrepancyCovariance noise;
     noise.blocks = std::make_shared<const NoiseBlocks>(alone, [](int, int) { return 1.0; });
     const EvidenceEvaluator evaluator(rows, {noise}, all, parameters, {});
-    const Hypothesis best{found, 0, 0, std::vector<double>(found.size(), 4)};
-    return gears_off(rows, {{1, "K1"}}, evaluator, best);
+    Posterior posterior;
+    posterior.hypotheses = {{found, 0, 0, std::vector<double>(found.size(), 4)}};
+    return gears_off({{1, "K1", 100}, {2, "K2", 1}}, evaluator, posterior);
   }
 };
 
