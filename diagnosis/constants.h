@@ -121,15 +121,6 @@ struct DiagnosisConstants {
     double mass_off = 2.5, spread_off = 1.7;
     double payload = 0.1;  ///< over that mass; 0.02 to 0.3 [physics]
   };
-  /// Transmission ratios of turning joints.
-  struct Gears {
-    double exact = 1e-5;  ///< 1 sigma of one that is what the file says; 1e-6 to 3e-5 [physics]
-    std::array<double, 2> off = {1e-4,
-                                 3e-3};  ///< of one that is not: belts, a wrong figure [habit]
-    double odds = 0.02;                  ///< of one; 0.005 to 0.1 [habit]
-    /// Log weight below the causes', at which a ratio may explain as much; 1 to 4 [habit]
-    double nearly = 2.3;
-  };
   struct Naming {
     /// From which a cause, or structure of no known one, is taken to be there; 0.5 to 0.7 [exact]
     double probable = 0.5;
@@ -270,7 +261,6 @@ struct DiagnosisConstants {
   Structure structure;
   Evidence evidence;
   Shapes shapes;
-  Gears gears;
   Naming naming;
   Simulation simulation;
   Validation validation;

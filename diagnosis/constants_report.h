@@ -39,7 +39,6 @@ struct ReportConstants {
   /// Of the squares that a moved instrument leaves: named effects that leave less tell it better;
   /// 0.5 to 1 [habit]
   double better_than_moved = 0.8;
-  double plainly_wrong_ratio = 1e-3;  ///< that no belt or rack has; 3e-4 to 3e-3 [physics]
   /// 1 sigma of a gear's ratio that a file may have wrongly, where a cause would be named that is
   /// far beyond its usual size; 0.003 to 0.1 [physics]
   double wrong_ratio = 0.03;

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
 
 #include "constraints/estimation/identification.h"
 #include "diagnosis/constants.h"
@@ -23,7 +19,6 @@
 #include "diagnosis/report/verdict.h"
 #include "diagnosis/report/warnings.h"
 #include "diagnosis/search/causes.h"
-#include "diagnosis/search/gears_off.h"
 #include "diagnosis/search/naming.h"
 #include "diagnosis/search/sign_flip_test.h"
 #include "diagnosis/search/simulation_based_calibration.h"
@@ -43,17 +38,6 @@ class Diagnostician {
         options_(options),
         progress_(progress),
         linearised_(robot, data, options, progress) {}
-
-  /// Transmission ratios that explain the rows as well as what was found, as
-  /// DiagnosisOptions::gears_off; empty where none does.
-  std::map<std::string, double> gears_off() {
-    const Weighed& weighed = this->weighed();
-    if (!weighed.problem.empty()) return {};
-    std::vector<HeldGear> held;
-    for (const auto& [column, gear] : linearised_.held_gears())
-      held.push_back({column, gear->name, gear->nominal});
-    return selfcal::gears_off(held, *weighed.evaluator, weighed.posterior);
-  }
 
   /// Why these rows cannot be diagnosed; empty where they can.
   std::string problem() { return lacking(*evidence_of(linearised_, data_, options_.search)); }
@@ -77,7 +61,7 @@ class Diagnostician {
     result_.next_why = std::move(next.why);
     if (!left_out_.empty()) result_.warnings.push_back(left_out_);
     trust_plain_steps(linearised_, data_, result_);
-    result_.why = verdict_in_words(result_) + gears_in_verdict(result_);
+    result_.why = verdict_in_words(result_) + gears_beside_none(result_);
     const Solution calibrated = identify(linearised_.geometry(), data_);
     std::ranges::copy(calibrated.scale.contradictions, std::back_inserter(result_.warnings));
     if (const std::string doubt = doubt_of(linearised_, data_, calibrated, result_); !doubt.empty())
@@ -93,16 +77,9 @@ class Diagnostician {
   }
 
  private:
-  /// The causes as the rows weigh them.
-  Weighed& weighed() {
-    if (!weighed_) weighed_ = weigh(linearised_, data_, options_, progress_);
-    return *weighed_;
-  }
-
   /// The causes, and what of them is named; false where the rows are too few.
   bool named() {
-    Weighed weighed = std::move(this->weighed());
-    weighed_.reset();
+    Weighed weighed = weigh(linearised_, data_, options_, progress_);
     evaluator_ = std::move(weighed.evaluator);
     posterior_ = std::move(weighed.posterior);
     result_.problem = std::move(weighed.problem);
@@ -191,7 +168,6 @@ class Diagnostician {
   const DiagnosisOptions& options_;
   const Progress& progress_;
   LinearisedModel linearised_;
-  std::optional<Weighed> weighed_;
   std::unique_ptr<EvidenceEvaluator> evaluator_;
   Posterior posterior_;
   Diagnosis result_;
@@ -229,21 +205,13 @@ std::string why_not_diagnosable(const std::shared_ptr<const Robot>& robot, const
 }
 
 Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& data,
-                   const DiagnosisOptions& asked, const Progress& progress) {
+                   const DiagnosisOptions& options, const Progress& progress) {
   if (std::ranges::all_of(data.rows.check, [](auto check) { return check != 0; })) {
     Diagnosis nothing;
     nothing.problem = kAllKept;
     return nothing;
   }
-  DiagnosisOptions options = asked;
-  auto diagnostician = std::make_unique<Diagnostician>(robot, data, asked, progress);
-  options.gears_off = diagnostician->gears_off();
-  if (!options.gears_off.empty()) {
-    diagnostician.reset();  // before there is a second one
-    diagnostician = std::make_unique<Diagnostician>(robot, data, options, progress);
-  }
-  Diagnosis diagnosis = diagnostician->run();
-  diagnostician.reset();
+  Diagnosis diagnosis = Diagnostician(robot, data, options, progress).run();
   if (!diagnosis.problem.empty()) return diagnosis;
   if (std::string nuisance = warning_of_own_effects(*robot); !nuisance.empty())
     diagnosis.warnings.push_back(std::move(nuisance));
@@ -253,7 +221,7 @@ Diagnosis diagnose(const std::shared_ptr<const Robot>& robot, const DataSet& dat
     if (names_effect(diagnosis.verdict.effect)) {
       if (const std::optional<double>& closed = diagnosis.gap.closed.fraction)
         let_the_larger_lead(diagnosis.candidates, 1 - *closed, diagnosis.verdict);
-      diagnosis.why = verdict_in_words(diagnosis) + gears_in_verdict(diagnosis);
+      diagnosis.why = verdict_in_words(diagnosis);
     }
     if (const std::string doubt = closes_nothing(diagnosis); !doubt.empty())
       withdraw(doubt, options, diagnosis);

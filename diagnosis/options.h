@@ -1,9 +1,7 @@
 // What a diagnosis is asked for; what it takes for granted is in constants.h.
 #pragma once
 
-#include <map>
 #include <memory>
-#include <string>
 
 #include "constraints/estimation/options.h"
 
@@ -45,8 +43,6 @@ struct DiagnosisOptions {
   /// Of these the further rows are chosen; null: of what the robot could do on paper.
   std::shared_ptr<const PossibleRows> possible = {};
   int most_further = 20;  ///< of them at most
-  /// 1 sigma of transmission ratios that the robot's file has wrongly, by parameter.
-  std::map<std::string, double> gears_off = {};
 };
 
 }  // namespace selfcal

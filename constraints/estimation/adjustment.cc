@@ -34,7 +34,6 @@ class Adjustment {
     const auto effects = static_cast<Eigen::Index>(options.effect_sigma.size());
     adjusted_.prior.sigma.tail(effects) =
         Eigen::Map<const Eigen::VectorXd>(options.effect_sigma.data(), effects);
-    adjusted_.prior.believed = adjusted_.prior.sigma;
     choose_free();
     few_ = few_of(equations.data());
     if (few_) few_equations_.emplace(robot_, *few_, Use::fit);
@@ -70,8 +69,9 @@ class Adjustment {
   const std::vector<Parameter>& parameters() const { return robot_.parameters(); }
 
   double tolerance(const Parameter& p) const {
-    const auto other = options_.tolerance.find(p.name);
-    return other != options_.tolerance.end() ? other->second : p.tolerance;
+    return options_.gear_sigma > 0 && p.part == Part::gear
+               ? options_.gear_sigma * std::abs(p.nominal)
+               : p.tolerance;
   }
 
   void choose_free() {
@@ -241,8 +241,7 @@ class Adjustment {
     if (!adjusted_.priors_fail) return;
     for (size_t i = 0; i < parameters().size(); ++i)
       if (is_own(parameters()[i]))
-        adjusted_.prior.sigma[i] =
-            adjusted_.widening * adjusted_.prior.believed[static_cast<Eigen::Index>(i)];
+        adjusted_.prior.sigma[i] = adjusted_.widening * tolerance(parameters()[i]);
     adjusted_.fitted =
         run_fit(adjusted_.fitted.state, adjusted_.prior, "identifying with wider priors");
   }

@@ -1,7 +1,6 @@
 // What may be asked of an identification.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -11,8 +10,7 @@ struct Options {
   std::vector<std::string> fix;   ///< names or patterns held at the model's value
   std::vector<std::string> free;  ///< names or patterns freed (gear ratios)
   bool gears = false;             ///< every transmission ratio is free, whatever it is called
-  /// 1 sigma of parameters, by name, in the place of the robot's tolerances.
-  std::map<std::string, double> tolerance = {};
+  double gear_sigma = 0;          ///< of each ratio, 1 sigma of those that are free; 0: the robot's
   bool priors = true;  ///< false: the rows alone (tests); needs every direction determined
   double most_outliers =
       0.05;  ///< share of a set's rows that may be put aside, and 2 sigma of it, 0 to 0.5

@@ -72,8 +72,7 @@ class ScaleTest {
     Prior prior = adjusted.prior;
     for (size_t i = 0; i < robot.parameters().size(); ++i) {
       const Parameter& p = robot.parameters()[i];
-      const auto at = static_cast<Eigen::Index>(i);
-      if (is_own(p)) prior.sigma[at] = prior.believed[at];
+      if (is_own(p)) prior.sigma[static_cast<Eigen::Index>(i)] = p.tolerance;
       if (p.link_length) prior.free[i] = 1;
     }
     return prior;

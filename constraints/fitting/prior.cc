@@ -57,7 +57,7 @@ Chi2 prior_chi2(const Robot& robot, const Prior& prior, const Eigen::VectorXd& x
   for (Eigen::Index i = 0; i < xi.size(); ++i) {
     const Parameter& p = robot.parameters()[static_cast<size_t>(i)];
     if (!prior.free[i] || !is_own(p)) continue;
-    chi2.value += std::pow((xi[i] - p.nominal) / prior.believed[i], 2);
+    chi2.value += std::pow((xi[i] - p.nominal) / p.tolerance, 2);
     chi2.freedom += 1 - variance[i] / std::pow(prior.sigma[i], 2);
   }
   return chi2;

@@ -11,8 +11,7 @@ namespace selfcal {
 struct Prior {
   Eigen::VectorXd centre, sigma;
   std::vector<char> free;
-  bool use = true;                ///< false: no prior on free parameters
-  Eigen::VectorXd believed = {};  ///< sigma before it was widened
+  bool use = true;  ///< false: no prior on free parameters
 };
 
 /// The columns that are free: free parameters and all own freedoms.

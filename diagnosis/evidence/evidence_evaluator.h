@@ -82,8 +82,6 @@ class EvidenceEvaluator {
   std::vector<MarginalLikelihood::Term> terms(const Hypothesis& hypothesis) const;
   /// Appends the prior 1 sigma of each of the candidate's own parameters at that size.
   void add_sigma(int candidate, double size, std::vector<double>& to) const;
-  /// Of these candidates and this structure (0: none) together.
-  double log_prior(std::span<const int> candidates, int structure) const;
   /// Log evidence times prior of `h`, by which hypotheses are weighed.
   double log_weight(const Hypothesis& h) const;
   /// `h` with candidates added and dropped as long as that makes it more probable: up to `most`, of
@@ -101,6 +99,7 @@ class EvidenceEvaluator {
   struct Single {
     double log_sum = 0, log_best = 0, size = 1;
   };
+  double log_prior(std::span<const int> candidates, int structure) const;
   /// One candidate beside what `marginal_likelihood` has, its sizes summed over.
   Single weigh(const MarginalLikelihood& marginal_likelihood, int candidate) const;
   /// The same of a structure by itself: fast where many y are looked at.

@@ -15,34 +15,11 @@
 #include "kinematics/linear_algebra.h"
 
 namespace selfcal {
-std::vector<int> held_gears(const Robot& robot, const DiagnosisOptions& options) {
-  std::vector<int> held;
-  for (std::size_t i = 0; i < robot.parameters().size(); ++i) {
-    const Parameter& p = robot.parameters()[i];
-    const auto joint = std::ranges::find(robot.joints(), p.frame, &Joint::name);
-    if (p.part == Part::gear && !p.free && !options.gears_off.contains(p.name) &&
-        joint != robot.joints().end() && joint->quantity == Quantity::angle)
-      held.push_back(static_cast<int>(i));
-  }
-  return held;
-}
-
 Options geometry_options(const DiagnosisOptions& options) {
   Options geometry;
   geometry.most_outliers = options.most_outliers;
   geometry.seed = options.seed;
   geometry.gears = true;  // a ratio that is off is geometry: it must not be taken for a cause
-  return geometry;
-}
-
-Options options_with_held_gears(const Robot& robot, const DiagnosisOptions& options) {
-  Options geometry = geometry_options(options);
-  geometry.tolerance = options.gears_off;
-  for (const int gear : held_gears(robot, options)) {
-    const Parameter& p = robot.parameters()[static_cast<std::size_t>(gear)];
-    geometry.tolerance.emplace(p.name,
-                               std::min(p.tolerance, kDiagnosis.gears.exact * std::abs(p.nominal)));
-  }
   return geometry;
 }
 
@@ -64,11 +41,10 @@ LinearisedModel::LinearisedModel(std::shared_ptr<const Robot> robot, const DataS
       most_outliers_(options.most_outliers),
       given_(geometry_of(std::move(robot))),
       geometry_(with_mass_of_its_size(given_)),
-      held_gears_(selfcal::held_gears(*geometry_, options)),
       context_(context_of(*geometry_, data)),
       candidates_(selfcal::candidates(*geometry_, data, context_)),
       equations_(std::make_unique<Equations>(*geometry_, data, Use::fit)),
-      adjusted_(adjust(*equations_, options_with_held_gears(*geometry_, options), progress)) {
+      adjusted_(adjust(*equations_, geometry_options(options), progress)) {
   const Fit& fitted = adjusted_.fitted;
   noise_ = pooled_noise(data, fitted);
   bound_noise();
@@ -205,15 +181,6 @@ Whitened LinearisedModel::whitened() const {
 
 Whitened LinearisedModel::whitened_geometry() const {
   return of(equations_of(all_, taking_part()), {});
-}
-
-std::vector<std::pair<Eigen::Index, const Parameter*>> LinearisedModel::held_gears() const {
-  std::vector<std::pair<Eigen::Index, const Parameter*>> held;
-  for (const int gear : held_gears_)
-    if (const auto at = std::ranges::find(nuisance_.columns, gear); at != nuisance_.columns.end())
-      held.emplace_back(at - nuisance_.columns.begin(),
-                        &geometry_->parameters()[static_cast<std::size_t>(gear)]);
-  return held;
 }
 
 std::vector<Eigen::Isometry3d> LinearisedModel::ends() const {

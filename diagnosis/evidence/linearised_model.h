@@ -3,8 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "constraints/equations/resolution.h"
@@ -18,12 +16,8 @@ namespace selfcal {
 
 struct DiagnosisOptions;
 
-/// Turning joints' ratios that are taken for what the robot's file says (indices of parameters).
-std::vector<int> held_gears(const Robot& robot, const DiagnosisOptions& options);
-/// How the geometry is fitted wherever a gap is looked for, with all ratios free,
+/// How the geometry is fitted wherever a gap is looked for.
 Options geometry_options(const DiagnosisOptions& options);
-/// and with those held that are taken for what the robot's file says.
-Options options_with_held_gears(const Robot& robot, const DiagnosisOptions& options);
 
 /// Parameter that each joint's reading is added to, by joint.
 std::vector<int> reading_columns(const Robot& robot);
@@ -57,8 +51,6 @@ class LinearisedModel {
   Whitened whitened() const;
   /// The same without any cause's columns.
   Whitened whitened_geometry() const;
-  /// The ratios that are held_gears(), by their columns of whitened().A.
-  std::vector<std::pair<Eigen::Index, const Parameter*>> held_gears() const;
   /// Which they are, without their columns W.
   DenseEquations kept() const;
   std::vector<Eigen::Isometry3d> ends() const;
@@ -143,7 +135,6 @@ class LinearisedModel {
   const DataSet& data_;
   double most_outliers_;
   std::shared_ptr<const Robot> given_, geometry_, everything_;
-  std::vector<int> held_gears_;  ///< parameters
   MeasurementContext context_;
   Hints hints_;
   Candidates candidates_;

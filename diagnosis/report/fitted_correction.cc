@@ -11,7 +11,7 @@ FittedCorrection fit_correction(const std::shared_ptr<const Robot>& geometry, co
                                 const DiagnosisOptions& options, const State* near) {
   FittedCorrection fit;
   Problems problems;
-  Options free = options_with_held_gears(*geometry, options);
+  Options free = geometry_options(options);
   for (const FoundEffect& each : correction)
     free.effect_sigma.insert(free.effect_sigma.end(), each.sigma.begin(), each.sigma.end());
   fit.model = correct(geometry, entries_of(correction), context, problems);

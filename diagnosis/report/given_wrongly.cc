@@ -78,9 +78,7 @@ std::string ratio_given_wrongly(const LinearisedModel& linearised, const DataSet
   const std::shared_ptr<const Robot> robot = with_effects(linearised, usual);
   Options options = free_effects(*robot);
   options.gears = true;
-  for (const Parameter& p : robot->parameters())
-    if (p.part == Part::gear)
-      options.tolerance[p.name] = kDiagnosis.report.wrong_ratio * std::abs(p.nominal);
+  options.gear_sigma = kDiagnosis.report.wrong_ratio;
   const Solution with_any = identify(*robot, data, options);
   const ParameterResult* suspect = farthest_off(with_any);
   if (suspect == nullptr) return {};

@@ -40,19 +40,6 @@ std::string of_gears(const HoldoutValidation& validation) {
                           fitted.covariance.diagonal().head(parameters).cwiseSqrt());
 }
 
-bool is_plainly_off(const Parameter& gear, double value) {
-  return std::abs(value - gear.nominal) >
-         kDiagnosis.report.plainly_wrong_ratio * std::abs(gear.nominal);
-}
-
-bool any_gear_plainly_off(const Diagnosis& diagnosis) {
-  for (Eigen::Index i = 0; diagnosis.model && i < diagnosis.values.size(); ++i) {
-    const Parameter& p = diagnosis.model->parameters()[static_cast<std::size_t>(i)];
-    if (p.part == Part::gear && is_plainly_off(p, diagnosis.values[i])) return true;
-  }
-  return false;
-}
-
 bool slides(const Robot& robot, const std::string& frame) {
   return std::ranges::any_of(robot.joints(), [&](const Joint& each) {
     return each.name == frame && each.quantity == Quantity::length;
@@ -122,13 +109,10 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
     const Parameter& gear = robot.parameters()[static_cast<std::size_t>(i)];
     if (gear.part != Part::gear) continue;
     const double off = xi[i] - gear.nominal;
-    // Within the doubt of teeth none is off.
-    const bool is_off = std::abs(off) > sigmas * std::hypot(sigma[i], kDiagnosis.gears.exact *
-                                                                          std::abs(gear.nominal));
+    const bool is_off = std::abs(off) > sigmas * sigma[i];
     if (is_off)
-      gears += (gears.empty() ? "" : ", ") + gear.name + " (" + gear.frame + ") " +
-               (is_plainly_off(gear, xi[i]) ? with_figures("%.2g %%", 100 * off / gear.nominal)
-                                            : format_number(std::round(1e6 * off)) + " ppm");
+      gears += (gears.empty() ? "" : ", ") + gear.name + " " +
+               format_number(std::round(1e6 * off)) + " ppm";
     if (!slides(robot, gear.frame)) continue;
     for (const Eigen::Index other : sliding)
       alike = alike && std::abs(off - (xi[other] - robot.parameters()[other].nominal)) <
@@ -143,15 +127,12 @@ std::string warning_of_gears(const Robot& robot, const Eigen::VectorXd& xi,
                                       : "");
 }
 
-std::string gears_in_verdict(const Diagnosis& diagnosis) {
+std::string gears_beside_none(const Diagnosis& diagnosis) {
   const auto off = std::ranges::find_if(
       diagnosis.warnings, [](const std::string& each) { return each.starts_with(kGearsOff); });
-  if (off == diagnosis.warnings.end() ||
-      (diagnosis.verdict.effect != kNone && !any_gear_plainly_off(diagnosis)))
-    return {};
-  return "; that is with gear ratios other than in the robot's file (identify frees one with "
-         "--free "
-         "and its name): " +
+  if (diagnosis.verdict.effect != kNone || off == diagnosis.warnings.end()) return {};
+  return "; that is with the gears' ratios free (identify frees one with --free and its name), of "
+         "which some are off: " +
          off->substr(kGearsOff.size());
 }
 

@@ -25,11 +25,11 @@ std::string warning_of_own_effects(const Robot& robot);
 
 /// What warning_of_gears() begins with.
 inline constexpr std::string_view kGearsOff =
-    "gear ratios that differ from the robot's file by more than three sigma (none that is off is "
-    "taken for a cause): ";
-/// That gears' ratios are off, from the warning of it: where no cause is named, and where one is
-/// off by more than any belt; empty of others.
-std::string gears_in_verdict(const Diagnosis& diagnosis);
+    "gear ratios are free here, so that none that is off is taken for a cause; off by more than "
+    "three sigma: ";
+/// Where no cause is named: that a gear's ratio is off all the same, from the warning of it; empty
+/// of others.
+std::string gears_beside_none(const Diagnosis& diagnosis);
 
 /// Gear ratios that `xi` puts off the maker's by more than three `sigma` (both by parameter), and
 /// whether all sliding joints' are off alike, as the scale of an instrument would be; empty where

@@ -56,7 +56,7 @@ TEST(Doubt, NamesTheJointWhoseGearRatioIsNotTheFiles) {
   rows.data.rows.q.col(1) *= 1.005;
   const Diagnosis diagnosis = diagnose(rows.robot, rows.data, quick());
   EXPECT_TRUE(diagnosis.named.empty());
-  EXPECT_THAT(diagnosis.why, HasSubstr("K2 (j2) -0.5 %"));
+  EXPECT_THAT(diagnosis.why, HasSubstr("with the gear ratio of j2 -0.5 % off"));
 }
 
 TEST(Doubt, DoesNotCallNoiseWhatIsFarBeyondTheDataSheetsNoise) {

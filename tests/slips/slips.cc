@@ -51,7 +51,7 @@ std::vector<Slip> of_a_tracker() {
        "a gear off by 1 percent",
        factor("q2", 1.01),
        "Not determined",
-       "K2 (S1) -1 %",
+       "with the gear ratio of S1 -1 % off",
        {},
        true},
       {"motoman-tracker",
